@@ -1,0 +1,174 @@
+/* Lariat: real-time finite elements for soft tissue. The public C API.
+ *
+ * A MODEL says what is simulated (mesh, materials, supports, loads). It is read once, never
+ * changes and may be shared by any number of simulations and threads. A SIMULATION owns the
+ * state that moves: displacements and velocities, advanced step by step.
+ *
+ *     lar_error error;
+ *     lar_model *model = NULL;
+ *     lar_simulation *simulation = NULL;
+ *     if (lar_model_open("organ.yaml", &model, &error) ||
+ *         lar_simulation_create(model, NULL, &simulation, &error) ||
+ *         lar_simulation_advance(simulation, 1000, &error))
+ *         fprintf(stderr, "%s\n", error.message);
+ *     lar_simulation_destroy(simulation);
+ *     lar_model_destroy(model);
+ *
+ * Conventions. SI units. Vectors are x, y, z. Node and element indices count from 0 in the
+ * order of the mesh file. Every call that can fail returns a lar_status (LAR_OK is 0) and writes
+ * one sentence to *error, which may be NULL; outputs are set on success only. Destroy functions
+ * accept NULL. The library never exits, and prints nothing.
+ */
+#ifndef LARIAT_H
+#define LARIAT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(LARIAT_STATIC) || !defined(__GNUC__)
+#define LAR_API
+#else
+#define LAR_API __attribute__((visibility("default")))
+#endif
+
+/* ---- errors ---------------------------------------------------------------------------- */
+
+typedef enum lar_status {
+    LAR_OK = 0,
+    LAR_ERROR_ARGUMENT,    /* a call or a command line that makes no sense */
+    LAR_ERROR_IO,          /* a file or folder that cannot be read or written */
+    LAR_ERROR_FORMAT,      /* a file that is damaged or breaks its format */
+    LAR_ERROR_MODEL,       /* a readable model that cannot be simulated */
+    LAR_ERROR_UNSUPPORTED, /* something sensible that Lariat does not do */
+    LAR_ERROR_MEMORY,      /* the system refuses memory */
+    LAR_ERROR_UNSTABLE     /* a run that left the range in which its results mean something */
+} lar_status;
+
+typedef struct lar_error {
+    lar_status status;
+    char message[1016]; /* one sentence: file, line or element, cause and remedy */
+} lar_error;
+
+/* Version of the library, "major.minor.patch". */
+LAR_API const char *lar_version(void);
+
+/* ---- model ------------------------------------------------------------------------------ */
+
+typedef struct lar_model lar_model;
+
+/* Reads a model: a scene (.yaml, docs/formats.md), a FEBio deck (.feb), or a bare mesh (.vtu .vtk
+ * .msh .inp), which gets a soft default material and no supports. The caller destroys it. */
+LAR_API lar_status lar_model_open(const char *path, lar_model **model, lar_error *error);
+LAR_API void lar_model_destroy(lar_model *model);
+
+/* What `lariat info` prints. */
+typedef struct lar_model_info {
+    const char *title;         /* lives as long as the model */
+    int32_t nodes, elements;   /* counts */
+    int32_t materials;         /* count */
+    int32_t fixed_nodes;       /* nodes with at least one fixed or moved axis */
+    double lower[3], upper[3]; /* bounding box [m] */
+    double volume;             /* [m^3] */
+    double mass;               /* [kg] */
+    double shortest_edge;      /* [m] */
+    double scaled_jacobian_min, scaled_jacobian_mean; /* -1..1, a cube has 1 */
+    int32_t scaled_jacobian_worst;                    /* element index */
+    double stable_step;    /* largest time step that the elements allow, without safety [s] */
+    int32_t stable_worst;  /* the element that asks for it */
+    double time_step;      /* the step that a simulation will use [s] */
+} lar_model_info;
+
+LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
+                                     lar_error *error);
+
+/* Reference positions of all nodes, [nodes][3], in metres. Lives as long as the model. */
+LAR_API const double (*lar_model_positions(const lar_model *model))[3];
+
+/* Writes the demonstration organ (uterus.yaml and its mesh) into a folder, which is made when it
+ * is missing. */
+LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
+
+/* ---- simulation ------------------------------------------------------------------------- */
+
+typedef struct lar_simulation lar_simulation;
+
+typedef enum lar_element_kind {
+    LAR_ELEMENT_HEX8 = 0, /* uniform strain with total hourglass control: the fast one */
+    LAR_ELEMENT_HEX8_FULL,  /* eight Gauss points: the oracle (T 4.2.2) */
+    LAR_ELEMENT_HEX8_MATRIX /* element matrices built every step (T 4.2.1) */
+} lar_element_kind;
+
+typedef enum lar_isa {
+    LAR_ISA_AUTO = 0, /* the widest that this processor has, or LARIAT_ISA=avx512|avx2|neon|c */
+    LAR_ISA_C,
+    LAR_ISA_NEON,
+    LAR_ISA_AVX2,
+    LAR_ISA_AVX512
+} lar_isa;
+
+typedef struct lar_options {
+    lar_element_kind element;
+    lar_isa isa;
+    double time_step; /* seconds; 0 takes the model's */
+} lar_options;
+
+LAR_API lar_options lar_options_default(void);
+
+/* Compiles the model for this processor and sets the state to rest. `options` may be NULL. The
+ * model must outlive the simulation. */
+LAR_API lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
+                                         lar_simulation **simulation, lar_error *error);
+LAR_API void lar_simulation_destroy(lar_simulation *simulation);
+
+/* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element, place, time
+ * and cause, and the state is that of the last good check. */
+LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
+                                          lar_error *error);
+
+LAR_API uint64_t lar_simulation_steps(const lar_simulation *simulation);
+LAR_API double lar_simulation_time(const lar_simulation *simulation);      /* [s] */
+LAR_API double lar_simulation_time_step(const lar_simulation *simulation); /* [s] */
+LAR_API const char *lar_simulation_isa(const lar_simulation *simulation);  /* "avx512", ... */
+
+/* Copies the state, [nodes][3] each, in the mesh's order. Velocities are those half a step back
+ * (leapfrog). */
+LAR_API void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]);
+LAR_API void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]);
+
+/* 64 bits over step number, displacements and velocities of all nodes. The same for every
+ * instruction set, thread count and division of the model. */
+LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
+
+/* Energies now, in joules. external = work done by loads and prescribed motion since the start,
+ * damping = energy taken out; kinetic + strain + hourglass + damping = external (+ start). */
+typedef struct lar_energy {
+    double kinetic, strain, hourglass, external, damping;
+} lar_energy;
+LAR_API void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy);
+
+/* ---- results on disk -------------------------------------------------------------------- */
+
+typedef struct lar_results lar_results;
+
+/* Opens a folder for results (made when missing): frames as .vtu with one .pvd, and probes.csv,
+ * as the model's `output` asks. Frames appear whole or not at all. */
+LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
+                                    lar_results **results, lar_error *error);
+/* Adds the present state as a frame. */
+LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
+                                   lar_error *error);
+LAR_API lar_status lar_results_close(lar_results *results, lar_error *error);
+
+/* Seconds of simulated time between frames that the model asks for; 0 when it does not say. */
+LAR_API double lar_model_output_interval(const lar_model *model);
+/* Seconds that the model's own description lasts (its last ramp or table), at least 0. */
+LAR_API double lar_model_duration(const lar_model *model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,22 @@
+#include "base/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...) {
+    if (error) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(error->message, sizeof error->message, format, args);
+        va_end(args);
+        error->status = status;
+    }
+    return status;
+}
+
+lar_status lar_fail_memory(lar_error *error, size_t bytes, const char *what) {
+    return lar_fail(error, LAR_ERROR_MEMORY,
+                    "out of memory: %zu bytes for %s could not be had; use a smaller model or a "
+                    "machine with more memory",
+                    bytes, what);
+}

@@ -1,0 +1,26 @@
+/* How errors travel.
+ *
+ * Three tiers:
+ *   1. our own bugs: assert();
+ *   2. what a user or the environment did: a lar_status returned and, beside it, one
+ *      sentence in a lar_error that names file, line or element and the remedy;
+ *   3. what happens while a simulation runs: the sticky trip word of engine/step.h.
+ *
+ * The sentence is written once, where the trouble is found. Callers pass the status on
+ * unchanged. Outputs are set on success only. The public types live in lariat.h, so that
+ * an embedding program sees the same words.
+ */
+#ifndef LAR_BASE_ERROR_H
+#define LAR_BASE_ERROR_H
+
+#include "lariat.h"
+
+/* Writes the message (printf-style, cut to size, never NULL-terminated late) into *error,
+ * which may be NULL, and returns `status` for `return lar_fail(...)`. */
+lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The message for memory that the system refuses. `what` names what it was for. */
+lar_status lar_fail_memory(lar_error *error, size_t bytes, const char *what);
+
+#endif

@@ -1,0 +1,136 @@
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+
+bool lar_text_skip_space(lar_text *text) {
+    while (text->at < text->end && is_space(*text->at)) {
+        if (*text->at == '\n') text->line++;
+        text->at++;
+    }
+    return text->at < text->end;
+}
+
+bool lar_text_word(lar_text *text, lar_span *word) {
+    if (!lar_text_skip_space(text)) return false;
+    const char *start = text->at;
+    while (text->at < text->end && !is_space(*text->at)) text->at++;
+    *word = (lar_span){start, (size_t)(text->at - start)};
+    return true;
+}
+
+bool lar_text_line(lar_text *text, lar_span *line) {
+    if (text->at >= text->end) return false;
+    const char *start = text->at;
+    const char *stop = memchr(start, '\n', (size_t)(text->end - start));
+    text->at = stop ? stop + 1 : text->end;
+    if (!stop) stop = text->end;
+    if (text->at > stop) text->line++;
+    if (stop > start && stop[-1] == '\r') stop--;
+    *line = (lar_span){start, (size_t)(stop - start)};
+    return true;
+}
+
+/* strtod in the C locale, whatever the program's locale is. */
+static double parse_double(const char *start, char **stop) {
+    static locale_t c_locale;
+    if (!c_locale) {
+        locale_t fresh = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+        locale_t expected = (locale_t)0;
+        if (!__atomic_compare_exchange_n(&c_locale, &expected, fresh, false, __ATOMIC_ACQ_REL,
+                                         __ATOMIC_ACQUIRE) &&
+            fresh)
+            freelocale(fresh);
+    }
+    return strtod_l(start, stop, c_locale);
+}
+
+bool lar_span_double(lar_span span, double *value) {
+    enum { LONGEST = 64 };
+    char copy[LONGEST + 1];
+    if (span.length == 0 || span.length > LONGEST) return false;
+    for (size_t i = 0; i < span.length; i++) {
+        char c = span.at[i];
+        if (c == 'x' || c == 'X' || is_space(c)) return false;
+        copy[i] = c == 'd' || c == 'D' ? 'e' : c;
+    }
+    copy[span.length] = '\0';
+    char *stop;
+    double parsed = parse_double(copy, &stop);
+    if (stop != copy + span.length) return false;
+    *value = parsed;
+    return true;
+}
+
+bool lar_span_int64(lar_span span, int64_t *value) {
+    enum { LONGEST = 24 };
+    char copy[LONGEST + 1];
+    if (span.length == 0 || span.length > LONGEST || is_space(span.at[0])) return false;
+    memcpy(copy, span.at, span.length);
+    copy[span.length] = '\0';
+    char *stop;
+    errno = 0;
+    long long parsed = strtoll(copy, &stop, 10);
+    if (errno != 0 || stop != copy + span.length) return false;
+    *value = parsed;
+    return true;
+}
+
+bool lar_text_double(lar_text *text, double *value) {
+    lar_text ahead = *text;
+    lar_span word;
+    if (!lar_text_word(&ahead, &word)) return false;
+    if (!lar_span_double(word, value)) {
+        lar_text_skip_space(text);
+        return false;
+    }
+    *text = ahead;
+    return true;
+}
+
+bool lar_text_int64(lar_text *text, int64_t *value) {
+    lar_text ahead = *text;
+    lar_span word;
+    if (!lar_text_word(&ahead, &word)) return false;
+    if (!lar_span_int64(word, value)) {
+        lar_text_skip_space(text);
+        return false;
+    }
+    *text = ahead;
+    return true;
+}
+
+lar_span lar_span_trim(lar_span span) {
+    while (span.length > 0 && is_space(span.at[0])) span.at++, span.length--;
+    while (span.length > 0 && is_space(span.at[span.length - 1])) span.length--;
+    return span;
+}
+
+bool lar_span_split(lar_span span, char separator, lar_span *head, lar_span *rest) {
+    const char *found = span.length ? memchr(span.at, separator, span.length) : NULL;
+    if (!found) {
+        *head = span;
+        *rest = (lar_span){span.at + span.length, 0};
+        return false;
+    }
+    size_t before = (size_t)(found - span.at);
+    *head = (lar_span){span.at, before};
+    *rest = (lar_span){found + 1, span.length - before - 1};
+    return true;
+}
+
+bool lar_span_equal(lar_span span, const char *word) {
+    return strlen(word) == span.length && memcmp(span.at, word, span.length) == 0;
+}
+
+bool lar_span_equal_nocase(lar_span span, const char *word) {
+    return strlen(word) == span.length && strncasecmp(span.at, word, span.length) == 0;
+}

@@ -1,0 +1,64 @@
+/* Reading numbers and words from text in memory, with the line always known.
+ *
+ * Every text reader (legacy VTK, Gmsh, Abaqus, XML payloads) stands on this one scanner:
+ * bounded, independent of the locale, and able to say where it stopped.
+ */
+#ifndef LAR_BASE_TEXT_H
+#define LAR_BASE_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/memory.h"
+
+/* A position in text [at, end). *end must be readable and hold a byte that ends a number
+ * (lar_bytes gives a zero byte there). */
+typedef struct lar_text {
+    const char *at;
+    const char *end;
+    int line; /* 1-based */
+} lar_text;
+
+/* A word or a line inside the text; not terminated. */
+typedef struct lar_span {
+    const char *at;
+    size_t length;
+} lar_span;
+
+static inline lar_text lar_text_from(const lar_bytes *bytes) {
+    return (lar_text){(const char *)bytes->data, (const char *)bytes->data + bytes->size, 1};
+}
+
+/* Skips blanks and line ends, counting lines. False at the end of the text. */
+bool lar_text_skip_space(lar_text *text);
+
+/* Next word (up to white space). False at the end. */
+bool lar_text_word(lar_text *text, lar_span *word);
+
+/* The rest of the current line without its end (\n or \r\n), moving past it. False at the end
+ * of the text. */
+bool lar_text_line(lar_text *text, lar_span *line);
+
+/* Next number; white space before it is skipped. False when the next word is no number of that
+ * kind or does not fit; the position then stays before the word. Doubles: decimal notation, also
+ * with Fortran's D exponent; "nan" and "inf" are read as such, so that the caller can say where
+ * they stand. */
+bool lar_text_double(lar_text *text, double *value);
+bool lar_text_int64(lar_text *text, int64_t *value);
+
+/* One number from a whole span; false when anything else is in it. */
+bool lar_span_double(lar_span span, double *value);
+bool lar_span_int64(lar_span span, int64_t *value);
+
+/* Span without white space at both ends. */
+lar_span lar_span_trim(lar_span span);
+
+/* Splits at the first `separator`: *head before it, *rest after it. False (and *head the whole)
+ * when there is none. */
+bool lar_span_split(lar_span span, char separator, lar_span *head, lar_span *rest);
+
+bool lar_span_equal(lar_span span, const char *word);
+bool lar_span_equal_nocase(lar_span span, const char *word);
+
+#endif

@@ -1,0 +1,34 @@
+/* How something changes in time: a factor, 1 by default.
+ *
+ * Values are evaluated with + - * / only, so that they have the same bits everywhere.
+ */
+#ifndef LAR_MODEL_CURVE_H
+#define LAR_MODEL_CURVE_H
+
+typedef enum lar_curve_kind {
+    LAR_CURVE_RAMP,  /* 0 to 1 over `over` seconds, smooth (third-order smoothstep), then held;
+                        over == 0: 1 from the start */
+    LAR_CURVE_TABLE  /* through the points (time, value), held before and after */
+} lar_curve_kind;
+
+typedef enum lar_curve_shape {
+    LAR_CURVE_LINEAR, /* straight between points */
+    LAR_CURVE_STEP,   /* the value of the point to the left... FEBio: of the NEXT point */
+    LAR_CURVE_SMOOTH  /* smoothstep between points (FEBio "SMOOTH" with two points) */
+} lar_curve_shape;
+
+typedef struct lar_curve {
+    lar_curve_kind kind;
+    double over;
+    lar_curve_shape shape;
+    int count;
+    double (*point)[2]; /* ascending times, owned */
+} lar_curve;
+
+/* Value at `time` (seconds). */
+double lar_curve_value(const lar_curve *curve, double time);
+
+/* Time after which the value no longer changes. */
+double lar_curve_end(const lar_curve *curve);
+
+#endif

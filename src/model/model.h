@@ -1,0 +1,138 @@
+/* The model: WHAT is simulated, everything in SI units and index form.
+ *
+ * Built once by a reader (scene.c, feb.c), immutable afterwards, shared freely. Nothing in here
+ * knows how a body answers (mechanics) or who computes what (divide).
+ */
+#ifndef LAR_MODEL_MODEL_H
+#define LAR_MODEL_MODEL_H
+
+#include "model/curve.h"
+#include "model/material.h"
+#include "model/mesh.h"
+
+enum { LAR_AXIS_X = 1, LAR_AXIS_Y = 2, LAR_AXIS_Z = 4, LAR_AXIS_ALL = 7 };
+
+/* A list of node indices, owned. */
+typedef struct lar_node_list {
+    int32_t count;
+    int32_t *node;
+} lar_node_list;
+
+/* Axes of nodes held where they are. */
+typedef struct lar_fix {
+    lar_node_list nodes;
+    unsigned axes;
+} lar_fix;
+
+/* Axes of nodes moved by `by` (metres) times a curve. */
+typedef struct lar_move {
+    lar_node_list nodes;
+    unsigned axes;
+    double by;
+    int curve; /* index into lar_model.curve */
+} lar_move;
+
+/* A dead force on every node of a list: `force` newtons per node, times a curve. */
+typedef struct lar_nodal_load {
+    lar_node_list nodes;
+    double force[3];
+    int curve;
+} lar_nodal_load;
+
+/* A pressure (pascal, positive pushes on the body) that follows the deformed faces. */
+typedef struct lar_pressure_load {
+    int32_t count;
+    int32_t *face; /* element * 6 + local face */
+    double pressure;
+    int curve;
+} lar_pressure_load;
+
+/* Velocity of nodes at the start. */
+typedef struct lar_initial_velocity {
+    lar_node_list nodes;
+    double velocity[3];
+} lar_initial_velocity;
+
+typedef enum lar_field {
+    LAR_FIELD_DISPLACEMENT = 1,
+    LAR_FIELD_VELOCITY = 2,
+    LAR_FIELD_VON_MISES = 4,
+    LAR_FIELD_PRESSURE = 8,
+    LAR_FIELD_ENERGY = 16 /* strain energy density */
+} lar_field;
+
+/* One line of probes.csv: the mean displacement of some nodes, or the sum of the reactions of
+ * their supports. */
+typedef struct lar_probe {
+    char *name;
+    lar_node_list nodes;
+    enum { LAR_PROBE_DISPLACEMENT, LAR_PROBE_REACTION } what;
+} lar_probe;
+
+typedef struct lar_output {
+    double every;    /* seconds, 0: only the end */
+    unsigned fields; /* lar_field bits */
+    int probe_count;
+    lar_probe *probe;
+} lar_output;
+
+struct lar_model {
+    char *title;
+    char *source; /* the file */
+    lar_mesh mesh;
+
+    int material_count;
+    lar_material *material;
+    int32_t *element_material; /* [mesh.element_count] */
+
+    int curve_count;
+    lar_curve *curve;
+
+    double gravity[3]; /* m/s^2, times gravity_curve[axis] where that is >= 0 */
+    int gravity_curve[3];
+    double damping;   /* 1/s, mass-proportional */
+    double time_step; /* seconds, 0: automatic */
+    double duration;  /* seconds that the description lasts, 0: open */
+
+    int fix_count, move_count, load_count, pressure_count, initial_count;
+    lar_fix *fix;
+    lar_move *move;
+    lar_nodal_load *load;
+    lar_pressure_load *pressure;
+    lar_initial_velocity *initial;
+
+    lar_output output;
+
+    /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
+    int notice_count;
+    char **notice;
+};
+
+/* An empty model with defaults (no gravity curve, ...), or NULL. Destroy with
+ * lar_model_destroy. */
+lar_model *lar_model_create(void);
+
+/* Appends a zeroed entry to one of the arrays above and returns it, NULL without memory:
+ * lar_fix *f = LAR_MODEL_APPEND(model, fix); */
+void *lar_model_append(void **array, int *count, size_t size);
+#define LAR_MODEL_APPEND(model, name)                                                              \
+    lar_model_append((void **)&(model)->name, &(model)->name##_count, sizeof *(model)->name)
+
+/* Adds a notice (printf-style). */
+lar_status lar_model_notice(lar_model *model, lar_error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Everything that must hold across the parts: materials assigned to every element and valid,
+ * node lists within range, fixed and moved axes not in conflict, finite values. */
+lar_status lar_model_check(const lar_model *model, lar_error *error);
+
+/* The readers of whole models; lar_model_open chooses by extension. */
+lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error);
+lar_status lar_feb_read(const char *path, lar_model **model, lar_error *error);
+/* From memory, for tests and fuzzing. `path` is for messages and relative files. */
+lar_status lar_scene_parse(const char *path, const lar_bytes *bytes, lar_model **model,
+                           lar_error *error);
+lar_status lar_feb_parse(const char *path, const lar_bytes *bytes, lar_model **model,
+                         lar_error *error);
+
+#endif
