@@ -13,8 +13,9 @@ typedef enum lar_curve_kind {
 
 typedef enum lar_curve_shape {
     LAR_CURVE_LINEAR, /* straight between points */
-    LAR_CURVE_STEP,   /* the value of the point to the left... FEBio: of the NEXT point */
-    LAR_CURVE_SMOOTH  /* smoothstep between points (FEBio "SMOOTH" with two points) */
+    LAR_CURVE_STEP,   /* the value of the NEXT point (FEBio "STEP") */
+    LAR_CURVE_SMOOTH, /* smoothstep between points (FEBio "SMOOTH" with two points) */
+    LAR_CURVE_HOLD    /* the value of the point before, held until the next ("step" in scenes) */
 } lar_curve_shape;
 
 typedef struct lar_curve {
@@ -22,13 +23,13 @@ typedef struct lar_curve {
     double over;
     lar_curve_shape shape;
     int count;
-    double (*point)[2]; /* ascending times, owned */
+    double (*point)[2]; /* (time [s], value), ascending; equal times are a jump; owned */
 } lar_curve;
 
-/* Value at `time` (seconds). */
+/* Value at `time` (seconds). A table without points is 1. */
 double lar_curve_value(const lar_curve *curve, double time);
 
-/* Time after which the value no longer changes. */
+/* Time after which the value no longer changes [s], at least 0. */
 double lar_curve_end(const lar_curve *curve);
 
 #endif

@@ -1,0 +1,291 @@
+#include "model/model.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- life ------------------------------------------------------------------------------- */
+
+lar_model *lar_model_create(void) {
+    lar_model *model = lar_calloc(1, sizeof *model);
+    if (!model) return NULL;
+    for (int axis = 0; axis < 3; axis++) model->gravity_curve[axis] = -1;
+    model->output.fields = LAR_FIELD_DISPLACEMENT | LAR_FIELD_VON_MISES;
+    return model;
+}
+
+void lar_model_destroy(lar_model *model) {
+    if (!model) return;
+    lar_mesh_clear(&model->mesh);
+    for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
+    for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
+    for (int i = 0; i < model->fix_count; i++) free(model->fix[i].nodes.node);
+    for (int i = 0; i < model->move_count; i++) free(model->move[i].nodes.node);
+    for (int i = 0; i < model->load_count; i++) free(model->load[i].nodes.node);
+    for (int i = 0; i < model->pressure_count; i++) free(model->pressure[i].face);
+    for (int i = 0; i < model->initial_count; i++) free(model->initial[i].nodes.node);
+    for (int i = 0; i < model->output.probe_count; i++) {
+        free(model->output.probe[i].name);
+        free(model->output.probe[i].nodes.node);
+    }
+    for (int i = 0; i < model->notice_count; i++) free(model->notice[i]);
+    free(model->material);
+    free(model->element_material);
+    free(model->curve);
+    free(model->fix);
+    free(model->move);
+    free(model->load);
+    free(model->pressure);
+    free(model->initial);
+    free(model->output.probe);
+    free(model->notice);
+    free(model->title);
+    free(model->source);
+    free(model);
+}
+
+void *lar_model_append(void **array, int *count, size_t size) {
+    /* The caller's pointer has its own type: read and written by memcpy, not through void *. */
+    char *entries;
+    memcpy(&entries, array, sizeof entries);
+    size_t used = (size_t)*count;
+    /* Room doubles whenever the count reaches a power of two, so no capacity needs storing. */
+    if ((used & (used - 1)) == 0) {
+        size_t room = used ? 2 * used : 1;
+        if (room > INT32_MAX || room > SIZE_MAX / size) return NULL;
+        entries = realloc(entries, room * size);
+        if (!entries) return NULL;
+        memcpy(array, &entries, sizeof entries);
+    }
+    *count += 1;
+    return memset(entries + used * size, 0, size);
+}
+
+lar_status lar_model_notice(lar_model *model, lar_error *error, const char *format, ...) {
+    char text[sizeof error->message];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    char *copy = lar_strdup(text);
+    char **notice = copy ? LAR_MODEL_APPEND(model, notice) : NULL;
+    if (!notice) {
+        free(copy);
+        return lar_fail_memory(error, strlen(text) + 1, "a notice about the model");
+    }
+    *notice = copy;
+    return LAR_OK;
+}
+
+/* ---- small questions -------------------------------------------------------------------- */
+
+const double (*lar_model_positions(const lar_model *model))[3] {
+    return (const double(*)[3])model->mesh.position;
+}
+
+double lar_model_output_interval(const lar_model *model) {
+    return model->output.every;
+}
+
+double lar_model_duration(const lar_model *model) {
+    if (model->duration > 0.0) return model->duration;
+    double end = 0.0;
+    for (int i = 0; i < model->curve_count; i++) {
+        double curve_end = lar_curve_end(&model->curve[i]);
+        if (curve_end > end) end = curve_end;
+    }
+    return end;
+}
+
+/* ---- the check -------------------------------------------------------------------------- */
+
+static const char *source_of(const lar_model *model) {
+    return model->source ? model->source : "model";
+}
+
+static bool finite3(const double v[3]) {
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+static lar_status check_materials(const lar_model *model, lar_error *error) {
+    const lar_mesh *mesh = &model->mesh;
+    for (int i = 0; i < model->material_count; i++) {
+        char where[256];
+        const char *name = model->material[i].name;
+        snprintf(where, sizeof where, "%s: material %d%s%s", source_of(model), i + 1,
+                 name ? " " : "", name ? name : "");
+        lar_status status = lar_material_check(&model->material[i], where, error);
+        if (status) return status;
+    }
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (!model->element_material || model->element_material[e] < 0 ||
+            model->element_material[e] >= model->material_count)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: element %lld (tag %d) has no material; give one to every element",
+                            source_of(model), (long long)mesh->element_id[e],
+                            (int)mesh->element_tag[e]);
+    return LAR_OK;
+}
+
+static lar_status check_curves(const lar_model *model, lar_error *error) {
+    for (int i = 0; i < model->curve_count; i++) {
+        const lar_curve *curve = &model->curve[i];
+        bool good = curve->kind == LAR_CURVE_RAMP ? isfinite(curve->over) && curve->over >= 0.0
+                                                  : curve->count > 0;
+        for (int p = 0; good && curve->kind == LAR_CURVE_TABLE && p < curve->count; p++)
+            good = isfinite(curve->point[p][0]) && isfinite(curve->point[p][1]) &&
+                   (p == 0 || curve->point[p][0] >= curve->point[p - 1][0]);
+        if (!good)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: curve %d is no function of time; its times must be finite and "
+                            "ascending and its values finite",
+                            source_of(model), i + 1);
+    }
+    return LAR_OK;
+}
+
+static lar_status check_list(const lar_model *model, const char *what, int entry,
+                             const int32_t *index, int32_t count, int64_t limit, lar_error *error) {
+    if (count < 0 || (count > 0 && !index))
+        return lar_fail(error, LAR_ERROR_MODEL, "%s: %s entry %d has no list", source_of(model),
+                        what, entry + 1);
+    for (int32_t i = 0; i < count; i++)
+        if (index[i] < 0 || index[i] >= limit)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: %s entry %d names index %d, but the mesh ends before %lld",
+                            source_of(model), what, entry + 1, (int)index[i], (long long)limit);
+    return LAR_OK;
+}
+
+static lar_status check_entry(const lar_model *model, const char *what, int entry, bool good,
+                              lar_error *error) {
+    return good ? LAR_OK
+                : lar_fail(error, LAR_ERROR_MODEL,
+                           "%s: %s entry %d is not valid; axes must name x, y or z, values must "
+                           "be finite and its curve must exist",
+                           source_of(model), what, entry + 1);
+}
+
+static bool curve_exists(const lar_model *model, int curve) {
+    return curve >= 0 && curve < model->curve_count;
+}
+
+static lar_status check_supports(const lar_model *model, lar_error *error) {
+    const int64_t nodes = model->mesh.node_count;
+    lar_status status = LAR_OK;
+    for (int i = 0; !status && i < model->fix_count; i++) {
+        const lar_fix *fix = &model->fix[i];
+        status = check_entry(model, "fix", i, fix->axes >= 1 && fix->axes <= LAR_AXIS_ALL, error);
+        if (!status)
+            status = check_list(model, "fix", i, fix->nodes.node, fix->nodes.count, nodes, error);
+    }
+    for (int i = 0; !status && i < model->move_count; i++) {
+        const lar_move *move = &model->move[i];
+        status = check_entry(model, "move", i,
+                             move->axes >= 1 && move->axes <= LAR_AXIS_ALL && isfinite(move->by) &&
+                                 curve_exists(model, move->curve),
+                             error);
+        if (!status)
+            status =
+                check_list(model, "move", i, move->nodes.node, move->nodes.count, nodes, error);
+    }
+    return status;
+}
+
+static lar_status check_loads(const lar_model *model, lar_error *error) {
+    const int64_t nodes = model->mesh.node_count;
+    const int64_t faces = 6 * (int64_t)model->mesh.element_count;
+    lar_status status = LAR_OK;
+    for (int i = 0; !status && i < model->load_count; i++) {
+        const lar_nodal_load *load = &model->load[i];
+        status = check_entry(model, "nodal load", i,
+                             finite3(load->force) && curve_exists(model, load->curve), error);
+        if (!status)
+            status = check_list(model, "nodal load", i, load->nodes.node, load->nodes.count, nodes,
+                                error);
+    }
+    for (int i = 0; !status && i < model->pressure_count; i++) {
+        const lar_pressure_load *load = &model->pressure[i];
+        status = check_entry(model, "pressure", i,
+                             isfinite(load->pressure) && curve_exists(model, load->curve), error);
+        if (!status)
+            status = check_list(model, "pressure", i, load->face, load->count, faces, error);
+    }
+    for (int i = 0; !status && i < model->initial_count; i++) {
+        const lar_initial_velocity *initial = &model->initial[i];
+        status = check_entry(model, "initial velocity", i, finite3(initial->velocity), error);
+        if (!status)
+            status = check_list(model, "initial velocity", i, initial->nodes.node,
+                                initial->nodes.count, nodes, error);
+    }
+    for (int i = 0; !status && i < model->output.probe_count; i++) {
+        const lar_probe *probe = &model->output.probe[i];
+        status = check_list(model, "probe", i, probe->nodes.node, probe->nodes.count, nodes, error);
+    }
+    return status;
+}
+
+/* A node's axis is free, fixed, or moved by one entry. `held` notes per node which axes are
+ * taken: bits 0..2 fixed, bits 3..5 moved. */
+static lar_status check_conflicts(const lar_model *model, lar_error *error) {
+    const lar_mesh *mesh = &model->mesh;
+    uint8_t *held = lar_calloc((size_t)mesh->node_count, 1);
+    if (!held) return lar_fail_memory(error, (size_t)mesh->node_count, "the check of supports");
+    lar_status status = LAR_OK;
+    for (int i = 0; i < model->fix_count; i++) {
+        const lar_node_list *nodes = &model->fix[i].nodes;
+        for (int32_t n = 0; n < nodes->count; n++)
+            held[nodes->node[n]] |= (uint8_t)model->fix[i].axes;
+    }
+    for (int i = 0; !status && i < model->move_count; i++) {
+        const lar_node_list *nodes = &model->move[i].nodes;
+        unsigned axes = model->move[i].axes;
+        for (int32_t n = 0; !status && n < nodes->count; n++) {
+            uint8_t *node = &held[nodes->node[n]];
+            if ((*node | *node >> 3) & axes)
+                status = lar_fail(error, LAR_ERROR_MODEL,
+                                  "%s: node %lld is moved by move entry %d and %s on the same "
+                                  "axis; leave one of the two",
+                                  source_of(model), (long long)mesh->node_id[nodes->node[n]], i + 1,
+                                  *node & axes ? "fixed" : "moved by another entry");
+            *node |= (uint8_t)(axes << 3);
+        }
+    }
+    free(held);
+    return status;
+}
+
+static lar_status check_numbers(const lar_model *model, lar_error *error) {
+    const char *wrong = NULL;
+    if (!finite3(model->gravity)) wrong = "gravity must be three finite numbers in m/s^2";
+    for (int axis = 0; axis < 3; axis++)
+        if (model->gravity_curve[axis] < -1 || model->gravity_curve[axis] >= model->curve_count)
+            wrong = "the curve of gravity must exist";
+    if (!isfinite(model->damping) || model->damping < 0.0)
+        wrong = "damping must be finite and not negative, in 1/s";
+    if (!isfinite(model->time_step) || model->time_step < 0.0)
+        wrong = "the time step must be finite and not negative, in seconds";
+    if (!isfinite(model->duration) || model->duration < 0.0)
+        wrong = "the duration must be finite and not negative, in seconds";
+    if (!isfinite(model->output.every) || model->output.every < 0.0)
+        wrong = "the output interval must be finite and not negative, in seconds";
+    if (!wrong) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", source_of(model), wrong);
+}
+
+lar_status lar_model_check(const lar_model *model, lar_error *error) {
+    if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: the model has no elements; give it a mesh of hexahedra",
+                        source_of(model));
+    lar_status status = check_materials(model, error);
+    if (!status) status = check_numbers(model, error);
+    if (!status) status = check_curves(model, error);
+    if (!status) status = check_supports(model, error);
+    if (!status) status = check_loads(model, error);
+    if (!status) status = check_conflicts(model, error);
+    return status;
+}
