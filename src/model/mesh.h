@@ -21,6 +21,9 @@
 
 typedef int32_t lar_gid; /* node or element of the whole model */
 
+/* Named sets that one mesh may have: they are looked up by walking the list. */
+enum { LAR_MESH_SETS_MAX = 10000 };
+
 typedef enum lar_set_kind { LAR_SET_NODES, LAR_SET_ELEMENTS, LAR_SET_FACES } lar_set_kind;
 
 /* A named set. index[]: node indices, element indices, or faces as element * 6 + local face. No
@@ -43,6 +46,7 @@ typedef struct lar_mesh {
     int32_t *element_tag;  /* the file's integer cell tag (physical group, label), 0 when none */
     int32_t set_count;
     lar_set *set;
+    int32_t dropped_node_count; /* nodes of the file that no element uses and that were left out */
 } lar_mesh;
 
 /* Corners of local face f, counter-clockwise seen from outside. */

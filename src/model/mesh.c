@@ -1,0 +1,105 @@
+#include "model/mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const uint8_t lar_face_node[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
+                                     {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+
+const int8_t lar_node_sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                    {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+
+void lar_mesh_clear(lar_mesh *mesh) {
+    for (int32_t s = 0; s < mesh->set_count; s++) {
+        free(mesh->set[s].name);
+        free(mesh->set[s].index);
+    }
+    free(mesh->set);
+    free(mesh->source);
+    free(mesh->position);
+    free(mesh->node_id);
+    free(mesh->element);
+    free(mesh->element_id);
+    free(mesh->element_tag);
+    *mesh = (lar_mesh){0};
+}
+
+const lar_set *lar_mesh_find_set(const lar_mesh *mesh, const char *name, lar_set_kind kind) {
+    for (int32_t s = 0; s < mesh->set_count; s++)
+        if (mesh->set[s].kind == kind && strcmp(mesh->set[s].name, name) == 0) return &mesh->set[s];
+    return NULL;
+}
+
+void lar_mesh_corners(const lar_mesh *mesh, int32_t e, double corner[8][3]) {
+    for (int a = 0; a < 8; a++)
+        memcpy(corner[a], mesh->position[mesh->element[e][a]], sizeof corner[a]);
+}
+
+static int compare_int32(const void *a, const void *b) {
+    int32_t x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static int compare_int64(const void *a, const void *b) {
+    int64_t x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static int32_t sort_unique(int32_t *index, int32_t count) {
+    qsort(index, (size_t)count, sizeof *index, compare_int32);
+    int32_t kept = 0;
+    for (int32_t i = 0; i < count; i++)
+        if (kept == 0 || index[kept - 1] != index[i]) index[kept++] = index[i];
+    return kept;
+}
+
+/* Removes repeats and leaves the first of each where it stands, because the order of faces is the
+ * order of the file. */
+static bool unique_in_order(int32_t *index, int32_t *count) {
+    int64_t *order = lar_calloc((size_t)*count, sizeof *order);
+    if (!order) return false;
+    for (int32_t i = 0; i < *count; i++) order[i] = (int64_t)index[i] * INT64_C(0x100000000) + i;
+    qsort(order, (size_t)*count, sizeof *order, compare_int64);
+    /* Face indices are not negative, so INT32_MIN can mark what goes. */
+    for (int32_t i = *count - 1; i > 0; i--)
+        if (order[i] >> 32 == order[i - 1] >> 32) index[order[i] & INT64_C(0xffffffff)] = INT32_MIN;
+    free(order);
+    int32_t kept = 0;
+    for (int32_t i = 0; i < *count; i++)
+        if (index[i] != INT32_MIN) index[kept++] = index[i];
+    *count = kept;
+    return true;
+}
+
+lar_status lar_mesh_add_set(lar_mesh *mesh, const char *name, lar_set_kind kind, int32_t *index,
+                            int32_t count, lar_error *error) {
+    static const char *const kind_name[] = {"node", "element", "face"};
+    const char *source = mesh->source ? mesh->source : "mesh";
+    if (lar_mesh_find_set(mesh, name, kind)) {
+        free(index);
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: there are two %s sets named '%s'; rename one of them", source,
+                        kind_name[kind], name);
+    }
+    if (mesh->set_count >= LAR_MESH_SETS_MAX) {
+        free(index);
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s: holds more than %d named sets; remove those that are not used", source,
+                        LAR_MESH_SETS_MAX);
+    }
+    lar_set *grown = realloc(mesh->set, ((size_t)mesh->set_count + 1) * sizeof *grown);
+    if (grown) mesh->set = grown;
+    char *copy = lar_strdup(name);
+    if (!grown || !copy || (kind == LAR_SET_FACES && !unique_in_order(index, &count))) {
+        free(copy);
+        free(index);
+        return lar_fail_memory(error, sizeof *grown, "a set");
+    }
+    if (kind != LAR_SET_FACES) count = sort_unique(index, count);
+    mesh->set[mesh->set_count++] = (lar_set){copy, kind, count, index};
+    return LAR_OK;
+}
