@@ -1,0 +1,45 @@
+# The installed side: shared library, header, pkg-config file, CMake package, command.
+#
+# The shared library is made of the same objects as lariat_core. Everything is hidden except what
+# carries LAR_API; tests/install looks at the symbol table. Its target is called liblariat because
+# the name `lariat` is the command's, which lies beside it in the build folder.
+include(CMakePackageConfigHelpers)
+
+add_library(liblariat SHARED $<TARGET_OBJECTS:lariat_core>)
+add_library(Lariat::lariat ALIAS liblariat)
+set_target_properties(liblariat PROPERTIES
+  OUTPUT_NAME lariat
+  EXPORT_NAME lariat
+  LINKER_LANGUAGE C
+  VERSION ${PROJECT_VERSION}
+  SOVERSION 0
+  LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+target_include_directories(liblariat INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+# Linking lariat_core as well brings its libraries along.
+target_link_libraries(liblariat PRIVATE lariat_core)
+if(NOT LARIAT_SANITIZE)
+  target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed)
+endif()
+
+install(TARGETS liblariat EXPORT LariatTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES include/lariat.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set_target_properties(lariat PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+install(TARGETS lariat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+# Both package files find the prefix from where they lie, so that an installed tree can be moved.
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Lariat)
+configure_package_config_file(cmake/LariatConfig.cmake.in ${PROJECT_BINARY_DIR}/LariatConfig.cmake
+  INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/LariatConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/LariatConfig.cmake
+  ${PROJECT_BINARY_DIR}/LariatConfigVersion.cmake DESTINATION ${package_folder})
+install(EXPORT LariatTargets NAMESPACE Lariat:: DESTINATION ${package_folder})
+
+file(RELATIVE_PATH LARIAT_PC_PREFIX
+  "/root/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/root")
+string(REGEX REPLACE "/$" "" LARIAT_PC_PREFIX "${LARIAT_PC_PREFIX}")
+configure_file(cmake/lariat.pc.in ${PROJECT_BINARY_DIR}/lariat.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lariat.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# What `make check` runs: the fast tests and the fuzz smoke tests with the address and
+# undefined-behaviour sanitizers, then every test on the release build. Both parts always run;
+# the release build's closing line comes last. With clang there, it builds the sanitized half, so
+# that both compilers see the code.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+jobs=${JOBS:-2}
+
+sanitizer_cc=${SANITIZER_CC:-}
+if [ -z "$sanitizer_cc" ]; then
+    sanitizer_cc=gcc
+    probe=$(mktemp -d)
+    if printf 'int main(void) { return 0; }\n' |
+        clang -fsanitize=address,undefined -x c - -o "$probe/a" >/dev/null 2>&1; then
+        sanitizer_cc=clang
+    fi
+    rm -rf "$probe"
+fi
+
+# A build folder keeps its compiler for life: start again when it was made with another one.
+if [ -f build-asan/CMakeCache.txt ] &&
+    ! grep -q "^CMAKE_C_COMPILER:[A-Z]*=\(.*/\)\?$sanitizer_cc\$" build-asan/CMakeCache.txt; then
+    rm -rf build-asan
+fi
+
+cmake --preset release --log-level=NOTICE && cmake --build --preset release -j "$jobs" || exit 1
+
+sanitized=yes
+{
+    cmake --preset asan --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" &&
+        cmake --build --preset asan -j "$jobs" &&
+        ctest --preset asan -j "$jobs"
+} || sanitized=no
+
+release=yes
+ctest --preset release -j "$jobs" || release=no
+
+if [ $sanitized = no ]; then
+    echo "check: the part with the sanitizers FAILED (above); see it alone with: ctest --preset asan" >&2
+fi
+[ $sanitized = yes ] && [ $release = yes ]

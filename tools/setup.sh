@@ -1,0 +1,144 @@
+#!/usr/bin/env bash
+# Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
+# is missing. On a machine that is set up it needs no network, no privilege and no time.
+#
+#   tools/setup.sh [build] [check] [fuzz]      default: build
+#
+#   build   what the library, the command and their tests need; an error when it cannot be had
+#   check   what widens the tests: a second compiler, the cross compiler and emulator for NEON
+#   fuzz    clang with libFuzzer
+#
+# What belongs to `check` and `fuzz` is optional: without it the tests that need it are left out,
+# and a sentence says so.
+set -euo pipefail
+
+# One line each: package, then how to see the same thing when it came from somewhere else than
+# dpkg (c: a command, m: a pkg-config module).
+BUILD_PACKAGES="
+build-essential   c:c++
+cmake             c:cmake
+ninja-build       c:ninja
+pkg-config        c:pkg-config
+libyaml-dev       m:yaml-0.1
+libxml2-dev       m:libxml-2.0
+zlib1g-dev        m:zlib
+libcmocka-dev     m:cmocka"
+CLANG_PACKAGES="
+clang             c:clang"
+NEON_PACKAGES="
+gcc-aarch64-linux-gnu  c:aarch64-linux-gnu-gcc
+qemu-user              c:qemu-aarch64
+libc6-dev-arm64-cross  -"
+
+say() { printf 'setup: %s\n' "$*" >&2; }
+
+# The packages of a table that this machine lacks, on one line.
+missing_of() {
+    local table=$1 names installed package probe lacking=""
+    names=$(printf '%s\n' "$table" | awk 'NF { print $1 }')
+    installed=""
+    if command -v dpkg-query >/dev/null 2>&1; then
+        # shellcheck disable=SC2086
+        installed=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' $names 2>/dev/null |
+            awk '$2 == "installed" { print $1 }') || true
+    fi
+    while read -r package probe; do
+        [ -n "$package" ] || continue
+        case $'\n'"$installed"$'\n' in *$'\n'"$package"$'\n'*) continue ;; esac
+        case $probe in
+        c:*) command -v "${probe#c:}" >/dev/null 2>&1 && continue ;;
+        m:*) pkg-config --exists "${probe#m:}" 2>/dev/null && continue ;;
+        esac
+        lacking="$lacking $package"
+    done <<<"$table"
+    printf '%s' "${lacking# }"
+}
+
+# Runs a command with the right to install: as root directly, else through sudo.
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif sudo -n true 2>/dev/null; then
+        sudo -n "$@"
+    else
+        sudo "$@" # asks on the terminal; may_install saw that there is one
+    fi
+}
+
+may_install() {
+    command -v apt-get >/dev/null 2>&1 || return 1
+    [ "$(id -u)" -eq 0 ] && return 0
+    command -v sudo >/dev/null 2>&1 || return 1
+    sudo -n true 2>/dev/null || [ -t 0 ]
+}
+
+updated=no
+apt_install() {
+    local quick=(-o Acquire::Retries=2 -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30)
+    if [ $updated = no ]; then
+        as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq "${quick[@]}" update </dev/null ||
+            return 1
+        updated=yes
+    fi
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends \
+        -o Dpkg::Use-Pty=0 "${quick[@]}" install "$@" </dev/null >&2
+}
+
+# need TABLE: installs what is missing, or ends with a sentence.
+need() {
+    local lacking
+    lacking=$(missing_of "$1")
+    [ -n "$lacking" ] || return 0
+    if ! may_install; then
+        say "these packages are missing and cannot be installed from here; install them as root" \
+            "and try again: apt-get install $lacking"
+        exit 1
+    fi
+    say "installing $lacking"
+    # shellcheck disable=SC2086
+    if ! apt_install $lacking; then
+        say "apt-get could not install them; check the network and the package sources, then" \
+            "try again: apt-get install $lacking"
+        exit 1
+    fi
+}
+
+# want TABLE CONSEQUENCE: the same, but goes on without them.
+want() {
+    local lacking
+    lacking=$(missing_of "$1")
+    [ -n "$lacking" ] || return 0
+    if may_install; then
+        say "installing $lacking"
+        # shellcheck disable=SC2086
+        apt_install $lacking && return 0
+    fi
+    say "$2 (optional: apt-get install $lacking)"
+    return 1
+}
+
+# The sanitizer and fuzzer runtime is packaged per clang version, and clang only recommends it.
+want_clang() {
+    local consequence=$1 version
+    want "$CLANG_PACKAGES" "$consequence" || return 0
+    version=$(dpkg-query -W -f '${Depends}' clang 2>/dev/null |
+        sed -n 's/.*clang-\([0-9][0-9]*\).*/\1/p') || true
+    [ -n "$version" ] || return 0
+    want "libclang-rt-$version-dev -" "$consequence" || true
+}
+
+[ $# -gt 0 ] || set -- build
+for group in "$@"; do
+    case $group in
+    build) need "$BUILD_PACKAGES" ;;
+    check)
+        want_clang "the sanitizers run with gcc instead of clang"
+        want "$NEON_PACKAGES" "the NEON tests are left out" || true
+        ;;
+    fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;
+    *)
+        say "unknown group '$group'; use build, check or fuzz"
+        exit 2
+        ;;
+    esac
+done
