@@ -1,0 +1,89 @@
+#!/bin/sh
+# The layer rule of docs/architecture.md, checked on every source file.
+#
+#   check.sh ROOT          checks ROOT/src
+#   check.sh --self-test   plants one violation of each kind in a scratch tree and expects it found
+#
+# Rules: a file includes only from its own folder or from a folder of a lower layer; the command
+# includes only lariat.h, study and its own; files do not include each other in a circle; vector
+# intrinsics stay in simd.h and the kernels; no library file ends the process or prints.
+set -eu
+
+check_tree() {
+    root=$1
+    # shellcheck disable=SC2046
+    set -- $(cd "$root" && find src -name '*.[ch]' | LC_ALL=C sort)
+    [ $# -gt 0 ] || { echo "layers: no sources below $root/src"; return 1; }
+    (cd "$root" && awk -f "$rules" "$@")
+}
+
+self_test() {
+    scratch=$(mktemp -d)
+    trap 'rm -rf "$scratch"' EXIT
+    failures=0
+
+    fresh() {
+        rm -rf "$scratch/tree"
+        for folder in base model mechanics divide comm engine session study cli; do
+            mkdir -p "$scratch/tree/src/$folder"
+            printf '#include "lariat.h"\n' >"$scratch/tree/src/$folder/a.h"
+        done
+        printf '#include "base/a.h"\n#include "model/a.h"\n/* never call exit(1) */\n%s\n' \
+            'const char *s = "printf(\"x\"); // "; int f(int (*exit_early)(void));' \
+            >"$scratch/tree/src/engine/a.c"
+    }
+    # expect FILE LINE PATTERN: with LINE added to FILE, the check fails and says PATTERN.
+    expect() {
+        fresh
+        printf '%s\n' "$2" >>"$scratch/tree/src/$1"
+        if output=$(check_tree "$scratch/tree" 2>&1); then
+            echo "self-test: not found: $2 in $1"
+            failures=$((failures + 1))
+        elif ! printf '%s\n' "$output" | grep -q "$3"; then
+            echo "self-test: wrong message for $2 in $1: $output"
+            failures=$((failures + 1))
+        fi
+    }
+
+    fresh
+    if ! check_tree "$scratch/tree" >/dev/null; then
+        echo "self-test: a clean tree is refused:"
+        check_tree "$scratch/tree" || true
+        failures=$((failures + 1))
+    fi
+    expect base/a.h '#include "model/a.h"' 'base may not include model'
+    expect model/a.h '#include "mechanics/a.h"' 'model may not include mechanics'
+    expect mechanics/a.h '#include "divide/a.h"' 'mechanics may not include divide'
+    expect divide/a.h '  #  include "comm/a.h"' 'divide may not include comm'
+    expect comm/a.h '#include "engine/a.h"' 'comm may not include engine'
+    expect engine/a.h '#include "session/a.h"' 'engine may not include session'
+    expect session/a.h '#include "study/a.h"' 'session may not include study'
+    expect cli/a.h '#include "engine/a.h"' 'cli may not include engine'
+    expect cli/a.h '#include "base/a.h"' 'cli may not include base'
+    expect model/a.h '#include "../engine/a.h"' 'write the path from src'
+    expect model/a.h '#include "model/none.h"' 'does not exist'
+    expect model/a.h '#include "model/a.h"' 'circle'
+    expect model/a.h '#include <immintrin.h>' 'intrinsics'
+    expect engine/a.c 'void g(void) { exit(1); }' 'exit'
+    expect mechanics/a.h 'static void g(void) { /* x */ printf("%d", 1); }' 'printf'
+    expect base/a.h 'static void g(void) { fprintf(stderr, "x"); }' 'stderr'
+    expect comm/a.h 'static void g(void) { abort(); }' 'abort'
+
+    # A circle of three files.
+    fresh
+    printf '#include "model/c.h"\n' >"$scratch/tree/src/model/b.h"
+    printf '#include "model/d.h"\n' >"$scratch/tree/src/model/c.h"
+    printf '#include "model/b.h"\n' >"$scratch/tree/src/model/d.h"
+    if check_tree "$scratch/tree" >/dev/null; then
+        echo "self-test: a circle of three files was not found"
+        failures=$((failures + 1))
+    fi
+    [ $failures -eq 0 ] && echo "layers: every planted violation was found"
+}
+
+rules=$(cd "$(dirname "$0")" && pwd)/rules.awk
+case ${1:-} in
+--self-test) self_test ;;
+'') echo "usage: check.sh ROOT | --self-test" >&2; exit 2 ;;
+*) check_tree "$1" ;;
+esac
