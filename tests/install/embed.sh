@@ -1,0 +1,70 @@
+#!/bin/sh
+# Installs into a scratch prefix and uses the installed copy as a stranger would.
+#
+#   embed.sh SOURCE BUILD SCRATCH
+#
+# 1. The library exports the functions of lariat.h, all of them and nothing else, and carries its
+#    soname. 2. examples/embed.c builds with pkg-config and with find_package, after the tree was
+# moved. 3. Both programs run on the example beam and agree.
+set -eu
+source=$1 build=$2 scratch=$3
+cc=${CC:-cc}
+cmake=${CMAKE:-cmake}
+
+fail() {
+    echo "install: $*" >&2
+    exit 1
+}
+
+rm -rf "$scratch"
+mkdir -p "$scratch"
+"$cmake" --install "$build" --prefix "$scratch/first" >"$scratch/install.log" ||
+    fail "cmake --install failed, see $scratch/install.log"
+mv "$scratch/first" "$scratch/prefix"
+prefix=$scratch/prefix
+
+pc=$(find "$prefix" -name lariat.pc)
+[ -n "$pc" ] || fail "lariat.pc was not installed"
+libdir=$(dirname "$(dirname "$pc")")
+library=$libdir/liblariat.so
+[ -e "$library" ] || fail "$library was not installed"
+[ -x "$prefix/bin/lariat" ] || fail "the command was not installed"
+
+# What the header promises against what the library exports.
+nm -D --defined-only "$library" | awk '{ print $3 }' | sort >"$scratch/exported"
+"$cc" -E -P "$prefix/include/lariat.h" | tr '\n' ' ' | tr ';{}' '\n\n\n' |
+    sed -n 's/.*visibility("default").*[^a-z_0-9]\(lar_[a-z_0-9]*\)(.*/\1/p' |
+    sort >"$scratch/promised"
+[ -s "$scratch/promised" ] || fail "no function was found in lariat.h"
+strange=$(comm -13 "$scratch/promised" "$scratch/exported" | tr '\n' ' ')
+missing=$(comm -23 "$scratch/promised" "$scratch/exported" | tr '\n' ' ')
+[ -z "$strange" ] || fail "exported but not in lariat.h: $strange; hide them"
+[ -z "$missing" ] || fail "in lariat.h but not exported: $missing"
+objdump -p "$library" | grep -q 'SONAME *liblariat\.so\.0$' || fail "the soname is not liblariat.so.0"
+
+export PKG_CONFIG_PATH="$libdir/pkgconfig"
+export LD_LIBRARY_PATH="$libdir"
+# shellcheck disable=SC2046
+"$cc" -std=c17 -Wall -Wextra -Werror $(pkg-config --cflags lariat) "$source/examples/embed.c" \
+    -o "$scratch/embed-pkg-config" $(pkg-config --libs lariat)
+
+"$cmake" -S "$source/tests/install/find_package" -B "$scratch/cmake" \
+    -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DEMBED_SOURCE="$source/examples/embed.c" >"$scratch/cmake.log" 2>&1 ||
+    { cat "$scratch/cmake.log"; fail "find_package(Lariat) failed"; }
+"$cmake" --build "$scratch/cmake" >"$scratch/cmake.log" 2>&1 ||
+    { cat "$scratch/cmake.log"; fail "building with find_package(Lariat) failed"; }
+
+first=$("$scratch/embed-pkg-config" "$source/examples/beam.yaml") || fail "embed failed"
+second=$("$scratch/cmake/embed" "$source/examples/beam.yaml") || fail "embed failed"
+echo "$first"
+[ "$first" = "$second" ] || fail "the two programs differ: '$first' and '$second'"
+# The beam is fixed at one end and must hang down at the other.
+echo "$first" | grep -q '^tip  *-[0-9.]*[1-9]' || fail "the tip did not sink"
+echo "$first" | grep -Eq '^hash [0-9a-f]{16}$' || fail "no hash was printed"
+
+if "$scratch/embed-pkg-config" "$source/examples/none.yaml" 2>"$scratch/stderr"; then
+    fail "a missing scene was not reported"
+fi
+grep -q 'none.yaml' "$scratch/stderr" || fail "the message does not name the missing scene"
+echo "install: pkg-config and CMake programs agree"
