@@ -1,0 +1,383 @@
+/* Lanes: one double of each of several elements, the same bits on every processor.
+ *
+ * A kernel source is compiled once per instruction set with LAR_SIMD set to one of the numbers
+ * below; `lar_lane` is then a vector of LAR_LANES doubles and `lar_ilane` one of 64-bit integers.
+ * Plus, minus and times are the C operators; everything else is a function of this file. All
+ * arithmetic is IEEE 754 double with fused multiply-add where it is written out, so a lane's
+ * bits depend on nothing but its own inputs:
+ *
+ *     LAR_SIMD_C       1 lane    the reference; fma() is exact in software where need be
+ *     LAR_SIMD_NEON    2 lanes
+ *     LAR_SIMD_AVX2    4 lanes   64-bit integer conversions are put together from halves
+ *     LAR_SIMD_AVX512  8 lanes
+ *
+ * Nodes are stored as four values (x, y, z, 0) so that one aligned load brings a whole node;
+ * lar_lane_gather and lar_ilane_scatter_add turn nodes into lanes and back in registers. Intrinsics
+ * appear in this file and nowhere else.
+ */
+#ifndef LAR_BASE_SIMD_H
+#define LAR_BASE_SIMD_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#define LAR_SIMD_C      1
+#define LAR_SIMD_NEON   2
+#define LAR_SIMD_AVX2   4
+#define LAR_SIMD_AVX512 8
+
+#ifndef LAR_SIMD
+#define LAR_SIMD LAR_SIMD_C
+#endif
+#define LAR_LANES LAR_SIMD
+
+#define LAR_INLINE static inline __attribute__((always_inline, unused))
+
+#if LAR_SIMD == LAR_SIMD_AVX512
+
+#include <immintrin.h>
+typedef double lar_lane __attribute__((vector_size(64)));
+typedef int64_t lar_ilane __attribute__((vector_size(64)));
+
+LAR_INLINE lar_lane lar_lane_load(const double *p) {
+    return (lar_lane)_mm512_load_pd(p);
+}
+LAR_INLINE void lar_lane_store(double *p, lar_lane a) {
+    _mm512_store_pd(p, (__m512d)a);
+}
+LAR_INLINE lar_lane lar_lane_set(double a) {
+    return (lar_lane)_mm512_set1_pd(a);
+}
+LAR_INLINE lar_lane lar_lane_fma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+LAR_INLINE lar_lane lar_lane_fnma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+LAR_INLINE lar_ilane lar_lane_bits(lar_lane a) {
+    return (lar_ilane)a;
+}
+LAR_INLINE lar_lane lar_ilane_as_lane(lar_ilane a) {
+    return (lar_lane)a;
+}
+LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
+    return (lar_ilane)_mm512_cvtpd_epi64((__m512d)a);
+}
+LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {
+    return (lar_lane)_mm512_cvtepi64_pd((__m512i)a);
+}
+/* Bit i set: NOT a > b in lane i (true also for NaN). */
+LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_NGT_UQ);
+}
+
+LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
+    return (lar_lane)_mm512_abs_pd((__m512d)a);
+}
+LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
+    return (lar_ilane)_mm512_load_si512(p);
+}
+LAR_INLINE void lar_ilane_store(int64_t *p, lar_ilane a) {
+    _mm512_store_si512(p, (__m512i)a);
+}
+/* Beside values k, k + 1, ... of an array of nodes (four values each): a number per node, or the
+ * same four values for every node. k is a multiple of LAR_LANES. */
+LAR_INLINE lar_lane lar_lane_per_node(const double *p, int64_t k) {
+    const __m512i twice = _mm512_setr_epi64(0, 0, 0, 0, 1, 1, 1, 1);
+    return (lar_lane)_mm512_permutexvar_pd(twice, _mm512_castpd128_pd512(_mm_loadu_pd(p + k / 4)));
+}
+LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
+    (void)k;
+    return (lar_lane)_mm512_broadcast_f64x4(_mm256_loadu_pd(p));
+}
+
+/* One local node of eight elements: offset[lane] counts doubles from `nodes` (4 per node). */
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
+                                lar_lane *y, lar_lane *z) {
+#define LAR_PAIR(i, j)                                                                             \
+    _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(nodes + offset[i])),                  \
+                       _mm256_load_pd(nodes + offset[j]), 1)
+    __m512d n02 = LAR_PAIR(0, 2), n13 = LAR_PAIR(1, 3), n46 = LAR_PAIR(4, 6), n57 = LAR_PAIR(5, 7);
+#undef LAR_PAIR
+    __m512d xz0 = _mm512_unpacklo_pd(n02, n13), yw0 = _mm512_unpackhi_pd(n02, n13);
+    __m512d xz4 = _mm512_unpacklo_pd(n46, n57), yw4 = _mm512_unpackhi_pd(n46, n57);
+    *x = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0x88);
+    *z = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0xdd);
+    *y = (lar_lane)_mm512_shuffle_f64x2(yw0, yw4, 0x88);
+}
+
+/* Adds lanes to eight nodes, one after the other: the same node may appear in several lanes. */
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
+                                      lar_ilane y, lar_ilane z) {
+    __m512i xy_even = _mm512_unpacklo_epi64((__m512i)x, (__m512i)y);
+    __m512i xy_odd = _mm512_unpackhi_epi64((__m512i)x, (__m512i)y);
+    const __m512i pick02 = _mm512_setr_epi64(0, 1, 8, 0, 2, 3, 10, 0);
+    const __m512i pick46 = _mm512_setr_epi64(4, 5, 12, 0, 6, 7, 14, 0);
+    const __m512i pick13 = _mm512_setr_epi64(0, 1, 9, 0, 2, 3, 11, 0);
+    const __m512i pick57 = _mm512_setr_epi64(4, 5, 13, 0, 6, 7, 15, 0);
+#define LAR_ADD(i, v)                                                                              \
+    do {                                                                                           \
+        __m256i *node = (__m256i *)(nodes + offset[i]);                                            \
+        _mm256_store_si256(node, _mm256_add_epi64(_mm256_load_si256(node), v));                    \
+    } while (0)
+#define LAR_ADD_PAIR(i, j, xy, pick)                                                               \
+    do {                                                                                           \
+        __m512i pair = _mm512_maskz_permutex2var_epi64(0x77, xy, pick, (__m512i)z);                \
+        LAR_ADD(i, _mm512_castsi512_si256(pair));                                                  \
+        LAR_ADD(j, _mm512_extracti64x4_epi64(pair, 1));                                            \
+    } while (0)
+    LAR_ADD_PAIR(0, 2, xy_even, pick02);
+    LAR_ADD_PAIR(4, 6, xy_even, pick46);
+    LAR_ADD_PAIR(1, 3, xy_odd, pick13);
+    LAR_ADD_PAIR(5, 7, xy_odd, pick57);
+#undef LAR_ADD_PAIR
+#undef LAR_ADD
+}
+
+#elif LAR_SIMD == LAR_SIMD_AVX2
+
+#include <immintrin.h>
+typedef double lar_lane __attribute__((vector_size(32)));
+typedef int64_t lar_ilane __attribute__((vector_size(32)));
+
+LAR_INLINE lar_lane lar_lane_load(const double *p) {
+    return (lar_lane)_mm256_load_pd(p);
+}
+LAR_INLINE void lar_lane_store(double *p, lar_lane a) {
+    _mm256_store_pd(p, (__m256d)a);
+}
+LAR_INLINE lar_lane lar_lane_set(double a) {
+    return (lar_lane)_mm256_set1_pd(a);
+}
+LAR_INLINE lar_lane lar_lane_fma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+}
+LAR_INLINE lar_lane lar_lane_fnma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+}
+LAR_INLINE lar_ilane lar_lane_bits(lar_lane a) {
+    return (lar_ilane)a;
+}
+LAR_INLINE lar_lane lar_ilane_as_lane(lar_ilane a) {
+    return (lar_lane)a;
+}
+
+/* Nearest integer of |a| < 2^62 in two halves: high = nearest multiple of 2^32, whose rest is
+ * exact and below 2^31 in size. Adding 1.5 * 2^52 leaves an integer in the low bits. */
+LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
+    const lar_lane magic = lar_lane_set(0x1.8p52);
+    lar_lane high = lar_lane_fma(a, lar_lane_set(0x1p-32), magic);
+    lar_lane rest = lar_lane_fnma(high - magic, lar_lane_set(0x1p32), a) + magic;
+    lar_ilane bits = (lar_ilane)magic;
+    return (((lar_ilane)high - bits) << 32) + ((lar_ilane)rest - bits);
+}
+/* Correctly rounded: both halves are exact doubles and one fused operation joins them. */
+LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {
+    const lar_lane magic = lar_lane_set(0x1.8p52);
+    lar_ilane low = a & 0xffffffffLL;
+    __m256i shifted = _mm256_srli_epi64((__m256i)a, 32);
+    /* sign-extend the high half by adding and taking away 2^31 in the unsigned range */
+    __m256i high = _mm256_xor_si256(shifted, _mm256_set1_epi64x(0x80000000LL));
+    lar_lane high_d = (lar_lane)((lar_ilane)high + (lar_ilane)magic) - lar_lane_set(0x1.8p52) -
+                      lar_lane_set(0x1p31);
+    lar_lane low_d = (lar_lane)(low + (lar_ilane)magic) - magic;
+    return lar_lane_fma(high_d, lar_lane_set(0x1p32), low_d);
+}
+LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
+    return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_NGT_UQ));
+}
+
+LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
+    return (lar_lane)_mm256_andnot_pd(_mm256_set1_pd(-0.0), (__m256d)a);
+}
+LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
+    return (lar_ilane)_mm256_load_si256((const __m256i *)p);
+}
+LAR_INLINE void lar_ilane_store(int64_t *p, lar_ilane a) {
+    _mm256_store_si256((__m256i *)p, (__m256i)a);
+}
+LAR_INLINE lar_lane lar_lane_per_node(const double *p, int64_t k) {
+    return (lar_lane)_mm256_set1_pd(p[k / 4]);
+}
+LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
+    (void)k;
+    return (lar_lane)_mm256_loadu_pd(p);
+}
+
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
+                                lar_lane *y, lar_lane *z) {
+    __m256d n0 = _mm256_load_pd(nodes + offset[0]), n1 = _mm256_load_pd(nodes + offset[1]);
+    __m256d n2 = _mm256_load_pd(nodes + offset[2]), n3 = _mm256_load_pd(nodes + offset[3]);
+    __m256d xz0 = _mm256_unpacklo_pd(n0, n1), yw0 = _mm256_unpackhi_pd(n0, n1);
+    __m256d xz2 = _mm256_unpacklo_pd(n2, n3), yw2 = _mm256_unpackhi_pd(n2, n3);
+    *x = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x20);
+    *z = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x31);
+    *y = (lar_lane)_mm256_permute2f128_pd(yw0, yw2, 0x20);
+}
+
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
+                                      lar_ilane y, lar_ilane z) {
+    __m256i xy_even = _mm256_unpacklo_epi64((__m256i)x, (__m256i)y);
+    __m256i xy_odd = _mm256_unpackhi_epi64((__m256i)x, (__m256i)y);
+    __m256i z0_even = _mm256_unpacklo_epi64((__m256i)z, _mm256_setzero_si256());
+    __m256i z0_odd = _mm256_unpackhi_epi64((__m256i)z, _mm256_setzero_si256());
+    __m256i add[4] = {_mm256_permute2x128_si256(xy_even, z0_even, 0x20),
+                      _mm256_permute2x128_si256(xy_odd, z0_odd, 0x20),
+                      _mm256_permute2x128_si256(xy_even, z0_even, 0x31),
+                      _mm256_permute2x128_si256(xy_odd, z0_odd, 0x31)};
+    for (int i = 0; i < 4; i++) {
+        __m256i *node = (__m256i *)(nodes + offset[i]);
+        _mm256_store_si256(node, _mm256_add_epi64(_mm256_load_si256(node), add[i]));
+    }
+}
+
+#elif LAR_SIMD == LAR_SIMD_NEON
+
+#include <arm_neon.h>
+typedef double lar_lane __attribute__((vector_size(16)));
+typedef int64_t lar_ilane __attribute__((vector_size(16)));
+
+LAR_INLINE lar_lane lar_lane_load(const double *p) {
+    return (lar_lane)vld1q_f64(p);
+}
+LAR_INLINE void lar_lane_store(double *p, lar_lane a) {
+    vst1q_f64(p, (float64x2_t)a);
+}
+LAR_INLINE lar_lane lar_lane_set(double a) {
+    return (lar_lane)vdupq_n_f64(a);
+}
+LAR_INLINE lar_lane lar_lane_fma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)vfmaq_f64((float64x2_t)c, (float64x2_t)a, (float64x2_t)b);
+}
+LAR_INLINE lar_lane lar_lane_fnma(lar_lane a, lar_lane b, lar_lane c) {
+    return (lar_lane)vfmsq_f64((float64x2_t)c, (float64x2_t)a, (float64x2_t)b);
+}
+LAR_INLINE lar_ilane lar_lane_bits(lar_lane a) {
+    return (lar_ilane)a;
+}
+LAR_INLINE lar_lane lar_ilane_as_lane(lar_ilane a) {
+    return (lar_lane)a;
+}
+LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
+    return (lar_ilane)vcvtnq_s64_f64((float64x2_t)a);
+}
+LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {
+    return (lar_lane)vcvtq_f64_s64((int64x2_t)a);
+}
+LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
+    uint64x2_t greater = vcgtq_f64((float64x2_t)a, (float64x2_t)b);
+    return (vgetq_lane_u64(greater, 0) ? 0u : 1u) | (vgetq_lane_u64(greater, 1) ? 0u : 2u);
+}
+
+LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
+    return (lar_lane)vabsq_f64((float64x2_t)a);
+}
+LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
+    return (lar_ilane)vld1q_s64(p);
+}
+LAR_INLINE void lar_ilane_store(int64_t *p, lar_ilane a) {
+    vst1q_s64(p, (int64x2_t)a);
+}
+LAR_INLINE lar_lane lar_lane_per_node(const double *p, int64_t k) {
+    return (lar_lane)vdupq_n_f64(p[k / 4]);
+}
+LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
+    return (lar_lane)vld1q_f64(p + k % 4);
+}
+
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
+                                lar_lane *y, lar_lane *z) {
+    float64x2_t a = vld1q_f64(nodes + offset[0]), b = vld1q_f64(nodes + offset[1]);
+    *x = (lar_lane)vzip1q_f64(a, b);
+    *y = (lar_lane)vzip2q_f64(a, b);
+    *z = (lar_lane)vzip1q_f64(vld1q_f64(nodes + offset[0] + 2), vld1q_f64(nodes + offset[1] + 2));
+}
+
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
+                                      lar_ilane y, lar_ilane z) {
+    int64x2_t xx = (int64x2_t)x, yy = (int64x2_t)y, zz = (int64x2_t)z, none = vdupq_n_s64(0);
+    int64_t *n = nodes + offset[0];
+    vst1q_s64(n, vaddq_s64(vld1q_s64(n), vzip1q_s64(xx, yy)));
+    vst1q_s64(n + 2, vaddq_s64(vld1q_s64(n + 2), vzip1q_s64(zz, none)));
+    n = nodes + offset[1];
+    vst1q_s64(n, vaddq_s64(vld1q_s64(n), vzip2q_s64(xx, yy)));
+    vst1q_s64(n + 2, vaddq_s64(vld1q_s64(n + 2), vzip2q_s64(zz, none)));
+}
+
+#else /* LAR_SIMD_C */
+
+typedef double lar_lane;
+typedef int64_t lar_ilane;
+
+LAR_INLINE lar_lane lar_lane_load(const double *p) {
+    return *p;
+}
+LAR_INLINE void lar_lane_store(double *p, lar_lane a) {
+    *p = a;
+}
+LAR_INLINE lar_lane lar_lane_set(double a) {
+    return a;
+}
+LAR_INLINE lar_lane lar_lane_fma(lar_lane a, lar_lane b, lar_lane c) {
+    return fma(a, b, c);
+}
+LAR_INLINE lar_lane lar_lane_fnma(lar_lane a, lar_lane b, lar_lane c) {
+    return fma(-a, b, c);
+}
+LAR_INLINE lar_ilane lar_lane_bits(lar_lane a) {
+    int64_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits;
+}
+LAR_INLINE lar_lane lar_ilane_as_lane(lar_ilane a) {
+    double value;
+    memcpy(&value, &a, sizeof value);
+    return value;
+}
+LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
+    return llrint(a);
+}
+LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {
+    return (double)a;
+}
+LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
+    return !(a > b);
+}
+
+LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
+    return fabs(a);
+}
+LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
+    return *p;
+}
+LAR_INLINE void lar_ilane_store(int64_t *p, lar_ilane a) {
+    *p = a;
+}
+LAR_INLINE lar_lane lar_lane_per_node(const double *p, int64_t k) {
+    return p[k / 4];
+}
+LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
+    return p[k % 4];
+}
+
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
+                                lar_lane *y, lar_lane *z) {
+    const double *n = nodes + offset[0];
+    *x = n[0];
+    *y = n[1];
+    *z = n[2];
+}
+
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
+                                      lar_ilane y, lar_ilane z) {
+    int64_t *n = nodes + offset[0];
+    n[0] += x;
+    n[1] += y;
+    n[2] += z;
+}
+
+#endif
+
+#endif

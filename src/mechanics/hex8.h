@@ -1,0 +1,68 @@
+/* hex8: the production element. Uniform strain, total hourglass control (T 3.2, algorithm 1).
+ *
+ * One stress evaluation per element from the MEAN gradient of the shape functions (Flanagan and
+ * Belytschko 1981), so that the patch test holds on distorted meshes; the deformation is measured
+ * from the reference shape (total Lagrangian), so that a closed load path returns to zero; the
+ * modes that the mean gradient does not see are held by generalised hourglass forces from their
+ * total displacement (Hutter, Hora and Niederer 2000; Joldes, Wittek and Miller 2008).
+ *
+ * Everything is done in MODES. The signs of the eight nodes form a Walsh-Hadamard basis
+ *
+ *     m    0    1    2     3         4        5       6          (and 1, translation,
+ *     h_m  xi  eta  zeta  eta zeta  xi zeta  xi eta  xi eta zeta  which has no force)
+ *
+ * and the transform of the nodal displacements, U_m = sum_a h_m(a) u_a, costs 23 additions per
+ * axis. With X_m the same of the reference positions and B_m the modal mean gradients,
+ *
+ *     H = sum_{m<6} U_m (x) B_m                   displacement gradient; F = I + H
+ *     q_m = U_m - H X_m,  m = 3..6                what the linear field leaves over
+ *     W = V w(F) + 1/2 sum_m c_m |q_m|^2          energy
+ *     S = V P(F) - sum_m c_m q_m (x) X_m
+ *     G_m = S B_m  (+ c_m q_m for m >= 3)         modal forces; f_a = sum_m h_m(a) G_m
+ *
+ * The volume V is a cubic form of X_0..X_5 in which X_6 does not appear, hence B_6 = 0: 18
+ * gradients instead of 24.
+ *
+ * Hourglass stiffness: c_m = 2 G * 2 I2(M_m)/I1(M_m) / 64 with M_m = integral grad h (x) grad h
+ * over the reference element, I1 and I2 its invariants. For a box 2 I2/I1 is the harmonic mean of
+ * the bending stiffnesses 4V/(3 Lx^2) along the two directions of the mode, so slender elements
+ * are not stiffened along their length. With 2 G (not Young's modulus) a bent beam of n elements
+ * through the thickness has 1 - 1/(3 n^2) of its exact stiffness: no locking, and an hourglass
+ * energy that vanishes with n^2. The bulk modulus never enters.
+ */
+#ifndef LAR_MECHANICS_HEX8_H
+#define LAR_MECHANICS_HEX8_H
+
+#include "mechanics/law.h"
+
+enum { LAR_HEX8_GRADIENTS = 6, LAR_HEX8_HOURGLASS = 4 };
+
+/* One element, ready to be recovered. */
+typedef struct lar_hex8 {
+    double gradient[LAR_HEX8_GRADIENTS][3]; /* B_m, m = 0..5 [1/m] */
+    double shape[LAR_HEX8_HOURGLASS][3];    /* X_m, m = 3..6 [m] */
+    double stiffness[LAR_HEX8_HOURGLASS];   /* c_m, m = 3..6 [N/m] */
+    double volume;                          /* [m^3] */
+} lar_hex8;
+
+/* Prepares an element from its reference corners [8][3] and its material. */
+void lar_hex8_prepare(const double corner[8][3], const lar_material *material, lar_hex8 *element);
+
+/* Internal forces dW/du [8][3] in newtons for displacements u [8][3]; returns det F. Plain C, the
+ * formulas above in order: the oracle of the kernels. */
+double lar_hex8_force(const lar_hex8 *element, const lar_material *material, const double u[8][3],
+                      double force[8][3]);
+
+/* Energies [J] for displacements u; *hourglass may be NULL. Returns the strain energy V w(F). */
+double lar_hex8_energy(const lar_hex8 *element, const lar_material *material, const double u[8][3],
+                       double *hourglass);
+
+/* Mean deformation gradient. */
+void lar_hex8_gradient(const lar_hex8 *element, const double u[8][3], double F[3][3]);
+
+/* Highest angular frequency [rad/s] of the element alone at rest with its mass lumped in eight
+ * equal parts. No mode of any assembly of elements is faster (Flanagan and Belytschko 1984), so
+ * 2 / max over elements is a safe bound of the central difference step. */
+double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material);
+
+#endif
