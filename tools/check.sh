@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What `make check` runs: the fast tests and the fuzz smoke tests with the address and
 # undefined-behaviour sanitizers, then every test on the release build. Both parts always run;
-# the release build's closing line comes last. With clang there, it builds the sanitized half, so
-# that both compilers see the code.
+# the release build's closing line comes last. Where clang is there it builds the sanitized half,
+# so that both compilers see the code.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 jobs=${JOBS:-2}
@@ -26,17 +26,32 @@ fi
 
 cmake --preset release --log-level=NOTICE && cmake --build --preset release -j "$jobs" || exit 1
 
+# suite PRESET: the tests of one build, shown and kept.
+suite() {
+    ctest --preset "$1" -j "$jobs" --no-label-summary 2>&1 | tee "$logs/$1"
+}
+closing_line() {
+    grep -h '% tests passed' "$logs/$1" 2>/dev/null | tail -n 1
+}
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+
 sanitized=yes
 {
     cmake --preset asan --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" &&
         cmake --build --preset asan -j "$jobs" &&
-        ctest --preset asan -j "$jobs"
+        suite asan
 } || sanitized=no
 
 release=yes
-ctest --preset release -j "$jobs" || release=no
+suite release || release=no
 
-if [ $sanitized = no ]; then
-    echo "check: the part with the sanitizers FAILED (above); see it alone with: ctest --preset asan" >&2
+echo
+if [ $sanitized = yes ]; then
+    echo "sanitizers ($sanitizer_cc): $(closing_line asan)"
+else
+    echo "check: the part with the sanitizers ($sanitizer_cc) FAILED, see above; alone:" \
+        "ctest --preset asan" >&2
 fi
+closing_line release
 [ $sanitized = yes ] && [ $release = yes ]

@@ -16,11 +16,18 @@ if printf 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long s);\
     libfuzzer=yes
 fi
 
+compiler=gcc
+[ $libfuzzer = yes ] && compiler=clang
+# A build folder keeps its compiler for life; the corpus in it stays.
+if [ -f build-fuzz/CMakeCache.txt ] &&
+    ! grep -q "^CMAKE_C_COMPILER:[A-Z]*=\(.*/\)\?$compiler\$" build-fuzz/CMakeCache.txt; then
+    rm -rf build-fuzz/CMakeCache.txt build-fuzz/CMakeFiles
+fi
 if [ $libfuzzer = yes ]; then
     cmake --preset fuzz --log-level=NOTICE
 else
     echo "fuzz: clang has no libFuzzer here, so the plain driver runs instead" >&2
-    cmake --preset fuzz --log-level=NOTICE -DCMAKE_C_COMPILER=gcc -DLARIAT_LIBFUZZER=OFF \
+    cmake --preset fuzz --log-level=NOTICE -DCMAKE_C_COMPILER=$compiler -DLARIAT_LIBFUZZER=OFF \
         -DLARIAT_SANITIZE=address,undefined
 fi
 cmake --build --preset fuzz -j "$jobs"

@@ -74,14 +74,15 @@ may_install() {
 
 updated=no
 apt_install() {
-    local quick=(-o Acquire::Retries=2 -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30)
+    # A bounded wait for the network, and for another apt that holds the lock.
+    local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0
+        -o DPkg::Lock::Timeout=120 -o Acquire::Retries=2
+        -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30)
     if [ $updated = no ]; then
-        as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq "${quick[@]}" update </dev/null ||
-            return 1
+        as_root "${apt[@]}" update >&2 </dev/null || return 1
         updated=yes
     fi
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends \
-        -o Dpkg::Use-Pty=0 "${quick[@]}" install "$@" </dev/null >&2
+    as_root "${apt[@]}" install -y --no-install-recommends "$@" >&2 </dev/null
 }
 
 # need TABLE: installs what is missing, or ends with a sentence.
