@@ -1,0 +1,75 @@
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "model/mesh_io.h"
+#include "model/scene.h"
+
+/* ---- scenes from files -------------------------------------------------------------------- */
+
+lar_status lar_scene_parse(const char *path, const lar_bytes *bytes, lar_model **model,
+                           lar_error *error) {
+    return lar_scene_parse_with(path, bytes, lar_mesh_read, model, error);
+}
+
+lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error) {
+    lar_bytes bytes = {0};
+    lar_status status = lar_bytes_read(path, &bytes, error);
+    if (!status) status = lar_scene_parse(path, &bytes, model, error);
+    lar_bytes_free(&bytes);
+    return status;
+}
+
+/* ---- a mesh alone ------------------------------------------------------------------------- */
+
+/* A mesh without a scene is shown and inspected: one soft material, no supports. */
+static lar_status fill_bare(lar_model *model, const char *path, lar_error *error) {
+    const double density = 1050.0, shear = 4.0e3, bulk = 4.0e5;
+    const char *name = strrchr(path, '/');
+    lar_status status = lar_mesh_read(path, 1.0, &model->mesh, error);
+    if (status) return status;
+    model->title = lar_strdup(name ? name + 1 : path);
+    model->source = lar_strdup(path);
+    model->element_material = lar_calloc((size_t)model->mesh.element_count, sizeof(int32_t));
+    lar_material *material = LAR_MODEL_APPEND(model, material);
+    if (!model->title || !model->source || !model->element_material || !material)
+        return lar_fail_memory(error, (size_t)model->mesh.element_count * sizeof(int32_t), path);
+    material->law = LAR_LAW_neo_hookean;
+    material->density = density;
+    lar_material_from_shear_bulk(material, shear, bulk);
+    return lar_model_check(model, error);
+}
+
+static lar_status read_bare(const char *path, lar_model **model, lar_error *error) {
+    lar_model *bare = lar_model_create();
+    if (!bare) return lar_fail_memory(error, sizeof *bare, path);
+    lar_status status = fill_bare(bare, path, error);
+    if (status)
+        lar_model_destroy(bare);
+    else
+        *model = bare;
+    return status;
+}
+
+/* ---- by extension ------------------------------------------------------------------------- */
+
+lar_status lar_model_open(const char *path, lar_model **model, lar_error *error) {
+    static const struct {
+        const char *extension;
+        lar_status (*read)(const char *path, lar_model **model, lar_error *error);
+    } reader[] = {{"yaml", lar_scene_read}, {"yml", lar_scene_read}, {"feb", lar_feb_read},
+                  {"vtu", read_bare},       {"vtk", read_bare},      {"msh", read_bare},
+                  {"inp", read_bare}};
+    if (!path || !model)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_model_open needs a path and a place for the model; neither may be "
+                        "NULL");
+    const char *extension = lar_path_extension(path);
+    for (size_t i = 0; i < sizeof reader / sizeof reader[0]; i++)
+        if (strcasecmp(extension, reader[i].extension) == 0)
+            return reader[i].read(path, model, error);
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s: the extension \".%s\" is not known; give a scene (.yaml), a FEBio deck "
+                    "(.feb) or a mesh (.vtu .vtk .msh .inp)",
+                    path, extension);
+}
