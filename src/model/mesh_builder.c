@@ -127,6 +127,8 @@ lar_status lar_mesh_builder_hexahedron(lar_mesh_builder *builder, int64_t id, in
 
 lar_status lar_mesh_builder_set(lar_mesh_builder *builder, const char *name, lar_set_kind kind,
                                 lar_error *error) {
+    const built_set *open = builder->open;
+    if (open && open->kind == kind && strcmp(open->name, name) == 0) return LAR_OK;
     for (size_t s = 0; s < builder->set_count; s++)
         if (builder->set[s].kind == kind && strcmp(builder->set[s].name, name) == 0) {
             builder->open = &builder->set[s];
