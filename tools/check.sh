@@ -4,7 +4,7 @@
 # the release build's closing line comes last. Where clang is there it builds the sanitized half,
 # so that both compilers see the code.
 set -uo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit 1
 jobs=${JOBS:-2}
 
 sanitizer_cc=${SANITIZER_CC:-}
