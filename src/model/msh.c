@@ -177,7 +177,7 @@ static lar_status read_entity(msh_reader *reader, int dimension) {
         double ignored;
         status = msh_double(reader, "a coordinate of an entity", &ignored);
     }
-    int64_t groups = 0, bounds = 0, number;
+    int64_t groups = 0, bounds = 0, number = 0;
     if (!status) status = msh_size(reader, "the number of physical groups", &groups);
     if (!status) status = msh_claim(reader, groups, "physical groups", 2, 4);
     for (int64_t i = 0; i < groups && !status; i++) {
@@ -200,7 +200,7 @@ static lar_status read_entity(msh_reader *reader, int dimension) {
 }
 
 static lar_status read_entities(msh_reader *reader) {
-    int64_t count[4];
+    int64_t count[4] = {0};
     lar_status status = LAR_OK;
     for (int d = 0; d < 4 && !status; d++)
         status = msh_size(reader, "the number of entities", &count[d]);
@@ -256,7 +256,7 @@ static lar_status read_node_block(msh_reader *reader, int64_t *ids, int64_t coun
 }
 
 static lar_status read_nodes_4(msh_reader *reader) {
-    int64_t blocks, total, seen = 0, ignored, dimension, parametric, count;
+    int64_t blocks = 0, total = 0, seen = 0, ignored, dimension = 0, parametric = 0, count = 0;
     lar_status status = msh_size(reader, "the number of node blocks", &blocks);
     if (!status) status = msh_size(reader, "the number of nodes", &total);
     if (!status) status = msh_size(reader, "the smallest node id", &ignored);

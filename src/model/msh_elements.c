@@ -195,7 +195,7 @@ static lar_status fail_tags(msh_reader *reader, int64_t count) {
 
 /* id type tag-count tags... nodes..., in version 1 id type group entity node-count nodes... */
 static lar_status read_text_element(msh_reader *reader) {
-    int64_t type, tag_count = 2, group, node_count;
+    int64_t type = 0, tag_count = 2, group = 0, node_count = 0;
     cell c = {.line = 0};
     lar_status status = msh_int(reader, "an element id", &c.id);
     if (!status) status = msh_int(reader, "an element type", &type);
@@ -222,7 +222,7 @@ static lar_status read_text_element(msh_reader *reader) {
 
 /* A header (type, count, tag-count) and the elements it stands for: id, tags, nodes. */
 static lar_status read_binary_block(msh_reader *reader, int64_t left, int64_t *seen) {
-    int64_t type, count, tag_count, group, first_id = 0;
+    int64_t type = 0, count = 0, tag_count = 0, group = 0, first_id = 0;
     lar_status status = msh_int(reader, "an element type", &type);
     if (!status) status = msh_int(reader, "a number of elements", &count);
     if (!status) status = msh_int(reader, "a number of tags", &tag_count);
@@ -272,7 +272,7 @@ static lar_status read_elements_2(msh_reader *reader) {
 /* ---- version 4.1 ------------------------------------------------------------------------ */
 
 static lar_status read_block_4(msh_reader *reader, int64_t *count) {
-    int64_t dimension, entity, type, first_id = 0;
+    int64_t dimension, entity = 0, type = 0, first_id = 0;
     lar_status status = msh_int(reader, "the dimension of an element block", &dimension);
     if (!status) status = msh_int(reader, "the entity of an element block", &entity);
     if (!status) status = msh_int(reader, "an element type", &type);
@@ -301,7 +301,7 @@ static lar_status read_block_4(msh_reader *reader, int64_t *count) {
 }
 
 static lar_status read_elements_4(msh_reader *reader) {
-    int64_t blocks, total, seen = 0, ignored;
+    int64_t blocks = 0, total = 0, seen = 0, ignored;
     lar_status status = msh_size(reader, "the number of element blocks", &blocks);
     if (!status) status = msh_size(reader, "the number of elements", &total);
     if (!status) status = msh_size(reader, "the smallest element id", &ignored);
