@@ -6,6 +6,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 jobs=${JOBS:-2}
+werror=${WERROR:-OFF} # continuous integration sets it ON; a newer compiler may warn of new things
 
 sanitizer_cc=${SANITIZER_CC:-}
 if [ -z "$sanitizer_cc" ]; then
@@ -24,7 +25,8 @@ if [ -f build-asan/CMakeCache.txt ] &&
     rm -rf build-asan
 fi
 
-cmake --preset release --log-level=NOTICE && cmake --build --preset release -j "$jobs" || exit 1
+cmake --preset release --log-level=NOTICE -DLARIAT_WERROR="$werror" &&
+    cmake --build --preset release -j "$jobs" || exit 1
 
 # suite PRESET: the tests of one build, shown and kept.
 suite() {
@@ -38,7 +40,8 @@ trap 'rm -rf "$logs"' EXIT
 
 sanitized=yes
 {
-    cmake --preset asan --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" &&
+    cmake --preset asan --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" \
+        -DLARIAT_WERROR="$werror" &&
         cmake --build --preset asan -j "$jobs" &&
         suite asan
 } || sanitized=no

@@ -35,9 +35,11 @@ cmake --build --preset fuzz -j "$jobs"
 mkdir -p build-fuzz/failures
 failed=""
 count=0
-for program in build-fuzz/tests/fuzz_*; do
-    [ -f "$program" ] && [ -x "$program" ] || continue
-    name=${program##*/fuzz_}
+for source in tests/fuzz/fuzz_*.c; do
+    name=$(basename "$source" .c)
+    name=${name#fuzz_}
+    program=build-fuzz/tests/fuzz_$name
+    [ -x "$program" ] || continue
     count=$((count + 1))
     echo "fuzz: $name for $seconds s"
     mkdir -p "build-fuzz/corpus/$name"
