@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "mechanics/hexahedron.h"
 #include "model/mesh.h"
 
 /* h_m(a): columns xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
@@ -60,26 +61,13 @@ static double volume_gradient(const double X[7][3], double derivative[6][3]) {
     return volume;
 }
 
-/* dx/dxi at a natural point, from the corner positions. */
-static void jacobian(const double corner[8][3], const double at[3], double J[3][3]) {
-    memset(J, 0, 9 * sizeof(double));
-    for (int a = 0; a < 8; a++) {
-        double n[3];
-        for (int k = 0; k < 3; k++) n[k] = 1 + lar_node_sign[a][k] * at[k];
-        for (int k = 0; k < 3; k++) {
-            double dN = lar_node_sign[a][k] * n[(k + 1) % 3] * n[(k + 2) % 3] / 8;
-            for (int i = 0; i < 3; i++) J[i][k] += corner[a][i] * dN;
-        }
-    }
-}
-
 /* 2 I2 / I1 of M = integral grad h (x) grad h dV for the hourglass modes, by 2x2x2 Gauss. */
 static void bending_stiffness(const double corner[8][3], double stiffness[4]) {
     double M[4][3][3] = {{{0}}};
-    for (int g = 0; g < 8; g++) {
+    for (int g = 0; g < LAR_GAUSS_POINTS; g++) {
         double at[3], J[3][3], cof[9];
-        for (int k = 0; k < 3; k++) at[k] = lar_node_sign[g][k] / sqrt(3.0);
-        jacobian(corner, at, J);
+        lar_gauss_point(g, at);
+        lar_hexahedron_jacobian(corner, at, J);
         double det = lar_lane_cofactor((const double *)J, cof);
         double slope[4][3] = {{0, at[2], at[1]}, /* d(eta zeta) by xi, eta, zeta; and so on */
                               {at[2], 0, at[0]},
