@@ -1,0 +1,96 @@
+/* Curves: ramps and the four shapes of tables, at points, between them and outside. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "model/curve.h"
+
+static double three[3][2] = {{1.0, 2.0}, {2.0, 6.0}, {4.0, -2.0}};
+
+static lar_curve table(lar_curve_shape shape) {
+    return (lar_curve){.kind = LAR_CURVE_TABLE, .shape = shape, .count = 3, .point = three};
+}
+
+static void expect(const lar_curve *curve, double time, double value) {
+    assert_true(lar_curve_value(curve, time) == value);
+}
+
+static void test_ramp(void **state) {
+    (void)state;
+    lar_curve ramp = {.kind = LAR_CURVE_RAMP, .over = 0.5};
+    expect(&ramp, -1.0, 0.0);
+    expect(&ramp, 0.0, 0.0);
+    expect(&ramp, 0.125, 0.15625); /* 3/16 - 2/64 */
+    expect(&ramp, 0.25, 0.5);
+    expect(&ramp, 0.5, 1.0);
+    expect(&ramp, 9.0, 1.0);
+    assert_true(lar_curve_end(&ramp) == 0.5);
+    lar_curve sudden = {.kind = LAR_CURVE_RAMP};
+    expect(&sudden, 0.0, 1.0);
+    assert_true(lar_curve_end(&sudden) == 0.0);
+}
+
+static void test_table_is_held_outside(void **state) {
+    (void)state;
+    const lar_curve_shape shapes[] = {LAR_CURVE_LINEAR, LAR_CURVE_STEP, LAR_CURVE_SMOOTH,
+                                      LAR_CURVE_HOLD};
+    for (int i = 0; i < 4; i++) {
+        lar_curve curve = table(shapes[i]);
+        expect(&curve, 0.0, 2.0);
+        expect(&curve, 1.0, 2.0);
+        expect(&curve, 4.0, -2.0);
+        expect(&curve, 5.0, -2.0);
+        assert_true(lar_curve_end(&curve) == 4.0);
+    }
+}
+
+static void test_shapes(void **state) {
+    (void)state;
+    lar_curve linear = table(LAR_CURVE_LINEAR), next = table(LAR_CURVE_STEP);
+    lar_curve smooth = table(LAR_CURVE_SMOOTH), hold = table(LAR_CURVE_HOLD);
+    expect(&linear, 1.5, 4.0);
+    expect(&linear, 2.0, 6.0);
+    expect(&linear, 3.0, 2.0);
+    expect(&next, 1.5, 6.0);
+    expect(&next, 2.0, -2.0);
+    expect(&next, 3.0, -2.0);
+    expect(&hold, 1.5, 2.0);
+    expect(&hold, 2.0, 6.0);
+    expect(&hold, 3.999, 6.0);
+    expect(&smooth, 1.25, 2.0 + 4.0 * 0.15625);
+    expect(&smooth, 1.5, 4.0);
+    expect(&smooth, 2.0, 6.0);
+}
+
+static void test_odd_tables(void **state) {
+    (void)state;
+    double jump[4][2] = {{0.0, 0.0}, {1.0, 1.0}, {1.0, 5.0}, {2.0, 5.0}};
+    lar_curve curve = {.kind = LAR_CURVE_TABLE, .count = 4, .point = jump};
+    expect(&curve, 0.5, 0.5);
+    expect(&curve, 1.0, 5.0);
+    expect(&curve, 1.5, 5.0);
+    curve.count = 1;
+    expect(&curve, 7.0, 0.0);
+    curve.count = 0;
+    expect(&curve, 7.0, 1.0);
+    assert_true(lar_curve_end(&curve) == 0.0);
+}
+
+static void test_values_have_fixed_bits(void **state) {
+    (void)state;
+    lar_curve ramp = {.kind = LAR_CURVE_RAMP, .over = 0.3};
+    expect(&ramp, 0.1, 0x1.097b425ed097cp-2); /* 7/27 in IEEE arithmetic, operation by operation */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_table_is_held_outside),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_odd_tables),
+        cmocka_unit_test(test_values_have_fixed_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

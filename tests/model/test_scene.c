@@ -1,0 +1,277 @@
+/* Scenes that are right: every key, every selector, what ends up in the model. The meshes are the
+ * bricks of brick.h; only the last test reads a file. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+
+#include "brick.h"
+#include "model/scene.h"
+
+#define HEAD "lariat: 1\nmesh: brick.vtu\n"
+#define MATERIAL                                                                                   \
+    "materials: [{cells: all, law: neo-hookean, density: 1050, shear_modulus: 4.0e3, "             \
+    "bulk_modulus: 4.0e5}]\n"
+
+static lar_model *scene(const char *text) {
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    lar_error error = {0};
+    lar_status status = lar_scene_parse_with("s.yaml", &bytes, brick_read, &model, &error);
+    lar_bytes_free(&bytes);
+    if (status) fail_msg("%s", error.message);
+    return model;
+}
+
+static void same(double a, double b) {
+    if (!(fabs(a - b) <= 1e-12 * (1.0 + fabs(b)))) fail_msg("%.17g instead of %.17g", a, b);
+}
+
+/* A selection as text: the indices, separated by blanks. */
+static void indices(const int32_t *index, int32_t count, char *text, size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int32_t i = 0; i < count && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%d", i ? " " : "", (int)index[i]);
+}
+
+static void selects(const char *kind, const char *selector, const char *expected) {
+    char text[600], found[400];
+    snprintf(text, sizeof text,
+             HEAD
+             "sets:\n  - {name: edge, nodes: {list: [1, 2, 3]}}\n  - {name: it, %s: %s}\n" MATERIAL,
+             kind, selector);
+    lar_model *model = scene(text);
+    const lar_set *set = &model->mesh.set[model->mesh.set_count - 1];
+    assert_string_equal(set->name, "it");
+    indices(set->index, set->count, found, sizeof found);
+    if (strcmp(found, expected) != 0)
+        fail_msg("%s: %s gives \"%s\" instead of \"%s\"", kind, selector, found, expected);
+    lar_model_destroy(model);
+}
+
+static void test_node_selectors(void **state) {
+    (void)state;
+    selects("nodes", "{box: [[0, 0, 0], [0.02, 0, 0]]}", "0 1 2");
+    selects("nodes", "{box: [[-1, -1, 0.015], [1, 0.005, 1]]}", "18 19 20");
+    selects("nodes", "{sphere: {center: [0.01, 0.01, 0.01], radius: 0.0101}}",
+            "4 10 12 13 14 16 22");
+    selects("nodes", "{plane: {point: [0, 0, 0.02], normal: [0, 0, 5]}}",
+            "18 19 20 21 22 23 24 25 26");
+    selects("nodes", "{plane: {point: [0, 0, 0], normal: [1, 1, 1], tolerance: 0.006}}", "0 1 3 9");
+    selects("nodes", "{nearest: [9, 9, -9]}", "8");
+    selects("nodes", "{list: [27, 1, 1]}", "0 26");
+    selects("nodes", "{all: [{tag: 1}, {tag: 2}]}", "9 10 11 12 13 14 15 16 17");
+    selects("nodes", "{set: bottom}", "0 1 2 3 4 5 6 7 8");
+    selects("nodes", "{set: lid}", "18 19 20 21 22 23 24 25 26");
+    selects("nodes", "{set: upper}", "9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26");
+    selects("nodes", "{not: {surface: true}}", "13");
+    selects("nodes", "{any: [edge, {nearest: [0, 0, 1]}]}", "0 1 2 18");
+    selects("nodes", "{all: [bottom, {not: edge}, {not: {nearest: [1, 1, 0]}}]}", "3 4 5 6 7");
+}
+
+static void test_element_selectors(void **state) {
+    (void)state;
+    selects("elements", "{box: [[0, 0, 0], [0.02, 0.01, 0.01]]}", "0 1");
+    selects("elements", "{sphere: {center: [0.005, 0.005, 0.005], radius: 0.001}}", "0");
+    selects("elements", "{plane: {point: [0.005, 0, 0], normal: [1, 0, 0]}}", "0 2 4 6");
+    selects("elements", "{nearest: [1, 1, 1]}", "7");
+    selects("elements", "{list: [108, 101]}", "0 7");
+    selects("elements", "{tag: 2}", "4 5 6 7");
+    selects("elements", "upper", "4 5 6 7");
+    selects("elements", "{set: lid}", "4 5 6 7");
+    selects("elements", "{not: {set: upper}}", "0 1 2 3");
+    selects("elements", "{surface: true}", "0 1 2 3 4 5 6 7");
+    selects("elements", "{any: [{list: [101]}, {all: [upper, {tag: 2}]}]}", "0 4 5 6 7");
+}
+
+static void test_face_selectors(void **state) {
+    (void)state;
+    selects("faces", "{box: [[-1, -1, 0.02], [1, 1, 0.02]]}", "29 35 41 47");
+    selects("faces", "{plane: {point: [0, 0, 0], normal: [1, 0, 0]}}", "0 12 24 36");
+    selects("faces", "{set: bottom}", "4 10 16 22");
+    selects("faces", "lid", "29 35 41 47");
+    selects("faces", "{nearest: [0.02, 0.015, 0.005]}", "19");
+    selects("faces",
+            "{all: [{surface: true}, {set: upper}, {not: lid}, {not: {box: [[0, 0, 0], "
+            "[1, 0, 1]]}}, {not: {plane: {point: [0.02, 0, 0], normal: [1, 0, 0]}}}]}",
+            "24 36 39 45");
+    selects("faces", "{all: [{tag: 1}, {set: bottom}]}", "4 10 16 22");
+    selects("faces", "{sphere: {center: [0.005, 0.005, 0], radius: 0.008}}", "4");
+}
+
+static void test_whole_selections(void **state) {
+    (void)state;
+    lar_model *model =
+        scene(HEAD MATERIAL "fix:\n"
+                            "  - {nodes: all, axes: x}\n"
+                            "  - {nodes: 3, axes: y}\n"
+                            "  - {nodes: [27, bottom, {nearest: [0, 0, 1]}], axes: zx}\n"
+                            "load: [{faces: all, pressure: 1}, {faces: [lid, {set: bottom}], "
+                            "pressure: -2}]\n");
+    assert_int_equal(model->fix_count, 3);
+    assert_int_equal(model->fix[0].nodes.count, 27);
+    assert_int_equal(model->fix[0].axes, LAR_AXIS_X);
+    assert_int_equal(model->fix[1].nodes.count, 1);
+    assert_int_equal(model->fix[1].nodes.node[0], 2);
+    assert_int_equal(model->fix[2].nodes.count, 11);
+    assert_int_equal(model->fix[2].axes, LAR_AXIS_X | LAR_AXIS_Z);
+    assert_int_equal(model->pressure[0].count, 24);
+    assert_int_equal(model->pressure[1].count, 8);
+    same(model->pressure[1].pressure, -2.0);
+    lar_model_destroy(model);
+}
+
+static void test_plain_values(void **state) {
+    (void)state;
+    lar_model *model = scene(HEAD MATERIAL "title: 'A: brick'\nscale: 0.001\n"
+                                           "gravity: [0, 0, -9.81]\ntime_step: 1.0e-5\n"
+                                           "damping: 2.0\nduration: 3\n");
+    assert_string_equal(model->title, "A: brick");
+    assert_string_equal(model->source, "s.yaml");
+    same(model->mesh.position[26][0], 2e-5);
+    same(model->gravity[2], -9.81);
+    same(model->time_step, 1e-5);
+    same(model->damping, 2.0);
+    same(lar_model_duration(model), 3.0);
+    lar_model_destroy(model);
+    model = scene(HEAD MATERIAL "time_step: auto\n");
+    assert_string_equal(model->title, "s.yaml");
+    same(model->time_step, 0.0);
+    same(model->gravity[2], 0.0);
+    same(lar_model_output_interval(model), 0.0);
+    lar_model_destroy(model);
+}
+
+static void test_materials(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD "materials:\n"
+             "  - {cells: all, law: neo-hookean, density: 1000, youngs_modulus: 12e3, "
+             "poisson_ratio: 0.45}\n"
+             "  - {cells: 2, law: mooney-rivlin, density: 1100, c1: 1e3, c2: 5e2, "
+             "bulk_modulus: 1e5, name: stiff}\n"
+             "  - {cells: [{nearest: [0, 0, 0]}, {list: [108]}], law: coupled-neo-hookean, "
+             "density: 1200, mu: 3e3, lambda: 5e3}\n"
+             "  - {cells: {list: [102]}, law: coupled-neo-hookean, density: 1, shear_modulus: 3e3, "
+             "bulk_modulus: 1e3}\n");
+    const int32_t expected[BRICK_ELEMENTS] = {2, 3, 0, 0, 1, 1, 1, 2};
+    assert_memory_equal(model->element_material, expected, sizeof expected);
+    same(lar_material_shear(&model->material[0]), 12e3 / 2.9);
+    same(lar_material_bulk(&model->material[0]), 12e3 / 0.3);
+    assert_string_equal(model->material[1].name, "stiff");
+    same(model->material[1].parameter[1], 500.0);
+    same(model->material[2].parameter[1], 5e3);
+    same(model->material[3].parameter[1], -1e3);
+    lar_model_destroy(model);
+}
+
+static void test_motion_and_loads(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD MATERIAL
+        "fix: [{nodes: bottom, axes: xyz}]\n"
+        "move: [{nodes: lid, axes: z, by: -0.002, over: 0.25},\n"
+        "       {nodes: lid, axes: x, by: 1.0e-3, curve: {points: [[0, 0], [0.1, 1], [0.4, 0.5]], "
+        "shape: smooth}}]\n"
+        "load: [{nodes: lid, force: [0, 9, -0.9]},\n"
+        "       {nodes: 14, force_per_node: [1, 2, 3], over: 0.1},\n"
+        "       {faces: lid, pressure: 500, curve: {points: [[0, 1], [0.2, 3]], shape: step}}]\n"
+        "initial: [{nodes: 14, velocity: [0, 0, 0.5]}]\n");
+    assert_int_equal(model->move_count, 2);
+    same(model->move[0].by, -0.002);
+    same(lar_curve_value(&model->curve[model->move[0].curve], 0.125), 0.5);
+    same(lar_curve_value(&model->curve[model->move[1].curve], 0.05), 0.5);
+    same(lar_curve_value(&model->curve[model->move[1].curve], 9.0), 0.5);
+    assert_int_equal(model->load_count, 2);
+    assert_int_equal(model->load[0].nodes.count, 9);
+    same(model->load[0].force[1], 1.0);
+    same(model->load[0].force[2], -0.1);
+    same(lar_curve_value(&model->curve[model->load[0].curve], 0.0), 1.0);
+    same(model->load[1].force[2], 3.0);
+    same(lar_curve_value(&model->curve[model->load[1].curve], 0.05), 0.5);
+    assert_int_equal(model->pressure_count, 1);
+    same(lar_curve_value(&model->curve[model->pressure[0].curve], 0.1999), 1.0);
+    same(lar_curve_value(&model->curve[model->pressure[0].curve], 0.2), 3.0);
+    same(model->initial[0].velocity[2], 0.5);
+    same(lar_model_duration(model), 0.4);
+    lar_model_destroy(model);
+}
+
+static void test_output(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD MATERIAL "output:\n  every: 0.02\n  fields: [velocity, pressure, energy]\n"
+                      "  probes: [{node: 12}, {set: bottom, sum: reaction}, {nodes: bottom},\n"
+                      "           {nodes: {tag: 1}, name: low}, {nodes: [1, 2]}]\n");
+    same(lar_model_output_interval(model), 0.02);
+    assert_int_equal(model->output.fields,
+                     LAR_FIELD_VELOCITY | LAR_FIELD_PRESSURE | LAR_FIELD_ENERGY);
+    assert_int_equal(model->output.probe_count, 5);
+    const char *const names[] = {"node 12", "bottom reaction", "bottom", "low", "probe 5"};
+    const int counts[] = {1, 9, 9, 18, 2};
+    for (int i = 0; i < 5; i++) {
+        assert_string_equal(model->output.probe[i].name, names[i]);
+        assert_int_equal(model->output.probe[i].nodes.count, counts[i]);
+        assert_int_equal(model->output.probe[i].what,
+                         i == 1 ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT);
+    }
+    assert_int_equal(model->output.probe[0].nodes.node[0], 11);
+    lar_model_destroy(model);
+}
+
+static void test_several_meshes(void **state) {
+    (void)state;
+    lar_model *model = scene("lariat: 1\nmesh: [brick.vtu, {file: two.vtu, tag: 9}]\n" MATERIAL
+                             "fix: [{nodes: [28, 54], axes: xyz}]\n"
+                             "sets: [{name: all_lids, faces: lid}]\n");
+    const lar_mesh *mesh = &model->mesh;
+    assert_int_equal(mesh->node_count, 2 * BRICK_NODES);
+    assert_int_equal(mesh->element_count, 2 * BRICK_ELEMENTS);
+    assert_int_equal(mesh->node_id[27], 28);
+    assert_int_equal(mesh->element_id[8], 109);
+    assert_int_equal(mesh->element[8][0], 27);
+    assert_int_equal(mesh->element_tag[7], 2);
+    assert_int_equal(mesh->element_tag[8], 9);
+    assert_int_equal(mesh->set_count, 4);
+    assert_int_equal(lar_mesh_find_set(mesh, "bottom", LAR_SET_NODES)->count, 18);
+    assert_int_equal(lar_mesh_find_set(mesh, "bottom", LAR_SET_NODES)->index[9], 27);
+    assert_int_equal(lar_mesh_find_set(mesh, "lid", LAR_SET_FACES)->index[7], 15 * 6 + 5);
+    assert_int_equal(lar_mesh_find_set(mesh, "upper", LAR_SET_ELEMENTS)->index[4], 12);
+    assert_int_equal(model->fix[0].nodes.node[1], 53);
+    lar_model_destroy(model);
+}
+
+static void test_mesh_stands_beside_the_scene(void **state) {
+    (void)state;
+    const char *text = "lariat: 1\nmesh: bad.vtu\n" MATERIAL;
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    lar_error error = {0};
+    assert_int_equal(lar_scene_parse_with("a/b/s.yaml", &bytes, brick_read, &model, &error),
+                     LAR_ERROR_IO);
+    assert_string_equal(error.message,
+                        "a/b/s.yaml:2:7: a/b/bad.vtu: cannot be opened: gone; check the path");
+    assert_null(model);
+    lar_bytes_free(&bytes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_node_selectors),
+        cmocka_unit_test(test_element_selectors),
+        cmocka_unit_test(test_face_selectors),
+        cmocka_unit_test(test_whole_selections),
+        cmocka_unit_test(test_plain_values),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_motion_and_loads),
+        cmocka_unit_test(test_output),
+        cmocka_unit_test(test_several_meshes),
+        cmocka_unit_test(test_mesh_stands_beside_the_scene),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
