@@ -1,0 +1,73 @@
+/* The compiled model: what one processor needs to step, in the order in which it reads it.
+ *
+ *     model (global, by file order)             domain (local, by use)
+ *     elements 0..E-1                 ---->     groups of one law, blocks of eight, along a
+ *                                               space-filling curve
+ *     nodes 0..N-1                    ---->     local nodes in the order of first use, then spare
+ *                                               nodes for empty lanes and even length
+ *
+ * Constant once compiled; the state (engine/state.h) is separate. The element kinds that are not
+ * hex8 keep their elements in the plain list `element` and go the slow way.
+ */
+#ifndef LAR_ENGINE_DOMAIN_H
+#define LAR_ENGINE_DOMAIN_H
+
+#include "engine/conditions.h"
+#include "mechanics/hex8_block.h"
+#include "model/model.h"
+
+typedef int32_t lar_lid; /* node of one domain */
+
+/* Consecutive blocks of one law. */
+typedef struct lar_block_group {
+    lar_law law;
+    int32_t first, count;
+} lar_block_group;
+
+typedef struct lar_domain {
+    const lar_model *model;
+    const lar_kernels *kernels;
+    lar_element_kind kind;
+
+    int32_t element_count;
+    lar_gid *element; /* [block_count * 8] global element of each lane, -1: none */
+    int32_t block_count;
+    lar_hex8_block *block; /* hex8 only, else NULL */
+    int32_t group_count;
+    lar_block_group group[LAR_LAW_COUNT];
+
+    int32_t node_count;  /* real nodes */
+    int32_t node_padded; /* with spare nodes, even */
+    lar_gid *global;     /* [node_count] */
+    lar_lid *local;      /* [nodes of the model] */
+    double *mass;        /* [node_padded] kg; spare nodes 0 */
+    double *push;        /* [node_padded] see lar_node_update */
+
+    double scale;       /* force units per newton, a power of two */
+    double time_step;   /* [s] */
+    double stable_step; /* the elements' bound at rest [s] */
+    lar_gid stable_worst;
+    lar_hex8_limits limits;
+    lar_motion motion; /* without gravity when gravity follows a curve */
+
+    lar_conditions conditions;
+} lar_domain;
+
+/* Compiles a checked model. The step is options->time_step, or the model's, or automatic: 0.8 of
+ * the stable step. A step above the stable step is an error that names both. */
+lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
+                             lar_error *error);
+void lar_domain_destroy(lar_domain *domain); /* idempotent */
+
+/* The elements' bound of the time step at rest and the element that sets it. */
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error);
+
+/* The share of the stable step that `time_step: auto` takes: leaves room for elements that are
+ * squeezed during the run. */
+#define LAR_AUTO_STEP 0.8
+
+/* Displacements of the corners of global element e, [8][3]. */
+void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]);
+
+#endif

@@ -1,0 +1,156 @@
+#include "engine/measure.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/hex8_full.h"
+
+static const lar_material *material_of(const lar_domain *domain, lar_gid e) {
+    return &domain->model->material[domain->model->element_material[e]];
+}
+
+static double element_energy(const lar_domain *domain, const lar_state *state, lar_gid e,
+                             double *hourglass) {
+    double corner[8][3], u[8][3];
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    *hourglass = 0;
+    if (domain->kind != LAR_ELEMENT_HEX8)
+        return lar_hex8_full_energy(corner, material_of(domain, e), u);
+    lar_hex8 hex8;
+    lar_hex8_prepare(corner, material_of(domain, e), &hex8);
+    return lar_hex8_energy(&hex8, material_of(domain, e), u, hourglass);
+}
+
+/* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
+static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
+                            const double gravity[3]) {
+    double half = 0.5 * domain->model->damping * domain->time_step;
+    double drift = gravity[value % 4] * domain->time_step / (1 + half);
+    return domain->motion.keep * state->v[value] + drift -
+           domain->push[value / 4] * (double)state->force[value];
+}
+
+/* Half of the present step's share of kinetic, damping and constraint work for one value. */
+static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_t value,
+                        double ahead, lar_energy *energy) {
+    double mass = domain->mass[value / 4], behind = state->v[value];
+    energy->kinetic += 0.5 * mass * behind * ahead;
+    energy->damping +=
+        0.25 * domain->model->damping * domain->time_step * mass * behind * (behind + ahead);
+}
+
+static void add_constraint_work(const lar_domain *domain, const lar_state *state,
+                                const lar_constraint *constraint, double ahead,
+                                const double gravity[3], lar_energy *energy) {
+    double behind = state->v[constraint->value], dt = domain->time_step;
+    double reaction = domain->mass[constraint->value / 4] *
+                          ((ahead - behind) / dt + 0.5 * domain->model->damping * (ahead + behind) -
+                           gravity[constraint->value % 4]) +
+                      (double)state->force[constraint->value] / domain->scale;
+    energy->external += 0.5 * dt * reaction * behind;
+}
+
+static double gravity_potential(const lar_domain *domain, const lar_state *state) {
+    double work = 0;
+    for (int32_t n = 0; n < domain->node_count; n++)
+        for (int i = 0; i < 3; i++)
+            work += domain->mass[n] * domain->model->gravity[i] * state->u[4 * n + i];
+    return work;
+}
+
+/* Velocities half a step ahead, supports included; NULL without memory. */
+static double *velocities_ahead(const lar_domain *domain, const lar_state *state,
+                                const double gravity[3]) {
+    double *ahead = lar_calloc(4 * (size_t)domain->node_padded, sizeof *ahead);
+    if (!ahead) return NULL;
+    for (int32_t n = 0; n < domain->node_count; n++)
+        for (int i = 0; i < 3; i++)
+            ahead[4 * n + i] = next_velocity(domain, state, 4 * n + i, gravity);
+    double time = lar_state_time(domain, state), dt = domain->time_step;
+    for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
+        const lar_constraint *c = &domain->conditions.constraint[i];
+        ahead[c->value] = (lar_constraint_value(domain->model, c, time + dt) -
+                           lar_constraint_value(domain->model, c, time)) /
+                          dt;
+    }
+    return ahead;
+}
+
+void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
+    lar_condition_context context = lar_domain_context(domain);
+    double time = lar_state_time(domain, state), gravity[3];
+    lar_gravity_at(domain->model, time, gravity);
+    lar_trip ignored = {0};
+    lar_step_forces(domain, state, &ignored);
+
+    *energy =
+        (lar_energy){.external = state->external,
+                     .damping = 0.25 * domain->model->damping * domain->time_step * state->damped};
+    energy->external += lar_conditions_half_work(&domain->conditions, &context, time, state);
+    if (!domain->conditions.gravity_varies) energy->external += gravity_potential(domain, state);
+    double *ahead = velocities_ahead(domain, state, gravity);
+    if (ahead) {
+        for (int32_t n = 0; n < domain->node_count; n++)
+            for (int i = 0; i < 3; i++)
+                add_kinetic(domain, state, 4 * n + i, ahead[4 * n + i], energy);
+        for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
+            const lar_constraint *c = &domain->conditions.constraint[i];
+            if (c->curve >= 0)
+                add_constraint_work(domain, state, c, ahead[c->value], gravity, energy);
+        }
+    }
+    free(ahead);
+    memset(state->force, 0, 4 * (size_t)domain->node_padded * sizeof *state->force);
+
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
+        double hourglass;
+        energy->strain += element_energy(domain, state, e, &hourglass);
+        energy->hourglass += hourglass;
+    }
+}
+
+double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
+                          double cauchy[6]) {
+    double corner[8][3], u[8][3];
+    const lar_material *material = material_of(domain, e);
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    if (domain->kind != LAR_ELEMENT_HEX8) {
+        lar_hex8_full_stress(corner, material, u, cauchy);
+        return lar_hex8_full_energy(corner, material, u) / lar_hexahedron_volume(corner);
+    }
+    double F[3][3], P[3][3];
+    lar_hex8 hex8;
+    lar_hex8_prepare(corner, material, &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    double J = lar_law_stress(material, F, P);
+    lar_cauchy_stress(F, P, J, cauchy);
+    return lar_law_energy(material, F);
+}
+
+void lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
+                          double sum[3]) {
+    double gravity[3];
+    lar_gravity_at(domain->model, lar_state_time(domain, state), gravity);
+    memset(sum, 0, 3 * sizeof *sum);
+    unsigned char *wanted = lar_calloc((size_t)domain->node_padded, 1);
+    lar_trip ignored = {0};
+    lar_step_forces(domain, state, &ignored);
+    double *ahead = velocities_ahead(domain, state, gravity);
+    if (wanted && ahead) {
+        for (int32_t i = 0; i < nodes->count; i++) wanted[domain->local[nodes->node[i]]] = 1;
+        for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
+            int32_t value = domain->conditions.constraint[i].value;
+            if (!wanted[value / 4]) continue;
+            double behind = state->v[value];
+            double inertia = (ahead[value] - behind) / domain->time_step +
+                             0.5 * domain->model->damping * (ahead[value] + behind);
+            sum[value % 4] += domain->mass[value / 4] * (inertia - gravity[value % 4]) +
+                              (double)state->force[value] / domain->scale;
+        }
+    }
+    memset(state->force, 0, 4 * (size_t)domain->node_padded * sizeof *state->force);
+    free(wanted);
+    free(ahead);
+}

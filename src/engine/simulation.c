@@ -1,0 +1,109 @@
+#include "engine/simulation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "engine/measure.h"
+
+lar_options lar_options_default(void) {
+    return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO};
+}
+
+static void set_initial_velocities(lar_simulation *simulation) {
+    const lar_model *model = simulation->domain.model;
+    double *v = simulation->state.v;
+    for (int i = 0; i < model->initial_count; i++) {
+        const lar_initial_velocity *initial = &model->initial[i];
+        for (int32_t k = 0; k < initial->nodes.count; k++)
+            memcpy(v + 4 * simulation->domain.local[initial->nodes.node[k]], initial->velocity,
+                   sizeof initial->velocity);
+    }
+    for (int32_t i = 0; i < simulation->domain.conditions.constraint_count; i++)
+        v[simulation->domain.conditions.constraint[i].value] = 0;
+}
+
+lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
+                                 lar_simulation **simulation, lar_error *error) {
+    if (!model || !simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_create needs a model and a "
+                        "place for the simulation");
+    lar_options chosen = options ? *options : lar_options_default();
+    lar_simulation *made = lar_calloc(1, sizeof *made);
+    if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
+    lar_status status = lar_domain_create(model, &chosen, &made->domain, error);
+    if (!status) status = lar_state_create(&made->state, made->domain.node_padded, error);
+    if (status) {
+        lar_simulation_destroy(made);
+        return status;
+    }
+    set_initial_velocities(made);
+    *simulation = made;
+    return LAR_OK;
+}
+
+void lar_simulation_destroy(lar_simulation *simulation) {
+    if (!simulation) return;
+    lar_state_destroy(&simulation->state);
+    lar_domain_destroy(&simulation->domain);
+    free(simulation);
+}
+
+lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
+    lar_trip *trip = &simulation->trip;
+    for (uint64_t i = 0; i < steps && !trip->kind; i++)
+        lar_step(&simulation->domain, &simulation->state, trip);
+    return lar_trip_report(&simulation->domain, &simulation->state, trip, error);
+}
+
+uint64_t lar_simulation_steps(const lar_simulation *simulation) {
+    return simulation->state.step;
+}
+
+double lar_simulation_time(const lar_simulation *simulation) {
+    return lar_state_time(&simulation->domain, &simulation->state);
+}
+
+double lar_simulation_time_step(const lar_simulation *simulation) {
+    return simulation->domain.time_step;
+}
+
+const char *lar_simulation_isa(const lar_simulation *simulation) {
+    return simulation->domain.kernels->name;
+}
+
+static void copy_nodes(const lar_domain *domain, const double *values, double (*out)[3]) {
+    for (int32_t n = 0; n < domain->node_count; n++)
+        memcpy(out[domain->global[n]], values + 4 * n, sizeof out[0]);
+}
+
+void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {
+    copy_nodes(&simulation->domain, simulation->state.u, out);
+}
+
+void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]) {
+    copy_nodes(&simulation->domain, simulation->state.v, out);
+}
+
+uint64_t lar_simulation_hash(const lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_state *state = &simulation->state;
+    uint64_t hash = lar_hash_word(0, state->step);
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        const double *u = state->u + 4 * domain->local[g], *v = state->v + 4 * domain->local[g];
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[i]);
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[i]);
+    }
+    return hash;
+}
+
+void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {
+    /* The force array is scratch between steps: the state that the caller sees stays the same. */
+    lar_simulation *scratch = (lar_simulation *)simulation;
+    lar_measure_energy(&scratch->domain, &scratch->state, energy);
+}
+
+const char *lar_version(void) {
+    return LAR_VERSION;
+}

@@ -1,0 +1,95 @@
+#include "engine/step.h"
+
+#include <math.h>
+
+#include "mechanics/hex8_full.h"
+#include "mechanics/hex8_matrix.h"
+
+static void trip_element(lar_trip *trip, const lar_domain *domain, const lar_state *state,
+                         int64_t lane) {
+    if (lane < 0 || trip->kind) return;
+    *trip = (lar_trip){LAR_TRIP_ELEMENT, domain->element[lane], state->step};
+}
+
+static void recover_blocks(const lar_domain *domain, lar_state *state, lar_trip *trip) {
+    const lar_kernels *kernels = domain->kernels;
+    bool watch = state->step % LAR_WATCH_INTERVAL == 0;
+    for (int32_t g = 0; g < domain->group_count; g++) {
+        const lar_block_group *group = &domain->group[g];
+        lar_hex8_recover recover =
+            watch ? kernels->watch[group->law] : kernels->recover[group->law];
+        int64_t lane = recover(domain->block + group->first, group->count, state->u, state->force,
+                               &domain->limits);
+        if (lane >= 0) trip_element(trip, domain, state, lane + (int64_t)group->first * LAR_BLOCK);
+    }
+}
+
+/* The oracle elements, one at a time: slow is fine. */
+static void recover_slowly(const lar_domain *domain, lar_state *state, lar_trip *trip) {
+    const lar_model *model = domain->model;
+    for (int32_t i = 0; i < domain->block_count * LAR_BLOCK; i++) {
+        lar_gid e = domain->element[i];
+        if (e < 0) continue;
+        double corner[8][3], u[8][3], f[8][3];
+        const lar_material *material = &model->material[model->element_material[e]];
+        lar_mesh_corners(&model->mesh, e, corner);
+        lar_domain_corners(domain, state->u, e, u);
+        double J = domain->kind == LAR_ELEMENT_HEX8_FULL
+                       ? lar_hex8_full_force(corner, material, u, f)
+                       : lar_hex8_matrix_force(corner, material, u, f);
+        bool fits = J > domain->limits.least_volume;
+        for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
+        if (!fits) {
+            trip_element(trip, domain, state, i);
+            continue;
+        }
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++)
+                state->force[4 * domain->local[model->mesh.element[e][a]] + k] +=
+                    llrint(f[a][k] * domain->scale);
+    }
+}
+
+static void recover_elements(const lar_domain *domain, lar_state *state, lar_trip *trip) {
+    if (domain->kind == LAR_ELEMENT_HEX8)
+        recover_blocks(domain, state, trip);
+    else
+        recover_slowly(domain, state, trip);
+}
+
+static void move_nodes(const lar_domain *domain, double time, lar_state *state, lar_trip *trip) {
+    const lar_model *model = domain->model;
+    lar_motion motion = domain->motion;
+    if (domain->conditions.gravity_varies) {
+        double gravity[3];
+        lar_gravity_at(model, time, gravity);
+        for (int i = 0; i < 3; i++)
+            motion.drift[i] = gravity[i] * motion.dt / (1 + 0.5 * model->damping * motion.dt);
+    }
+    const double *mass = model->damping > 0 ? domain->mass : NULL;
+    if (!domain->kernels->update(&motion, 0, domain->node_padded, state->u, state->v, state->force,
+                                 domain->push, mass, &state->damped) &&
+        !trip->kind)
+        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
+}
+
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+    lar_condition_context context = lar_domain_context(domain);
+    lar_conditions_load(&domain->conditions, &context, lar_state_time(domain, state), state);
+    recover_elements(domain, state, trip);
+}
+
+void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
+    lar_conditions *conditions = &domain->conditions;
+    lar_condition_context context = lar_domain_context(domain);
+    double time = lar_state_time(domain, state);
+
+    lar_conditions_load(conditions, &context, time, state);
+    state->external += lar_conditions_half_work(conditions, &context, time, state);
+    recover_elements(domain, state, trip);
+    lar_conditions_observe(conditions, &context, state);
+    move_nodes(domain, time, state, trip);
+    state->external += lar_conditions_impose(conditions, &context, time, state);
+    state->external += lar_conditions_half_work(conditions, &context, time, state);
+    state->step++;
+}

@@ -1,0 +1,79 @@
+#include "engine/step.h"
+
+#include <math.h>
+
+#include "mechanics/hex8_full.h"
+
+/* det F of an element and how much its smallest stretch has raised its frequency. */
+static void examine_element(const lar_domain *domain, const lar_state *state, lar_gid e,
+                            double *volume_ratio, double *frequency_growth) {
+    const lar_model *model = domain->model;
+    double corner[8][3], u[8][3], F[3][3], cof[9];
+    lar_hex8 hex8;
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    lar_hex8_prepare(corner, &model->material[model->element_material[e]], &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    *volume_ratio = lar_lane_cofactor((const double *)F, cof);
+    /* |F^-1| / sqrt(3): 1 at rest */
+    *frequency_growth = sqrt(lar_lane_square_sum(cof) / 3) / fabs(*volume_ratio);
+}
+
+static lar_status report_element(const lar_domain *domain, const lar_state *state,
+                                 const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    double center[3] = {0}, volume_ratio, growth;
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) {
+            lar_gid node = mesh->element[trip->element][a];
+            center[i] += (mesh->position[node][i] + state->u[4 * domain->local[node] + i]) / 8;
+        }
+    examine_element(domain, state, trip->element, &volume_ratio, &growth);
+    const char *cause, *remedy;
+    if (!(volume_ratio > domain->limits.least_volume)) {
+        cause = "is turned inside out or crushed";
+        remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
+    } else if (growth * domain->time_step > domain->stable_step) {
+        cause = "is squeezed so much that the time step has become too large for it";
+        remedy = "use a smaller time step or a stiffer or finer mesh there";
+    } else {
+        cause = "carries a force beyond all reason";
+        remedy = "use a smaller time step, or slower or smaller loads";
+    }
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
+                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->element_id[trip->element], center[0], center[1], center[2],
+                    cause, volume_ratio, domain->time_step, domain->stable_step, remedy);
+}
+
+static lar_status report_speed(const lar_domain *domain, const lar_state *state,
+                               const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    int32_t fastest = 0;
+    double highest = -1;
+    for (int32_t n = 0; n < domain->node_count; n++)
+        for (int i = 0; i < 3; i++)
+            if (!(fabs(state->v[4 * n + i]) <= highest)) {
+                highest = fabs(state->v[4 * n + i]);
+                fastest = n;
+            }
+    lar_gid node = domain->global[fastest];
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
+                    "%.3g m/s, more than an element per time step (%.3g m/s); use a smaller time "
+                    "step, or slower or smaller loads and motions",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->node_id[node], mesh->position[node][0] + state->u[4 * fastest],
+                    mesh->position[node][1] + state->u[4 * fastest + 1],
+                    mesh->position[node][2] + state->u[4 * fastest + 2], highest,
+                    domain->motion.speed);
+}
+
+lar_status lar_trip_report(const lar_domain *domain, const lar_state *state, const lar_trip *trip,
+                           lar_error *error) {
+    if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
+    if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, state, trip, error);
+    return report_speed(domain, state, trip, error);
+}
