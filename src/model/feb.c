@@ -76,6 +76,16 @@ static lar_status damp_static(lar_feb *feb, const xmlNode *control) {
                           feb->model->damping);
 }
 
+/* Of the solver's settings one is physics: the explicit solver can damp by a factor per step. */
+static lar_status notice_solver_damping(lar_feb *feb, const xmlNode *control) {
+    const xmlNode *solver = control ? lar_feb_child(control, "solver") : NULL;
+    const xmlNode *damping = solver ? lar_feb_child(solver, "dyn_damping") : NULL;
+    double factor = 1.0;
+    lar_status status = damping ? lar_feb_doubles(feb, damping, &factor, 1) : LAR_OK;
+    if (status || factor == 1.0) return status;
+    return lar_feb_notice(feb, damping, "<dyn_damping> %g was left out", factor);
+}
+
 /* ---- sections ----------------------------------------------------------------------------------
  */
 
@@ -215,6 +225,7 @@ static lar_status read_model(lar_feb *feb) {
     if (!control) control = lar_feb_child(feb->root, "Control");
     if (control) status = read_duration(feb, control);
     if (!status) status = damp_static(feb, control);
+    if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);

@@ -67,6 +67,9 @@ lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* A notice for every child of `parent` whose name is not in `known`, which ends with NULL. */
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
+                                 const char *const *known);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 

@@ -86,10 +86,12 @@ static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *ax
 }
 
 static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"dofs", "x_dof", "y_dof", "z_dof", NULL};
     const xmlNode *dofs = lar_feb_child(at, "dofs");
     unsigned axes;
     lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
     lar_node_list nodes = {0};
+    if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &nodes);
     if (!status && (axes == 0 || nodes.count == 0)) {
         free(nodes.node);
@@ -106,8 +108,9 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
     return LAR_OK;
 }
 
-/* `value_name`: "value" in version 4, "scale" in version 3. */
+/* Its size stands in <value> in version 4, in <scale> in version 3. */
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"dof", "value", "scale", "relative", "shell_bottom", NULL};
     const xmlNode *dof, *value = lar_feb_child(at, "value");
     int axis = 0, curve = 0;
     double by = 0.0;
@@ -119,6 +122,8 @@ static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &by, 1);
     if (!status) status = refuse_flag(feb, at, "relative");
+    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &nodes);
     lar_move *move = status || nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
     if (move) {
@@ -182,6 +187,7 @@ static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *
 }
 
 static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"value", "dof", "scale", "relative", "shell_bottom", NULL};
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
     if (status) return status;
@@ -191,6 +197,7 @@ static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
     status = read_nodal_force(feb, at, type, entry.force, &entry.curve);
     if (!status) status = refuse_flag(feb, at, "relative");
     if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &entry.nodes);
     lar_nodal_load *load = status ? NULL : LAR_MODEL_APPEND(feb->model, load);
     if (!status && !load) status = lar_feb_no_memory(feb, "the loads");
@@ -276,6 +283,8 @@ static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *nam
 }
 
 static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"pressure", "linear", "symmetric_stiffness", "shell_bottom",
+                                        NULL};
     const char *type, *surface;
     const xmlNode *value;
     int curve = 0;
@@ -288,6 +297,7 @@ static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &pressure, 1);
     if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = lar_feb_flag(feb, at, "linear", false, &linear);
     if (!status && linear)
         status = lar_feb_notice(feb, lar_feb_child(at, "linear"),
@@ -339,6 +349,7 @@ static lar_status read_body_values(lar_feb *feb, const xmlNode *at) {
 }
 
 static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"x", "y", "z", "force", NULL};
     const char *type, *part = lar_feb_attribute(feb, at, "elem_set");
     bool whole = true;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
@@ -346,7 +357,8 @@ static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
     if (strcmp(type, "const") != 0 && strcmp(type, "gravity") != 0 &&
         strcmp(type, "body force") != 0)
         return refuse_type(feb, at, "const, gravity and body force");
-    if (part && *part) status = lar_feb_is_whole_mesh(feb, at, part, &whole);
+    status = lar_feb_notice_others(feb, at, known);
+    if (!status && part && *part) status = lar_feb_is_whole_mesh(feb, at, part, &whole);
     if (!status && !whole)
         status = lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
                               "the body load acts on '%.100s' only; Lariat's gravity acts on the "
@@ -377,6 +389,7 @@ lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
  */
 
 static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
+    static const char *const known[] = {"value", NULL};
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, ic, "type", &type);
     if (status) return status;
@@ -391,6 +404,7 @@ static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
                               "an initial velocity with a curve or a map is not read; give it "
                               "three numbers");
     if (!status) status = lar_feb_doubles(feb, value, entry.velocity, 3);
+    if (!status) status = lar_feb_notice_others(feb, ic, known);
     if (!status) status = read_node_set(feb, ic, &entry.nodes);
     lar_initial_velocity *initial = status ? NULL : LAR_MODEL_APPEND(feb->model, initial);
     if (!status && !initial) status = lar_feb_no_memory(feb, "the initial velocities");

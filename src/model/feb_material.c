@@ -105,19 +105,6 @@ static lar_status read_parameter(lar_feb *feb, const xmlNode *material, const ch
     return lar_feb_doubles(feb, child, value, 1);
 }
 
-/* Names the parameters that were not read. `known` ends with NULL. */
-static lar_status notice_unknown(lar_feb *feb, const xmlNode *material, const char *const *known) {
-    lar_status status = LAR_OK;
-    for (xmlNode *child = lar_feb_first(material); child && !status; child = lar_feb_next(child)) {
-        const char *const *name = known;
-        while (*name && !lar_feb_is(child, *name)) name++;
-        if (!*name)
-            status = lar_feb_notice(feb, child, "the material parameter <%s> was left out",
-                                    (const char *)child->name);
-    }
-    return status;
-}
-
 static lar_status read_density(lar_feb *feb, const xmlNode *node, lar_material *material) {
     material->density = 1.0; /* FEBio's default */
     if (lar_feb_child(node, "density"))
@@ -138,7 +125,7 @@ static lar_status read_neo_hookean(lar_feb *feb, const xmlNode *node, lar_materi
     material->law = LAR_LAW_coupled_neo_hookean;
     material->parameter[0] = young / (2.0 * (1.0 + poisson));
     material->parameter[1] = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-    return notice_unknown(feb, node, known);
+    return lar_feb_notice_others(feb, node, known);
 }
 
 static lar_status read_mooney_rivlin(lar_feb *feb, const xmlNode *node, lar_material *material) {
@@ -156,7 +143,7 @@ static lar_status read_mooney_rivlin(lar_feb *feb, const xmlNode *node, lar_mate
     lar_status status = read_parameter(feb, node, "c1", true, &material->parameter[0]);
     if (!status) status = read_parameter(feb, node, "c2", false, &material->parameter[1]);
     if (!status) status = read_parameter(feb, node, "k", true, &material->parameter[2]);
-    return status ? status : notice_unknown(feb, node, known);
+    return status ? status : lar_feb_notice_others(feb, node, known);
 }
 
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {

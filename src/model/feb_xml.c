@@ -51,7 +51,7 @@ static lar_status check_version(lar_feb *feb) {
                             "the file begins with <%s> where a FEBio deck has <febio_spec>; is it "
                             "a FEBio input file?",
                             (const char *)feb->root->name);
-    const char *version;
+    const char *version = "";
     lar_status status = lar_feb_need_attribute(feb, feb->root, "version", &version);
     if (status) return status;
     if (strcmp(version, "3.0") == 0 || strcmp(version, "4.0") == 0) return LAR_OK;
@@ -146,6 +146,19 @@ bool lar_feb_is(const xmlNode *element, const char *name) {
     return strcmp((const char *)element->name, name) == 0;
 }
 
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
+                                 const char *const *known) {
+    lar_status status = LAR_OK;
+    for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
+        const char *const *name = known;
+        while (*name && !lar_feb_is(child, *name)) name++;
+        if (!*name)
+            status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out",
+                                    (const char *)child->name, (const char *)parent->name);
+    }
+    return status;
+}
+
 /* Hands a string of libxml2 over to feb->strings. "" when memory is refused. */
 static const char *keep(lar_feb *feb, xmlChar *text) {
     const xmlChar *kept = text ? xmlDictLookup(feb->strings, text, -1) : NULL;
@@ -176,7 +189,7 @@ lar_status lar_feb_need_attribute(lar_feb *feb, const xmlNode *element, const ch
 
 lar_status lar_feb_id_attribute(lar_feb *feb, const xmlNode *element, const char *name,
                                 int64_t *value) {
-    const char *text;
+    const char *text = "";
     lar_status status = lar_feb_need_attribute(feb, element, name, &text);
     if (status) return status;
     lar_span span = lar_span_trim((lar_span){text, strlen(text)});

@@ -462,6 +462,14 @@ static void test_sections(void **state) {
     assert_int_equal(notices_with(model, "deck.feb:21: <MeshData>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:22: the section <Wishes>"), 1);
     lar_model_destroy(model);
+    model = read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
+                            "<step_size>1</step_size><solver><dyn_damping>0.9</dyn_damping>"
+                            "</solver></Control>" MATERIAL MESH4 DOMAINS
+                            "<Boundary><bc type=\"fix\" node_set=\"tip\"><dofs>x</dofs><warp/>"
+                            "</bc></Boundary>" TAIL);
+    assert_int_equal(notices_with(model, "<dyn_damping> 0.9"), 1);
+    assert_int_equal(notices_with(model, "<warp> in <bc>"), 1);
+    lar_model_destroy(model);
     expect_failure(BASE4 "<Contact>\n<contact type=\"sliding\"/></Contact>" TAIL,
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' asks for contact");
     expect_failure(BASE4 "<Rigid>\n<rigid_bc/></Rigid>" TAIL, LAR_ERROR_UNSUPPORTED, LINE + 1,
