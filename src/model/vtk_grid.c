@@ -68,7 +68,7 @@ static int cell_dimension(int64_t type, const char **name) {
             *name = cell_kinds[i].name;
             return cell_kinds[i].dimension;
         }
-    *name = "unknown";
+    *name = "cell of an unknown kind";
     return 3;
 }
 
