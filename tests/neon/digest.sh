@@ -1,0 +1,57 @@
+#!/bin/sh
+# The same bits from every instruction set, NEON among them: digest.c runs here and, compiled for
+# ARM, under qemu.
+#
+#   digest.sh SOURCE NATIVE-PROGRAM SCRATCH
+set -eu
+source=$1 native=$2 scratch=$3
+mkdir -p "$scratch"
+
+"$native" >"$scratch/native.txt"
+
+cross=aarch64-linux-gnu-gcc
+emulator=qemu-aarch64
+for tool in $cross $emulator; do
+    command -v $tool >/dev/null 2>&1 || {
+        echo "skipped: $tool is missing (apt-get install gcc-aarch64-linux-gnu qemu-user libc6-dev-arm64-cross)"
+        exit 77
+    }
+done
+
+# The flags of lariat_flags. Functions that nobody calls are dropped, and with them whatever other
+# library they would need.
+flags="-std=gnu17 -O2 -ffp-contract=off -fno-math-errno -ffunction-sections -D_GNU_SOURCE
+    -I$source/include -I$source/src"
+objects=""
+compile() {
+    object=$scratch/$1.o
+    shift
+    # shellcheck disable=SC2086
+    $cross $flags -c -o "$object" "$@"
+    objects="$objects $object"
+}
+compile digest "$source/tests/neon/digest.c"
+compile kernel_c -DLAR_SIMD=1 "$source/src/mechanics/hex8_kernel.c"
+compile kernel_neon -DLAR_SIMD=2 "$source/src/mechanics/hex8_kernel.c"
+for file in "$source"/src/base/*.c "$source"/src/mechanics/*.c "$source"/src/model/material.c \
+    "$source"/src/model/mesh*.c; do
+    case $file in
+    */hex8_kernel.c) ;;
+    */kernels.c) compile kernels -DLAR_HAVE_C -DLAR_HAVE_NEON "$file" ;;
+    *) compile "$(basename "$(dirname "$file")")_$(basename "$file" .c)" "$file" ;;
+    esac
+done
+# shellcheck disable=SC2086
+$cross -static -Wl,--gc-sections -o "$scratch/digest" $objects -lm
+$emulator "$scratch/digest" >"$scratch/arm.txt"
+
+cat "$scratch/native.txt" "$scratch/arm.txt"
+grep -q '^neon ' "$scratch/arm.txt" || {
+    echo "digest: the ARM program has no NEON kernels" >&2
+    exit 1
+}
+# Per law, one digest only.
+cat "$scratch/native.txt" "$scratch/arm.txt" | awk '
+    { if ($2 in digest && digest[$2] != $3) { print "digest: " $1 " differs for " $2; bad = 1 }
+      digest[$2] = $3 }
+    END { exit bad }'
