@@ -1,0 +1,430 @@
+/* Scenes that are wrong: the place and the words of every message, and files that mean harm. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "brick.h"
+#include "model/scene.h"
+
+#define BASE                                                                                       \
+    "lariat: 1\nmesh: brick.vtu\n"                                                                 \
+    "materials: [{cells: all, law: neo-hookean, density: 1050, shear_modulus: 4.0e3, "             \
+    "bulk_modulus: 4.0e5}]\n"
+
+typedef struct wrong_scene {
+    const char *text;
+    const char *place; /* "LINE:COLUMN" */
+    const char *words; /* part of the message */
+} wrong_scene;
+
+static lar_status parse(const char *text, size_t size, lar_error *error) {
+    lar_bytes bytes = {(unsigned char *)lar_strndup(text, size), size};
+    lar_model *model = NULL;
+    lar_status status = lar_scene_parse_with("s.yaml", &bytes, brick_read, &model, error);
+    assert_true((status == LAR_OK) == (model != NULL));
+    lar_model_destroy(model);
+    lar_bytes_free(&bytes);
+    return status;
+}
+
+static void refuses(const wrong_scene *wrong, size_t count, const char *before) {
+    for (size_t i = 0; i < count; i++) {
+        char text[1500], start[40];
+        lar_error error = {0};
+        snprintf(text, sizeof text, "%s%s", before, wrong[i].text);
+        snprintf(start, sizeof start, "s.yaml:%s: ", wrong[i].place);
+        lar_status status = parse(text, strlen(text), &error);
+        if (status == LAR_OK) fail_msg("accepted: %s", wrong[i].text);
+        assert_int_equal(status, error.status);
+        if (strncmp(error.message, start, strlen(start)) != 0 ||
+            !strstr(error.message, wrong[i].words))
+            fail_msg("%s\ngives \"%s\"\nwanted \"%s...%s\"", wrong[i].text, error.message, start,
+                     wrong[i].words);
+    }
+}
+#define REFUSES(table, before) refuses(table, sizeof table / sizeof table[0], before)
+
+static void test_root(void **state) {
+    (void)state;
+    static const wrong_scene whole[] = {
+        {"", "1:1", "there is nothing in this file"},
+        {"# nothing\n", "1:1", "there is nothing in this file"},
+        {"- lariat\n", "1:1", "this is no scene"},
+        {"hello\n", "1:1", "this is no scene"},
+        {"mesh: a.vtu\n", "1:1", "needs the key \"lariat\"; add it, for example lariat: 1"},
+        {"lariat: 2\n", "1:9", "expected 1, the version of the scene format"},
+        {"lariat: '1'\n", "1:9", "found \"1\""},
+        {"lariat: 1\ntitle: x\n", "1:1", "needs the key \"mesh\""},
+        {"lariat: 1\nmesh: brick.vtu\n", "1:1", "needs the key \"materials\""},
+        {"lariat: 1\nlariat: 1\n", "2:1", "the key \"lariat\" stands here twice, first in line 1"},
+        {"lariat: 1\nmesh: bad.vtu\nmaterials: []\n", "2:7", "bad.vtu: cannot be opened"},
+        {"lariat: 1\nmesh: []\nmaterials: []\n", "2:7", "name at least one file"},
+        {"lariat: 1\nmesh:\nmaterials: []\n", "2:6", "mesh: expected the name of a mesh file"},
+        {"lariat: 1\nmesh: {file: brick.vtu, tag: low}\nmaterials: []\n", "2:30",
+         "tag: expected an integer"},
+        {"lariat: 1\nmesh: {file: brick.vtu, tag: 3000000000}\nmaterials: []\n", "2:30",
+         "too large"},
+        {"lariat: 1\nmesh: {tag: 1}\nmaterials: []\n", "2:7", "needs the key \"file\""},
+        {"lariat: 1\nmesh: [brick.vtu, {fil: two.vtu}]\nmaterials: []\n", "2:20",
+         "did you mean file?"},
+    };
+    static const wrong_scene extra[] = {
+        {"gravty: [0, 0, 1]\n", "4:1",
+         "the key \"gravty\" is unknown; did you mean gravity? a scene may have the keys: lariat, "
+         "title, mesh, scale, gravity, time_step, damping, materials, sets, fix, move, load, "
+         "initial, output, duration"},
+        {"colour: red\n", "4:1",
+         "the key \"colour\" is unknown; a scene may have the keys: lariat"},
+        {"contact: [{self: true}]\n", "4:1", "contact and tools are not computed yet; remove"},
+        {"tools: []\n", "4:1", "not computed yet; remove the key \"tools\""},
+        {"scale: 0\n", "4:8", "scale is 0; it must be more than zero"},
+        {"scale: mm\n", "4:8", "scale: expected a number, metres per unit"},
+        {"gravity: -9.81\n", "4:10", "gravity: expected three numbers in m/s^2"},
+        {"gravity: [0, -9.81]\n", "4:10", "found a list"},
+        {"gravity: [0, 0, down]\n", "4:17", "found \"down\""},
+        {"gravity: [0, 0, .inf]\n", "4:17", "\".inf\" is not a finite number"},
+        {"gravity: [0, nan, 0]\n", "4:14", "\"nan\" is not a finite number"},
+        {"gravity: [0, 1e999, 0]\n", "4:14", "\"1e999\" is not a finite number"},
+        {"time_step: fast\n", "4:12", "time_step: expected auto, or a number in seconds"},
+        {"time_step: -1.0e-4\n", "4:12", "more than zero"},
+        {"damping: -2\n", "4:10", "damping is -2; it must not be negative"},
+        {"damping: {}\n", "4:10", "found a mapping"},
+        {"duration: 0\n", "4:11", "more than zero"},
+        {"duration: 2 s\n", "4:11",
+         "duration: expected a number in seconds (SI units), for example 0.2, but found \"2 s\""},
+        {"title: []\n", "4:8", "title: expected a text, but found a list"},
+    };
+    REFUSES(whole, "");
+    REFUSES(extra, BASE);
+}
+
+static void test_yaml(void **state) {
+    (void)state;
+    static const wrong_scene extra[] = {
+        {"title: &a x\n", "4:8", "anchors (&name) are not read"},
+        {"title: *a\n", "4:8", "aliases (*name) are not read"},
+        {"title: !!str x\n", "4:8", "tags (!name) are not read"},
+        {"fix: !list []\n", "4:6", "tags (!name) are not read"},
+        {"output: &o {every: 1}\n", "4:9", "anchors"},
+        {"---\nlariat: 1\n", "4:1", "a second document begins here"},
+        {"[1]: 2\n", "4:1", "a key must be a word"},
+        {"{a: 1}: 2\n", "4:1", "a key must be a word"},
+        {"fix: [\n", "5:1", "this is not YAML"},
+        {"title: \"x\n", "5:1", "this is not YAML"},
+        {"\tfix: []\n", "4:1", "this is not YAML"},
+        {"title: \"a\\0b\"\n", "4:8", "zero character"},
+        {"output: {every: 1, every: 2}\n", "4:20", "the key \"every\" stands here twice"},
+        {"title: \xff\xfe\n", "4:8", "this is not YAML"},
+    };
+    REFUSES(extra, BASE);
+}
+
+static void test_materials(void **state) {
+    (void)state;
+#define M "lariat: 1\nmesh: brick.vtu\nmaterials:\n"
+    static const wrong_scene table[] = {
+        {"  - {law: neo-hookean}\n", "4:5", "a material needs the key \"cells\""},
+        {"  - {cells: all, density: 1}\n", "4:5", "needs the key \"law\""},
+        {"  - {cells: all, law: neo-hookean}\n", "4:5", "for example density: 1050"},
+        {"  - {cells: all, law: neo-hokean, density: 1}\n", "4:23",
+         "the law \"neo-hokean\" is unknown; did you mean neo-hookean? the laws are: neo-hookean, "
+         "coupled-neo-hookean, mooney-rivlin"},
+        {"  - {cells: all, law: ogden, density: 1}\n", "4:23", "the laws are: neo-hookean"},
+        {"  - {cells: all, law: neo-hookean, density: -1}\n", "4:45",
+         "density is -1; it must be more than zero"},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: \"4 kPa\", "
+         "bulk_modulus: 1}\n",
+         "4:63",
+         "shear_modulus: expected a number in pascal (SI units), for example 4.0e3, but found \"4 "
+         "kPa\""},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: 4 kPa, bulk_modulus: 1}\n",
+         "4:63", "expected a number in pascal (SI units), for example 4.0e3"},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: '4e3', bulk_modulus: 1}\n",
+         "4:63", "expected a number in pascal"},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: -4, bulk_modulus: 1}\n",
+         "4:63", "shear_modulus is -4"},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: 0}\n",
+         "4:80", "bulk_modulus is 0"},
+        {"  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 4, poisson_ratio: 0.5}\n",
+         "4:82", "poisson_ratio is 0.5; it must lie between -1 and 0.5"},
+        {"  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 4, poisson_ratio: -1}\n",
+         "4:82", "poisson_ratio is -1"},
+        {"  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 4}\n", "4:5",
+         "either shear_modulus and bulk_modulus, or youngs_modulus and poisson_ratio"},
+        {"  - {cells: all, law: neo-hookean, density: 1, mu: 4, lambda: 3}\n", "4:5",
+         "the law neo-hookean needs"},
+        {"  - {cells: all, law: mooney-rivlin, density: 1, c1: 4, c2: 3}\n", "4:5",
+         "or c1, c2 and bulk_modulus"},
+        {"  - {cells: all, law: coupled-neo-hookean, density: 1, mu: 4}\n", "4:5",
+         "or mu and lambda"},
+        {"  - {cells: all, law: coupled-neo-hookean, density: 1, mu: 4, lambda: -9}\n", "4:5",
+         "the bulk modulus is"},
+        {"  - {cells: all, law: mooney-rivlin, density: 1, c1: 4, c2: -9, bulk_modulus: 1}\n",
+         "4:5", "the shear modulus is"},
+        {"  - {cells: all, shearmodulus: 1}\n", "4:18", "did you mean shear_modulus?"},
+        {"  - all\n", "4:5", "expected a material as a mapping"},
+        {"  all\n", "4:3", "materials: expected a list of materials"},
+        {"  - {cells: 3, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: 1}\n",
+         "4:13", "no element has the tag 3; the tags in the mesh are 1, 2"},
+        {"  - {cells: uper, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: 1}\n",
+         "4:13",
+         "the set \"uper\" is unknown; did you mean upper? the sets are: bottom, lid, upper"},
+        {"  - {cells: upper, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: 1}\n",
+         "4:3", "element 101 (tag 1) has no material"},
+        {"  []\n", "4:3", "element 101 (tag 1) has no material"},
+    };
+    REFUSES(table, M);
+}
+
+static void test_sets(void **state) {
+    (void)state;
+    static const wrong_scene table[] = {
+        {"sets: {name: a}\n", "4:7", "sets: expected a list of sets"},
+        {"sets: [{nodes: all}]\n", "4:8", "a set needs the key \"name\""},
+        {"sets: [{name: a}]\n", "4:8", "\"nodes\", \"elements\" or \"faces\""},
+        {"sets: [{name: a, nodes: all, faces: all}]\n", "4:30", "one of the three"},
+        {"sets: [{name: all, nodes: all}]\n", "4:15", "choose another name"},
+        {"sets: [{name: bottom, nodes: all}]\n", "4:15", "already a node set named \"bottom\""},
+        {"sets: [{name: a, nodes: {boks: 1}}]\n", "4:26", "did you mean box?"},
+        {"sets: [{name: a, nodes: {}}]\n", "4:25", "a selector has one key and this one has 0"},
+        {"sets: [{name: a, nodes: {tag: 1, list: [1]}}]\n", "4:25", "this one has 2"},
+        {"sets: [{name: a, nodes: {box: [1, 2]}}]\n", "4:32", "three numbers in metres"},
+        {"sets: [{name: a, nodes: {box: [[0, 0, 0]]}}]\n", "4:31", "two opposite corners"},
+        {"sets: [{name: a, nodes: {box: [[0, 0, 0], [1, -1, 1]]}}]\n", "4:31", "along y"},
+        {"sets: [{name: a, nodes: {box: [[1, 1, 1], [2, 2, 2]]}}]\n", "4:25",
+         "this selects no node at all"},
+        {"sets: [{name: a, faces: {nearest: 3}}]\n", "4:35", "three numbers in metres"},
+        {"sets: [{name: a, faces: {list: [1]}}]\n", "4:32", "faces have no numbers"},
+        {"sets: [{name: a, faces: {sphere: {center: [0, 0, 0], radius: 0.001}}}]\n", "4:25",
+         "this selects no boundary face"},
+        {"sets: [{name: a, faces: 3}]\n", "4:25", "a number alone says too little"},
+        {"sets: [{name: a, elements: 3}]\n", "4:28", "a number alone says too little"},
+        {"sets: [{name: a, nodes: {sphere: {radius: 1}}}]\n", "4:34", "needs the key \"center\""},
+        {"sets: [{name: a, nodes: {sphere: {center: [0, 0, 0], radius: -1}}}]\n", "4:62",
+         "more than zero"},
+        {"sets: [{name: a, nodes: {plane: {point: [0, 0, 0], normal: [0, 0, 0]}}}]\n", "4:60",
+         "no direction"},
+        {"sets: [{name: a, nodes: {plane: {point: [0, 0, 0]}}}]\n", "4:33",
+         "needs the key \"normal\""},
+        {"sets: [{name: a, nodes: {plane: {point: [0, 0, 0], normal: [0, 0, 1], tolerance: "
+         "-1}}}]\n",
+         "4:82", "not be negative"},
+        {"sets: [{name: a, nodes: {list: [1, 99]}}]\n", "4:36",
+         "there is no node 99 in the mesh; its 27 nodes have numbers from 1 to 27"},
+        {"sets: [{name: a, elements: {list: [1]}}]\n", "4:36",
+         "there is no element 1 in the mesh; its 8 elements have numbers from 101 to 108"},
+        {"sets: [{name: a, nodes: {list: [x]}}]\n", "4:33", "the number of a node or element"},
+        {"sets: [{name: a, nodes: {tag: 5}}]\n", "4:31", "no element has the tag 5"},
+        {"sets: [{name: a, nodes: {surface: false}}]\n", "4:35", "expected true"},
+        {"sets: [{name: a, nodes: {all: []}}]\n", "4:31", "the list is empty"},
+        {"sets: [{name: a, nodes: {any: bottom}}]\n", "4:31", "a list of selectors"},
+        {"sets: [{name: a, nodes: {not: all}}]\n", "4:25", "this selects no node"},
+        {"sets: [{name: a, nodes: {set: b}}, {name: b, nodes: all}]\n", "4:31",
+         "the set \"b\" is defined only in line 4; move it up"},
+        {"sets: [{name: a, nodes: {not: {set: nowhere}}}]\n", "4:37", "the set \"nowhere\" is"},
+        {"sets: [{name: a, nodes: [[1]]}]\n", "4:26", "found a list"},
+        {"sets: [{name: a, nodes: []}]\n", "4:25", "this selects no node"},
+    };
+    REFUSES(table, BASE);
+}
+
+static void test_supports(void **state) {
+    (void)state;
+    static const wrong_scene table[] = {
+        {"fix: {nodes: bottom, axes: x}\n", "4:6", "fix: expected a list of supports"},
+        {"fix: [{axes: x}]\n", "4:7", "a fix entry needs the key \"nodes\""},
+        {"fix: [{nodes: bottom}]\n", "4:7", "for example axes: xyz"},
+        {"fix: [{nodes: bottom, axes: xw}]\n", "4:29", "some of the letters x, y, z"},
+        {"fix: [{nodes: bottom, axes: xx}]\n", "4:29", "each once"},
+        {"fix: [{nodes: bottom, axes: [x]}]\n", "4:29", "found a list"},
+        {"fix: [{nodes: bottom, axis: x}]\n", "4:23", "did you mean axes?"},
+        {"fix: [{nodes: botom, axes: x}]\n", "4:15", "did you mean bottom?"},
+        {"fix: [{nodes: 0, axes: x}]\n", "4:15", "there is no node 0"},
+        {"fix: [{nodes: \"1\", axes: x}]\n", "4:15", "the set \"1\" is unknown"},
+        {"move: [{nodes: lid, axes: x, by: 0.1}]\n", "4:8",
+         "a sudden displacement is not physical"},
+        {"move: [{nodes: lid, axes: x, by: 0.1, over: 0}]\n", "4:45",
+         "a sudden displacement is not physical"},
+        {"move: [{nodes: lid, axes: x, by: 0.1, over: -1}]\n", "4:45", "not be negative"},
+        {"move: [{nodes: lid, axes: x, over: 1}]\n", "4:8", "needs the key \"by\""},
+        {"move: [{nodes: lid, axes: x, by: 1 mm, over: 1}]\n", "4:34",
+         "by: expected a number in metres (SI units)"},
+        {"move: [{nodes: lid, axes: x, by: 1, over: 1, curve: {points: [[0, 0]]}}]\n", "4:46",
+         "over and curve say the same thing"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[0, 1]]}}]\n", "4:44",
+         "must be 0 at time 0"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[0, 0], [1, 1]], shape: step}}]\n",
+         "4:44", "cannot have the shape step"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[0, 0], [1, 1], [1, 2]]}}]\n",
+         "4:44", "two values at one time"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: []}}]\n", "4:53", "list is empty"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {shape: linear}}]\n", "4:44",
+         "needs the key \"points\""},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[0, 0, 0]]}}]\n", "4:54",
+         "points: expected two numbers"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[1, 0], [0, 1]]}}]\n", "4:62",
+         "time 0 comes after time 1"},
+        {"move: [{nodes: lid, axes: x, by: 1, curve: {points: [[0, 0]], shape: cubic}}]\n", "4:70",
+         "the shapes are: linear, step, smooth"},
+        {"fix: [{nodes: bottom, axes: xyz}]\nmove:\n  - {nodes: 9, axes: yx, by: 1, over: 1}\n",
+         "6:5", "node 9 is moved along x here (line 6) and already fixed in line 4"},
+        {"move:\n  - {nodes: 9, axes: x, by: 1, over: 1}\n  - {nodes: 8, axes: x, by: 1, over: 1}\n"
+         "  - {nodes: bottom, axes: zx, by: 1, over: 1}\n",
+         "7:5", "node 8 is moved along x here (line 7) and already moved in line 6"},
+    };
+    REFUSES(table, BASE);
+}
+
+static void test_loads_and_output(void **state) {
+    (void)state;
+    static const wrong_scene table[] = {
+        {"load: 5\n", "4:7", "load: expected a list of loads"},
+        {"load: [{force: [0, 0, 1]}]\n", "4:8", "either nodes, with a force, or faces"},
+        {"load: [{nodes: 1, faces: lid}]\n", "4:19", "either nodes, with a force, or faces"},
+        {"load: [{nodes: 1}]\n", "4:8", "either force, the total"},
+        {"load: [{nodes: 1, force: [0, 0, 1], force_per_node: [0, 0, 1]}]\n", "4:37",
+         "either force, the total"},
+        {"load: [{nodes: 1, pressure: 5}]\n", "4:19", "the key \"pressure\" is unknown"},
+        {"load: [{nodes: 1, force: 5}]\n", "4:26", "force: expected three numbers in newton"},
+        {"load: [{faces: lid, force: [0, 0, 1]}]\n", "4:21", "the key \"force\" is unknown"},
+        {"load: [{faces: lid}]\n", "4:8", "needs the key \"pressure\""},
+        {"load: [{faces: lid, pressure: 5 Pa}]\n", "4:31", "a number in pascal"},
+        {"load: [{faces: ild, pressure: 5}]\n", "4:16", "did you mean lid?"},
+        {"load: [{nodes: 1, force: [0, 0, 1], over: -1}]\n", "4:43", "not be negative"},
+        {"initial: [{nodes: 1}]\n", "4:11", "needs the key \"velocity\""},
+        {"initial: [{nodes: 1, velocity: 3}]\n", "4:32", "three numbers in m/s"},
+        {"output: []\n", "4:9", "expected output as a mapping"},
+        {"output: {evry: 1}\n", "4:10", "did you mean every?"},
+        {"output: {every: -1}\n", "4:17", "not be negative"},
+        {"output: {fields: stress}\n", "4:18", "a list of fields"},
+        {"output: {fields: [vonmises]}\n", "4:19",
+         "did you mean von_mises? the fields are: displacement, velocity, von_mises, pressure, "
+         "energy"},
+        {"output: {probes: [{name: x}]}\n", "4:19", "\"node\", \"nodes\" or \"set\""},
+        {"output: {probes: [{node: 1, set: bottom}]}\n", "4:29", "make two probes"},
+        {"output: {probes: [{node: bottom}]}\n", "4:26", "the number of a node"},
+        {"output: {probes: [{node: 99}]}\n", "4:26", "there is no node 99"},
+        {"output: {probes: [{set: bottom, sum: force}]}\n", "4:38", "expected reaction"},
+        {"output: {probes: [{node: 1}, {node: 1}]}\n", "4:30", "two probes would be called"},
+    };
+    REFUSES(table, BASE);
+}
+
+/* ---- files that mean harm ----------------------------------------------------------------- */
+
+static void hostile(const char *text, size_t size, const char *words) {
+    lar_error error = {0};
+    assert_int_not_equal(parse(text, size, &error), LAR_OK);
+    assert_int_equal(strncmp(error.message, "s.yaml:", 7), 0);
+    if (!strstr(error.message, words)) fail_msg("\"%s\" lacks \"%s\"", error.message, words);
+}
+
+static void test_bounds(void **state) {
+    (void)state;
+    enum { SIZE = 1 << 20 };
+    char *text = malloc(SIZE + 64);
+    assert_non_null(text);
+    memset(text, '[', SIZE);
+    hostile(text, SIZE, "s.yaml:1:33: lists and mappings stand more than 32 deep");
+    for (int i = 0; i < SIZE; i++) text[i] = i % 2 ? ' ' : '-';
+    hostile(text, SIZE, "more than 32 deep");
+    memset(text, '{', SIZE);
+    hostile(text, SIZE, "s.yaml:1:");
+    size_t used = (size_t)sprintf(text, "fix: [");
+    for (; used < SIZE; used++) text[used] = used % 2 ? ',' : '1';
+    hostile(text, SIZE, "not YAML");
+    used = 0;
+    for (int i = 0; used + 16 < SIZE; i++) used += (size_t)sprintf(text + used, "k%d: 1\n", i);
+    hostile(text, used, "s.yaml:101:1: this mapping has more than 100 keys");
+    free(text);
+    const size_t entries = 1000001;
+    char *many = malloc(2 * entries + 64);
+    assert_non_null(many);
+    used = (size_t)sprintf(many, "fix:\n [");
+    for (size_t i = 0; i < entries; i++) many[used++] = '1', many[used++] = ',';
+    many[used++] = ']';
+    hostile(many, used, "more than 1000000 values");
+    free(many);
+}
+
+static void test_alias_bomb(void **state) {
+    (void)state;
+    const char *bomb = "a: &a [x,x,x,x,x,x,x,x,x]\nb: &b [*a,*a,*a,*a,*a,*a,*a,*a]\n"
+                       "c: &c [*b,*b,*b,*b,*b,*b,*b,*b]\nd: [*c,*c,*c,*c,*c,*c,*c,*c]\n";
+    hostile(bomb, strlen(bomb), "s.yaml:1:4: anchors");
+}
+
+static void test_garbage(void **state) {
+    (void)state;
+    enum { SIZE = 1 << 20 };
+    char *text = malloc(SIZE);
+    assert_non_null(text);
+    uint64_t random = 12345;
+    for (int kind = 0; kind < 3; kind++) {
+        for (int i = 0; i < SIZE; i++) {
+            random = random * 6364136223846793005ULL + 1442695040888963407ULL;
+            unsigned byte = (unsigned)(random >> 56);
+            text[i] = kind == 0   ? (char)byte
+                      : kind == 1 ? (char)(' ' + byte % 95)
+                                  : "ab: -[]{},\n #'\"&*!|>?%@"[byte % 23];
+        }
+        hostile(text, SIZE, "s.yaml:");
+    }
+    free(text);
+}
+
+/* Every beginning of a good scene is refused or read, and nothing else happens. */
+static void test_prefixes(void **state) {
+    (void)state;
+    const char *good =
+        BASE "title: \"\xc3\xa4\"\nscale: 1\nsets:\n"
+             "  - {name: a, nodes: {all: [{box: [[0, 0, 0], [1, 1, 0.01]]}, {not: {tag: 2}}]}}\n"
+             "  - {name: b, faces: {any: [lid, {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}]}}\n"
+             "fix: [{nodes: a, axes: xyz}]\n"
+             "move: [{nodes: {nearest: [0, 0, 1]}, axes: x, by: 0.1, over: 0.1}]\n"
+             "load:\n- {nodes: lid, force: [0, 0, 1], over: 1}\n"
+             "- faces: b\n  pressure: 5\n  curve:\n    points: [[0, 0], [1, 2]]\n    shape: step\n"
+             "initial: [{nodes: all, velocity: [0, 0, 1]}]\n"
+             "output:\n  every: 0.1\n  fields: [energy]\n"
+             "  probes: [{node: 3}, {set: a, sum: reaction, name: r}]\nduration: 1\n";
+    size_t size = strlen(good);
+    lar_error error = {0};
+    if (parse(good, size, &error)) fail_msg("%s", error.message);
+    int accepted = 0;
+    for (size_t length = 0; length < size; length++) {
+        error.message[0] = '\0';
+        if (parse(good, length, &error) == LAR_OK)
+            accepted++;
+        else if (strncmp(error.message, "s.yaml:", 7) != 0)
+            fail_msg("length %zu: \"%s\"", length, error.message);
+    }
+    assert_true(accepted > 0 && accepted < 200);
+}
+
+static void test_error_may_be_missing(void **state) {
+    (void)state;
+    assert_int_equal(parse("lariat: 1\nmesh: bad.vtu\nmaterials: []\n", 38, NULL), LAR_ERROR_IO);
+    assert_int_equal(parse("[", 1, NULL), LAR_ERROR_FORMAT);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_root),
+        cmocka_unit_test(test_yaml),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_loads_and_output),
+        cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_alias_bomb),
+        cmocka_unit_test(test_garbage),
+        cmocka_unit_test(test_prefixes),
+        cmocka_unit_test(test_error_may_be_missing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
