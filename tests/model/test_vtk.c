@@ -164,8 +164,7 @@ static void test_truncation(void **state) {
         style.version5 = bits & 2;
         sample_file file = make_vtk(&style);
         /* Behind POINT_DATA a file may end between two arrays; before it, nowhere. */
-        size_t whole = 0;
-        while (memcmp(file.data + whole, "POINT_DATA", 10) != 0) whole++;
+        size_t whole = position_of(&file, "POINT_DATA");
         for (size_t size = 0; size < file.size; size++) {
             lar_mesh mesh;
             lar_error error;

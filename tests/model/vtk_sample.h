@@ -74,6 +74,15 @@ print(sample_file *file, const char *format, ...) {
     put(file, text, (size_t)length);
 }
 
+/* Where `text` first stands in the file. */
+static inline size_t position_of(const sample_file *file, const char *text) {
+    size_t length = strlen(text);
+    for (size_t i = 0; i + length <= file->size; i++)
+        if (memcmp(file->data + i, text, length) == 0) return i;
+    fail_msg("\"%s\" is not in the file", text);
+    return 0;
+}
+
 /* The low `size` bytes of a word in either order. */
 static inline void put_word(sample_file *file, uint64_t word, size_t size, bool big_endian) {
     for (size_t i = 0; i < size; i++) {
