@@ -183,6 +183,10 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
     for (int32_t i = 0; i < c->constraint_count; i++) {
         const lar_constraint *constraint = &c->constraint[i];
         double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
+        double mass = context->mass[constraint->value / 4];
+        /* The kernel moved this value as if it were free and counted that as damped motion. */
+        double before = constraint->curve < 0 ? 0 : constraint->before;
+        state->damped -= mass * (before + *v) * (before + *v);
         if (constraint->curve < 0) {
             *u = 0;
             *v = 0;
@@ -192,9 +196,9 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
-        double mass = context->mass[constraint->value / 4];
-        double mean = 0.5 * (*v + constraint->before);
-        double acceleration = (*v - constraint->before) / dt;
+        state->damped += mass * (before + *v) * (before + *v);
+        double mean = 0.5 * (*v + before);
+        double acceleration = (*v - before) / dt;
         double reaction =
             mass * (acceleration + model->damping * mean - gravity[constraint->value % 4]) +
             constraint->force;
