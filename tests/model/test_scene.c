@@ -1,5 +1,5 @@
 /* Scenes that are right: every key, every selector, what ends up in the model. The meshes are the
- * bricks of brick.h; only the last test reads a file. */
+ * bricks of brick.h. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -260,6 +260,31 @@ static void test_mesh_stands_beside_the_scene(void **state) {
     lar_bytes_free(&bytes);
 }
 
+/* The examples of docs/formats.md are scenes of the brick. */
+static void test_documented_examples(void **state) {
+    (void)state;
+    lar_bytes docs = {0};
+    lar_error error = {0};
+    if (lar_bytes_read(LAR_TEST_FORMATS, &docs, &error)) fail_msg("%s", error.message);
+    int examples = 0;
+    const char *at = (const char *)docs.data;
+    char *chapter_end = strstr((char *)docs.data, "\n## Gmsh");
+    assert_non_null(chapter_end);
+    *chapter_end = '\0';
+    while ((at = strstr(at, "```yaml\n")) != NULL) {
+        at += strlen("```yaml\n");
+        const char *stop = strstr(at, "```");
+        assert_non_null(stop);
+        char *text = lar_strndup(at, (size_t)(stop - at));
+        lar_model_destroy(scene(text));
+        free(text);
+        at = stop + 3;
+        examples++;
+    }
+    assert_int_equal(examples, 2);
+    lar_bytes_free(&docs);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_node_selectors),
@@ -272,6 +297,7 @@ int main(void) {
         cmocka_unit_test(test_output),
         cmocka_unit_test(test_several_meshes),
         cmocka_unit_test(test_mesh_stands_beside_the_scene),
+        cmocka_unit_test(test_documented_examples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
