@@ -53,10 +53,10 @@ lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line)
 
 static lar_status fail_set_name(inp_reader *reader, int line, lar_span name, bool of_nodes) {
     return lar_fail(reader->error, LAR_ERROR_FORMAT,
-                    "%s:%d: '%.*s' is neither a number nor a %s set defined above; correct the "
+                    "%s:%d: '%.*s' is neither a number nor %s set defined above; correct the "
                     "name or move the set up",
                     reader->path, line, (int)(name.length < 60 ? name.length : 60), name.at,
-                    of_nodes ? "node" : "element");
+                    of_nodes ? "a node" : "an element");
 }
 
 /* first, last, step: those of the range that the file defines. */

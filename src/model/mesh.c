@@ -50,7 +50,7 @@ static int compare_int64(const void *a, const void *b) {
 }
 
 static int32_t sort_unique(int32_t *index, int32_t count) {
-    qsort(index, (size_t)count, sizeof *index, compare_int32);
+    if (count > 0) qsort(index, (size_t)count, sizeof *index, compare_int32);
     int32_t kept = 0;
     for (int32_t i = 0; i < count; i++)
         if (kept == 0 || index[kept - 1] != index[i]) index[kept++] = index[i];

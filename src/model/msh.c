@@ -366,17 +366,16 @@ static const section_row sections[] = {
 };
 
 /* Passes over a section that says nothing about the mesh. */
-static lar_status skip_section(msh_reader *reader, lar_span name) {
+static lar_status skip_section(msh_reader *reader, lar_span name, msh_place where) {
     char end[64];
-    int line = reader->text.line;
     snprintf(end, sizeof end, "$End%.*s", (int)(name.length < 50 ? name.length - 1 : 49),
              name.at + 1);
     lar_span text;
     while (lar_text_line(&reader->text, &text))
         if (lar_span_equal(lar_span_trim(text), end)) return LAR_OK;
     return lar_fail(reader->error, LAR_ERROR_FORMAT,
-                    "%.370s:%d: the section has no %s; the file was cut short, save it again",
-                    reader->path, line, end);
+                    "%s: the section has no %s; the file was cut short, save it again", where.text,
+                    end);
 }
 
 static lar_status read_section(msh_reader *reader) {
@@ -411,7 +410,7 @@ static lar_status read_section(msh_reader *reader) {
         }
         return LAR_OK;
     }
-    return skip_section(reader, word);
+    return skip_section(reader, word, where);
 }
 
 static lar_status read_file(msh_reader *reader) {

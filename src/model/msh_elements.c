@@ -311,7 +311,7 @@ static lar_status read_elements_4(msh_reader *reader) {
     for (int64_t b = 0; b < blocks && !status; b++) {
         int64_t count = 0;
         status = read_block_4(reader, &count);
-        seen += count;
+        if (!status) seen += count;
     }
     if (!status && seen != total)
         return lar_fail(reader->error, LAR_ERROR_FORMAT,
