@@ -57,6 +57,18 @@ static lar_status name_probe(lar_scene *scene, const lar_yaml *entry, const lar_
     return probe->name ? LAR_OK : lar_scene_no_memory(scene, sizeof text);
 }
 
+/* Nodes that nothing holds have no reaction: most likely the wrong set. */
+static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
+                                       const lar_probe *probe) {
+    for (int32_t n = 0; scene->axis_line && n < probe->nodes.count; n++)
+        for (int axis = 0; axis < 3; axis++)
+            if (scene->axis_line[3 * (size_t)probe->nodes.node[n] + (size_t)axis]) return LAR_OK;
+    return lar_model_notice(scene->model, scene->error,
+                            "%s:%d:%d: the probe \"%.60s\" sums reactions, but none of its nodes "
+                            "is fixed or moved: it will be zero",
+                            scene->path, entry->line, entry->column, probe->name);
+}
+
 static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     static const char *const keys[] = {"node", "nodes", "set", "sum", "name", NULL};
     enum { MOST = 1000 };
@@ -91,7 +103,8 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     if (!probe) return lar_scene_no_memory(scene, sizeof *probe);
     probe->what = sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
     status = name_probe(scene, entry, where, probe);
-    return status ? status : lar_scene_select_nodes(scene, where, &probe->nodes);
+    if (!status) status = lar_scene_select_nodes(scene, where, &probe->nodes);
+    return status || !sum ? status : notice_free_reaction(scene, entry, probe);
 }
 
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {

@@ -221,6 +221,12 @@ static void test_output(void **state) {
                          i == 1 ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT);
     }
     assert_int_equal(model->output.probe[0].nodes.node[0], 11);
+    assert_int_equal(model->notice_count, 1);
+    assert_non_null(strstr(model->notice[0], "\"bottom reaction\" sums reactions, but none"));
+    lar_model_destroy(model);
+    model = scene(HEAD MATERIAL "fix: [{nodes: 1, axes: y}]\n"
+                                "output: {probes: [{set: bottom, sum: reaction}]}\n");
+    assert_int_equal(model->notice_count, 0);
     lar_model_destroy(model);
 }
 
