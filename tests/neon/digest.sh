@@ -12,7 +12,7 @@ mkdir -p "$scratch"
 cross=aarch64-linux-gnu-gcc
 emulator=qemu-aarch64
 for tool in $cross $emulator; do
-    command -v $tool >/dev/null 2>&1 || {
+    command -v "$tool" >/dev/null 2>&1 || {
         echo "skipped: $tool is missing (apt-get install gcc-aarch64-linux-gnu qemu-user libc6-dev-arm64-cross)"
         exit 77
     }
@@ -33,13 +33,10 @@ compile() {
 compile digest "$source/tests/neon/digest.c"
 compile kernel_c -DLAR_SIMD=1 "$source/src/mechanics/hex8_kernel.c"
 compile kernel_neon -DLAR_SIMD=2 "$source/src/mechanics/hex8_kernel.c"
-for file in "$source"/src/base/*.c "$source"/src/mechanics/*.c "$source"/src/model/material.c \
-    "$source"/src/model/mesh*.c; do
-    case $file in
-    */hex8_kernel.c) ;;
-    */kernels.c) compile kernels -DLAR_HAVE_C -DLAR_HAVE_NEON "$file" ;;
-    *) compile "$(basename "$(dirname "$file")")_$(basename "$file" .c)" "$file" ;;
-    esac
+compile kernels -DLAR_HAVE_C -DLAR_HAVE_NEON "$source/src/mechanics/kernels.c"
+for file in base/error base/memory mechanics/hex8 mechanics/hexahedron mechanics/law \
+    model/material model/mesh; do
+    compile "$(basename $file)" "$source/src/$file.c"
 done
 # shellcheck disable=SC2086
 $cross -static -Wl,--gc-sections -o "$scratch/digest" $objects -lm
