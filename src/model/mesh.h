@@ -22,7 +22,7 @@
 typedef int32_t lar_gid; /* node or element of the whole model */
 
 /* Named sets that one mesh may have: they are looked up by walking the list. */
-enum { LAR_MESH_SETS_MAX = 10000 };
+enum { LAR_MESH_SETS_MAX = 4096 };
 
 typedef enum lar_set_kind { LAR_SET_NODES, LAR_SET_ELEMENTS, LAR_SET_FACES } lar_set_kind;
 

@@ -51,7 +51,13 @@ struct lar_mesh_builder {
     size_t set_count, set_capacity;
     built_set *set;
     built_set *open;
+    /* Hash table of the sets by name and kind: set number + 1, 0 where free. Readers ask for a set
+     * once per element. */
+    uint16_t *set_slot;
 };
+enum { SET_SLOTS = 4 * LAR_MESH_SETS_MAX };
+_Static_assert((SET_SLOTS & (SET_SLOTS - 1)) == 0 && LAR_MESH_SETS_MAX < UINT16_MAX,
+               "the hash of a set is cut by a mask, its number fits a slot");
 
 /* Where an entry stands: "file" or "file:line". */
 typedef struct place {
@@ -84,6 +90,7 @@ void lar_mesh_builder_destroy(lar_mesh_builder *builder) {
         free(builder->set[s].quad);
     }
     free(builder->set);
+    free(builder->set_slot);
     free(builder->node);
     free(builder->element);
     free(builder->source);
@@ -125,15 +132,27 @@ lar_status lar_mesh_builder_hexahedron(lar_mesh_builder *builder, int64_t id, in
     return LAR_OK;
 }
 
+/* The slot of that set, or the free one where it belongs. */
+static uint16_t *find_slot(lar_mesh_builder *builder, const char *name, lar_set_kind kind) {
+    uint32_t hash = 2166136261u + (uint32_t)kind; /* FNV-1a */
+    for (const char *c = name; *c; c++) hash = (hash ^ (unsigned char)*c) * 16777619u;
+    for (hash ^= hash >> 15;; hash++) {
+        uint16_t *slot = &builder->set_slot[hash & (SET_SLOTS - 1)];
+        if (*slot == 0) return slot;
+        const built_set *set = &builder->set[*slot - 1];
+        if (set->kind == kind && strcmp(set->name, name) == 0) return slot;
+    }
+}
+
 lar_status lar_mesh_builder_set(lar_mesh_builder *builder, const char *name, lar_set_kind kind,
                                 lar_error *error) {
-    const built_set *open = builder->open;
-    if (open && open->kind == kind && strcmp(open->name, name) == 0) return LAR_OK;
-    for (size_t s = 0; s < builder->set_count; s++)
-        if (builder->set[s].kind == kind && strcmp(builder->set[s].name, name) == 0) {
-            builder->open = &builder->set[s];
-            return LAR_OK;
-        }
+    if (!builder->set_slot) builder->set_slot = lar_calloc(SET_SLOTS, sizeof *builder->set_slot);
+    if (!builder->set_slot) return lar_fail_memory(error, SET_SLOTS, "sets");
+    uint16_t *slot = find_slot(builder, name, kind);
+    if (*slot != 0) {
+        builder->open = &builder->set[*slot - 1];
+        return LAR_OK;
+    }
     if (builder->set_count >= LAR_MESH_SETS_MAX)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: holds more than %d named sets; remove those that are not used",
@@ -145,6 +164,7 @@ lar_status lar_mesh_builder_set(lar_mesh_builder *builder, const char *name, lar
     }
     builder->open = &builder->set[builder->set_count++];
     *builder->open = (built_set){.name = copy, .kind = kind};
+    *slot = (uint16_t)builder->set_count;
     return LAR_OK;
 }
 
