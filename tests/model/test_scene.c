@@ -89,6 +89,26 @@ static void test_element_selectors(void **state) {
     selects("elements", "{any: [{list: [101]}, {all: [upper, {tag: 2}]}]}", "0 4 5 6 7");
 }
 
+static void test_elements_of_a_node_set(void **state) {
+    (void)state;
+    lar_model *model =
+        scene(HEAD MATERIAL "sets:\n"
+                            "  - {name: low, nodes: {box: [[0, 0, 0], [0.02, 0.01, 0.01]]}}\n"
+                            "  - {name: low, elements: low}\n");
+    const lar_set *set = lar_mesh_find_set(&model->mesh, "low", LAR_SET_ELEMENTS);
+    assert_int_equal(set->count, 2);
+    assert_int_equal(set->index[1], 1);
+    lar_model_destroy(model);
+}
+
+static void test_line_ends_and_byte_order_mark(void **state) {
+    (void)state;
+    lar_model *model = scene("\xef\xbb\xbflariat: 1\r\nmesh: brick.vtu\r\n" MATERIAL
+                             "fix:\r\n- nodes: bottom\r\n  axes: y\r\n");
+    assert_int_equal(model->fix[0].axes, LAR_AXIS_Y);
+    lar_model_destroy(model);
+}
+
 static void test_face_selectors(void **state) {
     (void)state;
     selects("faces", "{box: [[-1, -1, 0.02], [1, 1, 0.02]]}", "29 35 41 47");
@@ -295,6 +315,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_node_selectors),
         cmocka_unit_test(test_element_selectors),
+        cmocka_unit_test(test_elements_of_a_node_set),
+        cmocka_unit_test(test_line_ends_and_byte_order_mark),
         cmocka_unit_test(test_face_selectors),
         cmocka_unit_test(test_whole_selections),
         cmocka_unit_test(test_plain_values),

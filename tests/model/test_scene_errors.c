@@ -199,6 +199,8 @@ static void test_sets(void **state) {
         {"sets: [{name: a, nodes: {box: [[1, 1, 1], [2, 2, 2]]}}]\n", "4:25",
          "this selects no node at all"},
         {"sets: [{name: a, faces: {nearest: 3}}]\n", "4:35", "three numbers in metres"},
+        {"sets: [{name: a, nodes: {nearest: [1.5e308, -1.5e308, 0]}}]\n", "4:35",
+         "this place is too far away"},
         {"sets: [{name: a, faces: {list: [1]}}]\n", "4:32", "faces have no numbers"},
         {"sets: [{name: a, faces: {sphere: {center: [0, 0, 0], radius: 0.001}}}]\n", "4:25",
          "this selects no boundary face"},
