@@ -67,8 +67,8 @@ lar_status lar_mesh_add_set(lar_mesh *mesh, const char *name, lar_set_kind kind,
 
 /* Everything that must hold before a mesh can be simulated: finite coordinates; no node twice in
  * an element; every element right-handed with a positive Jacobian at its eight corners and a
- * volume that is not zero. The message names file, element id and remedy. Called by
- * lar_mesh_read after every reader. */
+ * volume that is not zero; no two elements with the same nodes. The message names file, element
+ * id and remedy. Called by lar_mesh_read after every reader. */
 lar_status lar_mesh_check(const lar_mesh *mesh, lar_error *error);
 
 /* The boundary of the mesh: faces that belong to one element only, as element * 6 + face,

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdlib.h>
 
 #include "model/mesh.h"
 
@@ -124,6 +125,54 @@ static lar_status check_connectivity(const lar_mesh *mesh, lar_error *error) {
     return LAR_OK;
 }
 
+/* An element and a number that does not depend on the order of its nodes. */
+typedef struct fingerprint {
+    uint64_t sum;
+    int32_t element;
+} fingerprint;
+
+static int compare_fingerprints(const void *a, const void *b) {
+    const fingerprint *x = a, *y = b;
+    if (x->sum != y->sum) return x->sum < y->sum ? -1 : 1;
+    return (x->element > y->element) - (x->element < y->element);
+}
+
+static bool same_nodes(const int32_t a[8], const int32_t b[8]) {
+    int found = 0;
+    for (int i = 0; i < 8; i++)
+        for (int j = 0; j < 8; j++) found += a[i] == b[j];
+    return found == 8; /* no node is twice in an element */
+}
+
+/* Two elements in one place would count mass and stiffness twice without any sign of it. */
+static lar_status check_repeats(const lar_mesh *mesh, lar_error *error) {
+    fingerprint *print = lar_calloc((size_t)mesh->element_count, sizeof *print);
+    if (!print)
+        return lar_fail_memory(error, (size_t)mesh->element_count * sizeof *print, "the check");
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        print[e].element = e;
+        for (int a = 0; a < 8; a++) {
+            uint64_t mixed = ((uint64_t)mesh->element[e][a] + 1) * UINT64_C(0x9e3779b97f4a7c15);
+            print[e].sum += (mixed ^ mixed >> 29) * UINT64_C(0xbf58476d1ce4e5b9);
+        }
+    }
+    qsort(print, (size_t)mesh->element_count, sizeof *print, compare_fingerprints);
+    lar_status status = LAR_OK;
+    for (int32_t i = 1; i < mesh->element_count && !status; i++) {
+        int32_t first = print[i - 1].element, second = print[i].element;
+        if (print[i].sum == print[i - 1].sum &&
+            same_nodes(mesh->element[first], mesh->element[second]))
+            status = lar_fail(error, LAR_ERROR_MODEL,
+                              "%s: elements %lld and %lld have the same eight nodes; remove one of "
+                              "them (a Gmsh file of version 2 may hold an element once per "
+                              "physical group: save it as version 4.1)",
+                              source_of(mesh), (long long)mesh->element_id[first],
+                              (long long)mesh->element_id[second]);
+    }
+    free(print);
+    return status;
+}
+
 static lar_status check_sets(const lar_mesh *mesh, lar_error *error) {
     for (int32_t s = 0; s < mesh->set_count; s++) {
         const lar_set *set = &mesh->set[s];
@@ -185,5 +234,6 @@ lar_status lar_mesh_check(const lar_mesh *mesh, lar_error *error) {
     if (!status) status = check_connectivity(mesh, error);
     if (!status) status = check_sets(mesh, error);
     if (!status) status = check_shapes(mesh, error);
+    if (!status) status = check_repeats(mesh, error);
     return status;
 }

@@ -285,7 +285,7 @@ static lar_status read_block_4(msh_reader *reader, int64_t *count) {
     if (status) return status;
 
     const msh_entity *owner = msh_find_entity(reader, c.type->dimension, entity);
-    if (owner) {
+    if (owner && owner->count > 0) {
         c.group = reader->physical + owner->first;
         c.group_count = owner->count;
     }

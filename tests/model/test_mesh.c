@@ -203,6 +203,12 @@ static void check_refuses(void **state) {
     mesh.element[1][1] = mesh.element[1][0];
     assert_check_fails(&mesh, LAR_ERROR_MODEL, "box.vtu: element 6 has node 15 twice");
 
+    /* The same element once more, turned a quarter around the vertical axis. */
+    mesh = boxes(2);
+    for (int a = 0; a < 8; a++) mesh.element[1][a] = mesh.element[0][a % 4 == 3 ? a - 3 : a + 1];
+    assert_check_fails(&mesh, LAR_ERROR_MODEL,
+                       "box.vtu: elements 5 and 6 have the same eight nodes");
+
     mesh = boxes(2);
     for (int n = 8; n < 12; n++) mesh.position[n][0] = 1;
     assert_check_fails(&mesh, LAR_ERROR_MODEL, "box.vtu: element 6 has no volume");

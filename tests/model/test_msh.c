@@ -237,6 +237,22 @@ static void reads_version_4(void **state) {
     lar_mesh_clear(&mesh);
 }
 
+/* Entities, but no physical group at all. */
+static void reads_without_groups(void **state) {
+    (void)state;
+    char *text = with(version_4,
+                      "1 1 2 2\n1 0 0 1 1 1\n1 0 0 0 0 0 1 0 2 1 -1\n"
+                      "3 2 0 0 2 1 1 1 -2 0\n4 0 0 0 0 1 1 0 1 1\n"
+                      "1 0 0 0 1 1 1 1 5 0\n2 1 0 0 2 1 1 2 6 5 2 3 -4\n",
+                      "0 0 0 2\n1 0 0 0 1 1 1 0 0\n2 1 0 0 2 1 1 0 0\n");
+    lar_mesh mesh = parse_good(lar_msh_parse, "two.msh", text, strlen(text));
+    assert_int_equal(mesh.element_count, 2);
+    assert_int_equal(mesh.element_tag[1], 0);
+    assert_int_equal(mesh.set_count, 0);
+    lar_mesh_clear(&mesh);
+    free(text);
+}
+
 static void reads_binary(void **state) {
     (void)state;
     for (int version = 2; version <= 4; version += 2) {
@@ -471,11 +487,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_version_1),       cmocka_unit_test(reads_version_2),
         cmocka_unit_test(reads_old_names),       cmocka_unit_test(reads_version_4),
-        cmocka_unit_test(reads_binary),          cmocka_unit_test(refuses_damage),
-        cmocka_unit_test(refuses_bad_elements),  cmocka_unit_test(refuses_other_cells),
-        cmocka_unit_test(refuses_other_formats), cmocka_unit_test(refuses_binary_claims),
-        cmocka_unit_test(refuses_repeats),       cmocka_unit_test(every_prefix),
-        cmocka_unit_test(shared_hexahedra),      cmocka_unit_test(shared_tetrahedra),
+        cmocka_unit_test(reads_without_groups),  cmocka_unit_test(reads_binary),
+        cmocka_unit_test(refuses_damage),        cmocka_unit_test(refuses_bad_elements),
+        cmocka_unit_test(refuses_other_cells),   cmocka_unit_test(refuses_other_formats),
+        cmocka_unit_test(refuses_binary_claims), cmocka_unit_test(refuses_repeats),
+        cmocka_unit_test(every_prefix),          cmocka_unit_test(shared_hexahedra),
+        cmocka_unit_test(shared_tetrahedra),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
