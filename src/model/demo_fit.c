@@ -26,7 +26,7 @@ enum { ROUNDS = 30, STEPS_PER_ROUND = 30, PAIRS = 8 };
 static const double theta = 0.8;         /* weight of even volumes against shape */
 static const double evenness = 0.4;      /* 1: every cell of a part should be the same cube */
 static const double wanted_angle = 0.49; /* scaled Jacobian below which a corner pays */
-static const double wanted_edge = 3.5;   /* [mm], see step_energy */
+static const double wanted_edge = 3.6;   /* [mm], see step_energy */
 
 typedef struct plane {
     int node;
@@ -365,7 +365,7 @@ lar_status lar_demo_fit(lar_demo_half *half, const lar_demo_shape *shape, lar_er
             f.delta = 0.3 * (1.0 - done) * (1.0 - done) * (1.0 - done) + 1e-3;
             f.surface_weight = 0.5 + 150.0 * done * done;
             f.angle_weight = 1000.0 * done;
-            f.step_weight = done > 0.5 ? 1500.0 * done : 0.0;
+            f.step_weight = done > 0.5 ? 2500.0 * done : 0.0;
             minimise(&f, &half->position[0][0]);
         }
     } else {

@@ -13,9 +13,9 @@ static const point4 tube_control[4] = {{{17.0, 0.0, 60.0, 8.2}},
                                        {{62.0, 0.0, 75.5, 4.6}},
                                        {{55.2, 0.0, 47.0, 5.3}}};
 static const point4 ligament_control[4] = {{{12.0, -6.0, 57.0, 5.4}},
-                                           {{17.0, -22.0, 59.5, 3.9}},
-                                           {{30.0, -27.0, 55.0, 3.9}},
-                                           {{36.0, -29.0, 41.0, 4.6}}};
+                                           {{13.5, -25.0, 61.0, 4.0}},
+                                           {{29.0, -30.0, 57.0, 3.8}},
+                                           {{36.0, -30.0, 39.0, 4.4}}};
 
 static void bezier(const point4 control[4], double t, double point[4], double tangent[3]) {
     const double u = 1.0 - t;
@@ -128,9 +128,9 @@ static double sheet(const double p[3], double half) {
 /* Corpus, a wide ellipsoid, on the cervix, a slender elliptic cone cut off flat at z = 0. */
 static double uterus(const double p[3]) {
     const double body[3] = {p[0], p[1], p[2] - 52.0};
-    const double corpus = ellipsoid(body, 26.5, 17.3, 27.0);
+    const double corpus = ellipsoid(body, 27.2, 17.8, 27.5);
     const double grow = 1.0 + 0.006 * p[2];
-    const double rx = 15.0 * grow, ry = 13.8 * grow;
+    const double rx = 15.3 * grow, ry = 14.0 * grow;
     const double q[2] = {p[0] / rx, p[1] / ry};
     const double round = (sqrt(q[0] * q[0] + q[1] * q[1]) - 1.0) * ry;
     const double cone = cut(cut(round, -p[2], 5.0), p[2] - 50.0, 5.0);
