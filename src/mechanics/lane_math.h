@@ -34,8 +34,9 @@ LAR_INLINE lar_lane lar_lane_rcbrt(lar_lane J) {
 LAR_INLINE lar_lane lar_lane_log(lar_lane J) {
     const int64_t half_bits = 0x3fe6a09e00000000LL; /* upper half of sqrt(1/2) */
     lar_ilane bits = lar_lane_bits(J);
-    lar_ilane k = (bits - half_bits) >> 52;
-    lar_lane m = lar_ilane_as_lane(bits - (k << 52));
+    lar_ilane above = bits - half_bits;
+    lar_ilane k = above >> 52;
+    lar_lane m = lar_ilane_as_lane(bits - (above & ~((1LL << 52) - 1)));
     lar_lane s = (m - lar_lane_set(1)) / (m + lar_lane_set(1));
     lar_lane s2 = s * s;
     lar_lane sum = lar_lane_set(2.0 / 21);

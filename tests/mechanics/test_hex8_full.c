@@ -210,14 +210,14 @@ static void frequency(void **state) {
 /* A determinant that is not a number, at any Gauss point, is not hidden by the others. */
 static void bad_deformation_shows(void **state) {
     (void)state;
-    lar_material material = test_material(0, 4e3, 2e5);
     double corner[8][3], force[8][3];
     box_corners(size, size, size, corner);
-    for (int a = 0; a < 8; a++) {
-        double u[8][3] = {{0}};
-        u[a][0] = -2.5 * lar_node_sign[a][0] * size;
+    for (int n = 0; n < 8 * LAR_LAW_COUNT; n++) {
+        lar_material material = test_material(n / 8, 4e3, 2e5);
+        double u[8][3] = {{0}}, *x = u[n % 8];
+        x[0] = -2.5 * lar_node_sign[n % 8][0] * size;
         assert_true(lar_hex8_full_force((rows)corner, &material, (rows)u, force) < 0);
-        u[a][0] = NAN;
+        x[0] = NAN;
         assert_true(isnan(lar_hex8_full_force((rows)corner, &material, (rows)u, force)));
     }
 }
