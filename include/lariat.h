@@ -77,9 +77,9 @@ typedef struct lar_model_info {
     double shortest_edge;      /* [m] */
     double scaled_jacobian_min, scaled_jacobian_mean; /* -1..1, a cube has 1 */
     int32_t scaled_jacobian_worst;                    /* element index */
-    double stable_step;    /* largest time step that the elements allow, without safety [s] */
-    int32_t stable_worst;  /* the element that asks for it */
-    double time_step;      /* the step that a simulation will use [s] */
+    double stable_step;   /* largest time step that the elements allow, without safety [s] */
+    int32_t stable_worst; /* the element that asks for it */
+    double time_step;     /* the step that a simulation will use [s] */
 } lar_model_info;
 
 LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
@@ -87,6 +87,37 @@ LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *inf
 
 /* Reference positions of all nodes, [nodes][3], in metres. Lives as long as the model. */
 LAR_API const double (*lar_model_positions(const lar_model *model))[3];
+
+/* The number that the mesh file gives to an element (messages use it); -1 when there is none. */
+LAR_API int64_t lar_model_element_id(const lar_model *model, int32_t element);
+
+/* One material. Strings live as long as the model. */
+typedef struct lar_material_info {
+    const char *name;                   /* "" when it has none */
+    const char *law;                    /* as in scenes: "neo-hookean", ... */
+    int32_t elements;                   /* that are made of it */
+    double density;                     /* [kg/m^3] */
+    double shear_modulus, bulk_modulus; /* at rest [Pa] */
+} lar_material_info;
+
+/* One named set of the mesh or the scene. */
+typedef struct lar_set_info {
+    const char *name;
+    const char *kind; /* "nodes", "elements" or "faces" */
+    int32_t count;
+} lar_set_info;
+
+/* Material `index` of lar_model_info.materials; LAR_ERROR_ARGUMENT beyond. */
+LAR_API lar_status lar_model_material(const lar_model *model, int32_t index,
+                                      lar_material_info *info, lar_error *error);
+LAR_API int32_t lar_model_set_count(const lar_model *model);
+LAR_API lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *info,
+                                 lar_error *error);
+
+/* What the model's file asks for and Lariat does not do, one sentence each: read them, the
+ * results leave it out. NULL beyond the count. */
+LAR_API int32_t lar_model_notice_count(const lar_model *model);
+LAR_API const char *lar_model_notice_text(const lar_model *model, int32_t index);
 
 /* Writes the demonstration organ (uterus.yaml and its mesh) into a folder, which is made when it
  * is missing. */
@@ -97,7 +128,7 @@ LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
 typedef struct lar_simulation lar_simulation;
 
 typedef enum lar_element_kind {
-    LAR_ELEMENT_HEX8 = 0, /* uniform strain with total hourglass control: the fast one */
+    LAR_ELEMENT_HEX8 = 0,   /* uniform strain with total hourglass control: the fast one */
     LAR_ELEMENT_HEX8_FULL,  /* eight Gauss points: the oracle (T 4.2.2) */
     LAR_ELEMENT_HEX8_MATRIX /* element matrices built every step (T 4.2.1) */
 } lar_element_kind;

@@ -104,6 +104,24 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
     lar_measure_energy(&scratch->domain, &scratch->state, energy);
 }
 
+size_t lar_simulation_bytes(const lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_conditions *conditions = &domain->conditions;
+    size_t lanes = (size_t)domain->block_count * LAR_BLOCK, nodes = (size_t)domain->node_padded;
+    size_t bytes = lanes * sizeof *domain->element +
+                   (size_t)domain->node_count * sizeof *domain->global +
+                   (size_t)domain->model->mesh.node_count * sizeof *domain->local +
+                   nodes * (sizeof *domain->mass + sizeof *domain->push);
+    if (domain->block) bytes += (size_t)domain->block_count * sizeof *domain->block;
+    bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
+             (size_t)conditions->force_count * sizeof *conditions->force +
+             (size_t)conditions->pressure_count * sizeof *conditions->pressure;
+#define LAR_STATE_BYTES(type, name, values, kept) bytes += nodes * (values) * sizeof(type);
+    LAR_STATE_ARRAYS(LAR_STATE_BYTES)
+#undef LAR_STATE_BYTES
+    return bytes;
+}
+
 const char *lar_version(void) {
     return LAR_VERSION;
 }

@@ -12,4 +12,7 @@ struct lar_simulation {
     lar_trip trip;
 };
 
+/* Bytes of memory that a step can touch: domain and state, without the model. */
+size_t lar_simulation_bytes(const lar_simulation *simulation);
+
 #endif

@@ -1,0 +1,47 @@
+#include "base/folder.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/memory.h"
+
+/* The error number of mkdir for one folder; 0 when it is there afterwards. */
+static int make_one(const char *path) {
+    struct stat found;
+    if (mkdir(path, 0777) == 0) return 0;
+    int cause = errno;
+    if (stat(path, &found) != 0) return cause;
+    return S_ISDIR(found.st_mode) ? 0 : ENOTDIR;
+}
+
+lar_status lar_folder_make(const char *folder, lar_error *error) {
+    char *path = lar_strdup(folder);
+    if (!path) return lar_fail_memory(error, strlen(folder) + 1, folder);
+    int cause = *folder ? 0 : ENOENT;
+    for (char *at = path; !cause && *at; at++) {
+        bool ends_here = *at != '/' && (at[1] == '/' || at[1] == '\0');
+        if (!ends_here) continue;
+        char kept = at[1];
+        at[1] = '\0';
+        cause = make_one(path);
+        at[1] = kept;
+    }
+    free(path);
+    if (!cause) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: cannot be used as a folder: %s; choose another one or check the "
+                    "permissions",
+                    folder, strerror(cause));
+}
+
+char *lar_folder_join(const char *folder, const char *name) {
+    size_t length = strlen(folder), size = length + strlen(name) + 2;
+    char *path = lar_calloc(size, 1);
+    const char *slash = length > 0 && folder[length - 1] == '/' ? "" : "/";
+    if (path) snprintf(path, size, "%s%s%s", folder, slash, name);
+    return path;
+}

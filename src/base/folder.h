@@ -1,0 +1,14 @@
+/* Folders for what a run writes. */
+#ifndef LAR_BASE_FOLDER_H
+#define LAR_BASE_FOLDER_H
+
+#include "base/error.h"
+
+/* Makes a folder and those above it that are missing; one that is there already is fine. Errors
+ * name the path and the reason. */
+lar_status lar_folder_make(const char *folder, lar_error *error);
+
+/* "folder/name" or NULL when memory is refused. Free with free(). */
+char *lar_folder_join(const char *folder, const char *name);
+
+#endif

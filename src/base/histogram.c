@@ -1,0 +1,39 @@
+#include "base/histogram.h"
+
+#include <math.h>
+
+enum { SPLIT = LAR_HISTOGRAM_SPLIT, BINS = LAR_HISTOGRAM_SPLIT * LAR_HISTOGRAM_OCTAVES };
+
+/* Values below SPLIT have a bin each; above, the octave's leading bit and the next six choose. */
+static int bin_of(uint64_t value) {
+    if (value < SPLIT) return (int)value;
+    int octave = 63 - __builtin_clzll(value) - 6;
+    int bin = (octave + 1) * SPLIT + (int)((value >> octave) - SPLIT);
+    return bin < BINS ? bin : BINS - 1;
+}
+
+static double middle_of(int bin) {
+    if (bin < SPLIT) return bin;
+    int octave = bin / SPLIT - 1;
+    return ldexp(SPLIT + bin % SPLIT + 0.5, octave);
+}
+
+void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds) {
+    if (histogram->count == 0 || nanoseconds < histogram->least) histogram->least = nanoseconds;
+    if (nanoseconds > histogram->most) histogram->most = nanoseconds;
+    histogram->count++;
+    histogram->sum += nanoseconds;
+    histogram->bin[bin_of(nanoseconds)]++;
+}
+
+double lar_histogram_quantile(const lar_histogram *histogram, double share) {
+    if (histogram->count == 0) return 0;
+    double wanted = share * (double)histogram->count;
+    uint64_t below = 0;
+    int bin = 0;
+    for (; bin < BINS - 1; bin++) {
+        below += histogram->bin[bin];
+        if (below > 0 && (double)below >= wanted) break;
+    }
+    return fmin(fmax(middle_of(bin), (double)histogram->least), (double)histogram->most);
+}

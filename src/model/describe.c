@@ -1,0 +1,50 @@
+/* What a model tells about its parts through the public header. */
+#include "model/model.h"
+
+int64_t lar_model_element_id(const lar_model *model, int32_t element) {
+    bool known = element >= 0 && element < model->mesh.element_count;
+    return known ? model->mesh.element_id[element] : -1;
+}
+
+static lar_status refuse_index(const char *what, int32_t index, int32_t count, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "there is no %s %ld; the model has %ld, counted from 0", what, (long)index,
+                    (long)count);
+}
+
+lar_status lar_model_material(const lar_model *model, int32_t index, lar_material_info *info,
+                              lar_error *error) {
+    if (index < 0 || index >= model->material_count)
+        return refuse_index("material", index, model->material_count, error);
+    const lar_material *material = &model->material[index];
+    *info = (lar_material_info){.name = material->name ? material->name : "",
+                                .law = lar_law_name[material->law],
+                                .density = material->density,
+                                .shear_modulus = lar_material_shear(material),
+                                .bulk_modulus = lar_material_bulk(material)};
+    for (int32_t e = 0; e < model->mesh.element_count; e++)
+        info->elements += model->element_material[e] == index;
+    return LAR_OK;
+}
+
+int32_t lar_model_set_count(const lar_model *model) {
+    return model->mesh.set_count;
+}
+
+lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *info,
+                         lar_error *error) {
+    static const char *const kind[] = {"nodes", "elements", "faces"};
+    if (index < 0 || index >= model->mesh.set_count)
+        return refuse_index("set", index, model->mesh.set_count, error);
+    const lar_set *set = &model->mesh.set[index];
+    *info = (lar_set_info){.name = set->name, .kind = kind[set->kind], .count = set->count};
+    return LAR_OK;
+}
+
+int32_t lar_model_notice_count(const lar_model *model) {
+    return model->notice_count;
+}
+
+const char *lar_model_notice_text(const lar_model *model, int32_t index) {
+    return index >= 0 && index < model->notice_count ? model->notice[index] : NULL;
+}

@@ -1,0 +1,48 @@
+/* Time steps by the clock: how long each takes, and, on request, one per tick of the wall clock.
+ *
+ *     tick 0        tick 1        tick 2        tick 3          tick n = start + n * time step
+ *       |--step 0--... |--step 1-------|.. |--step 2--...          step 1 is late: one miss
+ *
+ * A step begins at its tick, or at once when the one before was late, and misses its deadline when
+ * it ends after the next tick. Between the two the thread sleeps until shortly before the tick and
+ * polls the clock from there: sleeping alone wakes tens of microseconds late, polling alone takes a
+ * whole processor (and a real-time thread that never sleeps is throttled).
+ */
+#ifndef LAR_STUDY_STEP_CLOCK_H
+#define LAR_STUDY_STEP_CLOCK_H
+
+#include <signal.h>
+#include <stdbool.h>
+
+#include "base/histogram.h"
+#include "lariat.h"
+
+typedef struct lar_step_clock {
+    bool paced;          /* follow the wall clock */
+    lar_histogram times; /* of the steps, without waiting [ns] */
+    uint64_t misses;     /* deadlines, when paced */
+    double start;        /* monotonic clock at the first step [s] */
+    uint64_t first_step; /* of the simulation, at the start */
+} lar_step_clock;
+
+/* Begins now: the step that the simulation is at belongs to this moment. */
+void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simulation, bool paced);
+
+/* Up to `steps` steps, each measured. Returns early, with LAR_OK, when `most_seconds` have passed
+ * or *stop (may be NULL) is not 0: ask the simulation where it is. */
+lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *simulation,
+                                  uint64_t steps, double most_seconds,
+                                  const volatile sig_atomic_t *stop, lar_error *error);
+
+/* Seconds since the start. */
+double lar_step_clock_elapsed(const lar_step_clock *step_clock);
+
+/* Seconds spent in steps. */
+double lar_step_clock_busy(const lar_step_clock *step_clock);
+
+/* Step time below or at which `share` of the steps lie [us]. */
+double lar_step_clock_quantile(const lar_step_clock *step_clock, double share);
+/* Longest step [us]. */
+double lar_step_clock_longest(const lar_step_clock *step_clock);
+
+#endif
