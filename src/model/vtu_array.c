@@ -221,13 +221,15 @@ static lar_status read_bytes(const lar_vtu_array_text *array, size_t count, unsi
                              : copy_plain(array, size, out, error);
 }
 
+/* An array without text reads like an empty one. */
 static lar_text ascii_text(const lar_vtu_array_text *array) {
-    return (lar_text){array->payload.at, array->payload.at + array->payload.length, array->line};
+    const char *start = array->payload.at ? array->payload.at : "";
+    return (lar_text){start, start + array->payload.length, array->line};
 }
 
 /* Every value needs a character and one that ends it. */
 static lar_status check_ascii(const lar_vtu_array_text *array, size_t count, lar_error *error) {
-    if (count > 0 && (!array->payload.at || count > (array->payload.length + 1) / 2))
+    if (count > (array->payload.length + 1) / 2)
         return damaged(array, "have fewer values than the file's counts ask for", error);
     return LAR_OK;
 }
@@ -242,7 +244,6 @@ static lar_status bad_ascii(const lar_vtu_array_text *array, const lar_text *tex
 
 static lar_status end_of_ascii(const lar_vtu_array_text *array, lar_text *text, size_t count,
                                lar_error *error) {
-    if (count == 0 && !array->payload.at) return LAR_OK;
     if (!lar_text_skip_space(text)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_FORMAT,
                     "%s:%d: array \"%s\" has more values than the %zu that the file's counts ask "
@@ -320,7 +321,7 @@ size_t lar_vtu_array_count(const lar_vtu_array_text *array) {
         lar_text text = ascii_text(array);
         lar_span word;
         size_t count = 0;
-        while (array->payload.at && lar_text_word(&text, &word)) count++;
+        while (lar_text_word(&text, &word)) count++;
         return count;
     }
     byte_source source = source_of(array);

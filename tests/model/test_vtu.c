@@ -123,7 +123,7 @@ static sample_file make_vtu(const vtu_style *style) {
     add_array(&w, "set:elements:none", 1, true, NULL, sample_front, 0);
     print(&w.file,
           "</FieldData>\n<Piece NumberOfPoints=\"13\" NumberOfCells=\"3\">\n<PointData>\n");
-    add_array(&w, "u &gt; 0", 3, false, points, NULL, SAMPLE_POINTS * 3);
+    add_array(&w, "u > 0", 3, false, points, NULL, SAMPLE_POINTS * 3);
     add_array(&w, "set_top", 1, false, NULL, sample_top, SAMPLE_POINTS);
     add_array(&w, "set_of_values", 1, false, NULL, sample_not_a_mask, SAMPLE_POINTS);
     print(&w.file, "</PointData>\n<CellData>\n");
