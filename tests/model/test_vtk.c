@@ -25,7 +25,7 @@ static void put_integers(sample_file *file, const vtk_style *style, size_t size,
 static void put_filler(sample_file *file, const vtk_style *style, size_t size, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (style->binary)
-            put_word(file, 0x0a43454c4c53200aull, size, true); /* "\nCELLS \n" */
+            put_word(file, 0x0a43454c4c532078ull, size, true); /* "\nCELLS x" */
         else
             print(file, "%zu.5\n", i);
     print(file, "\n");
@@ -77,11 +77,11 @@ static void put_things_to_skip(sample_file *file, const vtk_style *style) {
     put_filler(file, style, 2, SAMPLE_POINTS * 2);
     print(file, "bits 1 13 bit\n");
     put_filler(file, style, 1, style->binary ? 2 : 13);
-    print(file, "words 1 2 string\n");
+    print(file, "words 1 3 string\n");
     if (style->binary)
-        put(file, "\xc3yes\xc0", 5);
+        put(file, "\xc3yes\xc0\x80\x02ok", 9);
     else
-        print(file, "yes\n\n");
+        print(file, "yes\n\nok\n");
     print(file, "\nset_top 1 13 unsigned_char\n");
     put_integers(file, style, 1, sample_top, SAMPLE_POINTS);
 }
