@@ -20,7 +20,7 @@ done
 
 # The flags of lariat_flags. Functions that nobody calls are dropped, and with them whatever other
 # library they would need.
-flags="-std=gnu17 -O2 -ffp-contract=off -fno-math-errno -ffunction-sections -D_GNU_SOURCE
+flags="-std=gnu17 -O2 -ffp-contract=off -fno-math-errno -fwrapv -ffunction-sections -D_GNU_SOURCE
     -I$source/include -I$source/src"
 objects=""
 compile() {
