@@ -1,6 +1,5 @@
 #include "mechanics/hex8_matrix.h"
 
-#include <float.h>
 #include <string.h>
 
 #include "mechanics/hex8_full.h"
@@ -35,6 +34,16 @@ static void strain_operator(const double gradient[8][3], const double H[3][3], d
     }
 }
 
+/* E = 1/2 (H + H^T + H^T H): from its definition, not B_h u, so that a wrong B_h shows. */
+static void green_strain(const double H[3][3], double strain[STRAINS]) {
+    for (int n = 0; n < STRAINS; n++) {
+        int i = row_of[n], j = column_of[n];
+        double twice = H[i][j] + H[j][i];
+        for (int k = 0; k < 3; k++) twice += H[k][i] * H[k][j];
+        strain[n] = i == j ? 0.5 * twice : twice;
+    }
+}
+
 /* S = F^-1 P; returns det F. */
 static double second_piola(const lar_material *material, const double H[3][3], double S[3][3]) {
     double F[3][3], P[3][3], cof[9];
@@ -64,24 +73,22 @@ static void secant_material(const lar_material *material, const double strain[ST
         rest[n] = stress[n];
         for (int m = 0; m < STRAINS; m++) rest[n] -= C[n][m] * strain[m];
     }
-    if (!(square > DBL_MIN)) return; /* below 1e-154 the correction is less than rounding */
+    if (!(square > 1e-24)) return; /* rest is of second order: nothing but rounding is left */
     for (int n = 0; n < STRAINS; n++)
         for (int m = 0; m < STRAINS; m++) C[n][m] += rest[n] * strain[m] / square;
 }
 
 /* K += volume * B_0^T (C_s B_h) */
 static void add_material_part(const lar_material *material, const double gradient[8][3],
-                              const double H[3][3], const double S[3][3], const double u[8][3],
-                              double volume, double K[FREEDOMS][FREEDOMS]) {
+                              const double H[3][3], const double S[3][3], double volume,
+                              double K[FREEDOMS][FREEDOMS]) {
     double left[STRAINS][FREEDOMS], right[STRAINS][FREEDOMS];
     double C[STRAINS][STRAINS], product[STRAINS][FREEDOMS];
-    double strain[STRAINS] = {0}, stress[STRAINS];
+    double strain[STRAINS], stress[STRAINS];
     strain_operator(gradient, H, 0, left);
     strain_operator(gradient, H, 0.5, right);
-    for (int n = 0; n < STRAINS; n++) {
-        stress[n] = S[row_of[n]][column_of[n]];
-        for (int m = 0; m < FREEDOMS; m++) strain[n] += right[n][m] * u[m / 3][m % 3];
-    }
+    green_strain(H, strain);
+    for (int n = 0; n < STRAINS; n++) stress[n] = S[row_of[n]][column_of[n]];
     secant_material(material, strain, stress, C);
     for (int n = 0; n < STRAINS; n++)
         for (int m = 0; m < FREEDOMS; m++) {
@@ -120,7 +127,7 @@ double lar_hex8_matrix_build(const double corner[8][3], const lar_material *mate
         displacement_gradient(slopes, u, H);
         double J = second_piola(material, (const double(*)[3])H, S);
         if (J < least || isnan(J)) least = J; /* a NaN stays: nothing is less */
-        add_material_part(material, slopes, (const double(*)[3])H, (const double(*)[3])S, u, volume,
+        add_material_part(material, slopes, (const double(*)[3])H, (const double(*)[3])S, volume,
                           K);
         add_geometric_part(slopes, (const double(*)[3])S, volume, K);
     }

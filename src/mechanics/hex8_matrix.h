@@ -21,7 +21,7 @@
  * stiffness matrix, elsewhere it is not symmetric. C_s is not unique: here the small-strain matrix
  * and a rank-one correction,
  *
- *     C_s = C_0 + (S - C_0 E) E^T / (E . E)      (C_0 alone when E vanishes).
+ *     C_s = C_0 + (S - C_0 E) E^T / (E . E)      (C_0 alone where E is below 1e-12).
  *
  * The forces are those of hex8-full by another road, so each tests the other; energy, stress and
  * frequency are the same integrals and are taken from there. More than four times the operations:
