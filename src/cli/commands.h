@@ -1,0 +1,17 @@
+/* The commands, one file each, and what they share. */
+#ifndef LAR_CLI_COMMANDS_H
+#define LAR_CLI_COMMANDS_H
+
+#include "cli/options.h"
+#include "lariat.h"
+
+extern const cli_command cli_info, cli_run, cli_demo_model, cli_bench, cli_bench_kernel;
+
+/* Opens a model and prints its notices to standard error. Returns the exit status; messages are
+ * printed. */
+int cli_open_model(const cli_command *command, const char *path, lar_model **model);
+
+/* Names of --element and --isa, in the order of lar_element_kind and lar_isa. */
+extern const char *const cli_element_names[], *const cli_isa_names[];
+
+#endif

@@ -1,0 +1,135 @@
+/* lariat info: what a model holds, before it is run. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "cli/json.h"
+
+/* ---- for machines ----------------------------------------------------------------------- */
+
+static void write_json(const char *path, const lar_model *model, const lar_model_info *info) {
+    json_writer json = json_begin(stdout);
+    json_text(&json, "file", path);
+    json_text(&json, "title", info->title);
+    json_integer(&json, "nodes", info->nodes);
+    json_integer(&json, "elements", info->elements);
+    json_integer(&json, "fixed_nodes", info->fixed_nodes);
+    json_vector(&json, "lower", info->lower);
+    json_vector(&json, "upper", info->upper);
+    json_number(&json, "volume", info->volume);
+    json_number(&json, "mass", info->mass);
+    json_number(&json, "shortest_edge", info->shortest_edge);
+    json_open(&json, "scaled_jacobian", '{');
+    json_number(&json, "min", info->scaled_jacobian_min);
+    json_number(&json, "mean", info->scaled_jacobian_mean);
+    json_integer(&json, "worst_element", lar_model_element_id(model, info->scaled_jacobian_worst));
+    json_close(&json);
+    json_number(&json, "stable_step", info->stable_step);
+    json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
+    json_number(&json, "time_step", info->time_step);
+    json_number(&json, "duration", lar_model_duration(model));
+    json_number(&json, "output_interval", lar_model_output_interval(model));
+    json_open(&json, "materials", '[');
+    lar_material_info material;
+    for (int32_t i = 0; !lar_model_material(model, i, &material, NULL); i++) {
+        json_open(&json, NULL, '{');
+        json_text(&json, "name", material.name);
+        json_text(&json, "law", material.law);
+        json_integer(&json, "elements", material.elements);
+        json_number(&json, "density", material.density);
+        json_number(&json, "shear_modulus", material.shear_modulus);
+        json_number(&json, "bulk_modulus", material.bulk_modulus);
+        json_close(&json);
+    }
+    json_close(&json);
+    json_open(&json, "sets", '[');
+    lar_set_info set;
+    for (int32_t i = 0; !lar_model_set(model, i, &set, NULL); i++) {
+        json_open(&json, NULL, '{');
+        json_text(&json, "name", set.name);
+        json_text(&json, "kind", set.kind);
+        json_integer(&json, "count", set.count);
+        json_close(&json);
+    }
+    json_close(&json);
+    json_open(&json, "notices", '[');
+    for (int32_t i = 0; i < lar_model_notice_count(model); i++)
+        json_text(&json, NULL, lar_model_notice_text(model, i));
+    json_end(&json);
+}
+
+/* ---- for people ------------------------------------------------------------------------- */
+
+static void print_materials(const lar_model *model) {
+    lar_material_info m;
+    for (int32_t i = 0; !lar_model_material(model, i, &m, NULL); i++)
+        printf("%-17s%s%s%s, %d elements, %g kg/m^3, shear modulus %.4g Pa, bulk modulus %.4g Pa\n",
+               i ? "" : "materials", m.name, *m.name ? ": " : "", m.law, (int)m.elements, m.density,
+               m.shear_modulus, m.bulk_modulus);
+}
+
+static void print_sets(const lar_model *model) {
+    enum { SHOWN = 30 };
+    int32_t count = lar_model_set_count(model);
+    lar_set_info set;
+    for (int32_t i = 0; i < count && i < SHOWN && !lar_model_set(model, i, &set, NULL); i++)
+        printf("%-17s%s: %d %s\n", i ? "" : "sets", set.name, (int)set.count, set.kind);
+    if (count > SHOWN) printf("%-17sand %d more (--json lists all)\n", "", (int)(count - SHOWN));
+}
+
+static void print_table(const lar_model *model, const lar_model_info *info) {
+    double size[3];
+    for (int i = 0; i < 3; i++) size[i] = info->upper[i] - info->lower[i];
+    printf("%-17s%s\n", "title", info->title);
+    printf("%-17s%d elements, %d nodes, of these %d held or moved\n", "mesh", (int)info->elements,
+           (int)info->nodes, (int)info->fixed_nodes);
+    printf("%-17s%.4g x %.4g x %.4g m, from (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g)\n", "size",
+           size[0], size[1], size[2], info->lower[0], info->lower[1], info->lower[2],
+           info->upper[0], info->upper[1], info->upper[2]);
+    printf("%-17s%.4g m^3, %.4g kg\n", "volume, mass", info->volume, info->mass);
+    printf("%-17s%.4g m\n", "shortest edge", info->shortest_edge);
+    printf("%-17smean %.3f, worst %.3f (element %" PRId64 "); a box has 1\n", "scaled Jacobian",
+           info->scaled_jacobian_mean, info->scaled_jacobian_min,
+           lar_model_element_id(model, info->scaled_jacobian_worst));
+    printf("%-17s%.4g s (stable up to %.4g s, set by element %" PRId64 ")\n", "time step",
+           info->time_step, info->stable_step, lar_model_element_id(model, info->stable_worst));
+    printf("%-17s%g s, a frame every %g s\n", "duration", lar_model_duration(model),
+           lar_model_output_interval(model));
+    print_materials(model);
+    print_sets(model);
+}
+
+static int info_main(int argc, char **argv) {
+    bool json = false;
+    const cli_option options[] = {CLI_FLAG("--json", "one JSON object on standard output", &json),
+                                  CLI_END};
+    const char *path;
+    int status = cli_parse(&cli_info, options, argc, argv, &path, 1);
+    if (status >= 0) return status;
+    lar_model *model = NULL;
+    status = cli_open_model(&cli_info, path, &model);
+    if (status) return status;
+    lar_model_info info;
+    lar_error error;
+    if (lar_model_inspect(model, &info, &error))
+        status = cli_complain(&cli_info, CLI_FAILED, "%s", error.message);
+    else if (json)
+        write_json(path, model, &info);
+    else
+        print_table(model, &info);
+    lar_model_destroy(model);
+    return status;
+}
+
+const cli_command cli_info = {
+    .name = "info",
+    .summary = "what a scene or a mesh holds",
+    .arguments = "FILE",
+    .description =
+        "Reads a scene (.yaml), a FEBio deck (.feb) or a mesh (.vtu .vtk .msh .inp) and\n"
+        "prints sizes, materials, sets, mesh quality and the time step. A bare mesh is\n"
+        "taken to be in metres and gets a soft default material. What the file asks\n"
+        "for and Lariat does not do is named on standard error.",
+    .examples = "  lariat info demo/uterus.yaml\n"
+                "  lariat info liver.vtk --json\n",
+    .main = info_main};

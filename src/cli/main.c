@@ -1,0 +1,70 @@
+/* lariat: the command line. One row per command; everything a command needs is in its own file. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+
+static const cli_command *const commands[] = {&cli_info, &cli_run, &cli_demo_model, &cli_bench};
+enum { COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_overview(FILE *out) {
+    fprintf(out,
+            "lariat: real-time finite elements for soft tissue, version %s\n\n"
+            "Usage: lariat COMMAND [ARGUMENTS]\n\nCommands:\n",
+            lar_version());
+    for (int i = 0; i < COUNT; i++)
+        fprintf(out, "  %-12s%s\n", commands[i]->name, commands[i]->summary);
+    fprintf(out, "\nlariat COMMAND --help explains one command; lariat --version prints the "
+                 "version.\n\nFor a first look:\n"
+                 "  lariat demo-model demo\n"
+                 "  lariat run demo/uterus.yaml --out demo/results\n\n"
+                 "Exit status: 0 success, 1 failure, 2 wrong usage, 3 an unstable run,\n"
+                 "130 interrupted.\n");
+}
+
+static int unknown_command(const char *name) {
+    const char *names[COUNT + 1] = {NULL};
+    for (int i = 0; i < COUNT; i++) names[i] = commands[i]->name;
+    const char *meant = cli_nearest_name(name, names);
+    if (meant)
+        return cli_complain(NULL, CLI_USAGE, "unknown command %s; did you mean %s?", name, meant);
+    return cli_complain(NULL, CLI_USAGE, "unknown command %s; lariat --help lists them", name);
+}
+
+static int dispatch(int argc, char **argv) {
+    if (argc < 2) {
+        print_overview(stderr);
+        return CLI_USAGE;
+    }
+    const char *name = argv[1];
+    bool help = strcmp(name, "help") == 0;
+    if (strcmp(name, "--version") == 0) {
+        printf("lariat %s\n", lar_version());
+        return CLI_DONE;
+    }
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || (help && argc == 2)) {
+        print_overview(stdout);
+        return CLI_DONE;
+    }
+    if (help) {
+        char *rewritten[] = {"--help"};
+        for (int i = 0; i < COUNT; i++)
+            if (strcmp(commands[i]->name, argv[2]) == 0) return commands[i]->main(1, rewritten);
+        return unknown_command(argv[2]);
+    }
+    for (int i = 0; i < COUNT; i++)
+        if (strcmp(commands[i]->name, name) == 0) return commands[i]->main(argc - 2, argv + 2);
+    return unknown_command(name);
+}
+
+int main(int argc, char **argv) {
+    int status = dispatch(argc, argv);
+    /* A result that did not reach its file is no success. */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == CLI_DONE)
+        return cli_complain(NULL, CLI_FAILED,
+                            "standard output cannot be written: %s; check where it goes and the "
+                            "free space",
+                            strerror(errno));
+    return status;
+}

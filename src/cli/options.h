@@ -1,0 +1,74 @@
+/* The command line of every command, from one table.
+ *
+ *     const cli_option options[] = {
+ *         CLI_REAL("--time", "S", "simulated seconds", &time, 0, 1e6),
+ *         CLI_FLAG("--json", "one JSON object on standard output", &json),
+ *         CLI_END};
+ *
+ * The table parses, checks ranges, and prints the help: an option cannot exist without being
+ * documented. Values may stand behind a space or an equals sign; `--` ends the options.
+ */
+#ifndef LAR_CLI_OPTIONS_H
+#define LAR_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum cli_option_kind {
+    OPTION_FLAG,   /* bool *value */
+    OPTION_TEXT,   /* const char **value */
+    OPTION_REAL,   /* double *value, least..most */
+    OPTION_COUNT,  /* int64_t *value, least..most */
+    OPTION_CHOICE, /* int *value: index into choices */
+} cli_option_kind;
+
+typedef struct cli_option {
+    const char *name; /* "--time"; NULL ends the table */
+    cli_option_kind kind;
+    const char *placeholder; /* of the value in the help */
+    const char *help;
+    void *value;
+    double least, most;
+    const char *const *choices; /* NULL ends the list */
+} cli_option;
+
+#define CLI_FLAG(n, h, v)                                                                          \
+    { .name = n, .kind = OPTION_FLAG, .help = h, .value = v }
+#define CLI_VALUE(k, n, p, h, v) .name = n, .kind = k, .placeholder = p, .help = h, .value = v
+#define CLI_TEXT(n, p, h, v)                                                                       \
+    { CLI_VALUE(OPTION_TEXT, n, p, h, v) }
+#define CLI_REAL(n, p, h, v, from, to)                                                             \
+    { CLI_VALUE(OPTION_REAL, n, p, h, v), .least = from, .most = to }
+#define CLI_COUNT(n, p, h, v, from, to)                                                            \
+    { CLI_VALUE(OPTION_COUNT, n, p, h, v), .least = from, .most = to }
+#define CLI_CHOICE(n, p, h, v, names)                                                              \
+    { CLI_VALUE(OPTION_CHOICE, n, p, h, v), .choices = names }
+#define CLI_END                                                                                    \
+    { .name = NULL }
+
+/* One command: what --help prints and what main calls. */
+typedef struct cli_command {
+    const char *name;                   /* "run" or "bench kernel" */
+    const char *summary;                /* one line */
+    const char *arguments;              /* "SCENE", "FILE" or "" */
+    const char *description;            /* a paragraph */
+    const char *examples;               /* lines */
+    int (*main)(int argc, char **argv); /* behind the command's name; returns the exit status */
+} cli_command;
+
+enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2, CLI_UNSTABLE = 3, CLI_INTERRUPTED = 130 };
+
+/* Parses the arguments behind the command's name. Options go to their values; at most
+ * `argument_count` others to arguments[] (NULL where fewer are given). Returns -1 to go on, or the
+ * exit status when help was printed or the usage is wrong (message printed). */
+int cli_parse(const cli_command *command, const cli_option *options, int argc, char **argv,
+              const char **arguments, int argument_count);
+
+/* "lariat NAME: message" on standard error, in one piece; returns `status`. */
+int cli_complain(const cli_command *command, int status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The name among `names` (NULL ends them) that `word` was probably meant to be, or NULL. */
+const char *cli_nearest_name(const char *word, const char *const *names);
+
+#endif

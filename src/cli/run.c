@@ -1,0 +1,298 @@
+/* lariat run: a scene in, motion, figures and results out. */
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/run_report.h"
+
+typedef struct run_settings {
+    const char *scene, *out, *grid;
+    double time, time_step; /* 0: not given */
+    int64_t steps;          /* 0: not given */
+    int64_t threads;
+    int element, isa; /* as lar_element_kind, lar_isa */
+    bool realtime, json;
+} run_settings;
+
+/* One run under way. */
+typedef struct run {
+    run_settings settings;
+    lar_model *model;
+    lar_simulation *simulation;
+    lar_results *results; /* NULL without --out */
+    lar_step_clock clock;
+    uint64_t last_step; /* where the run ends */
+    double interval;    /* between frames [s], 0: only the end */
+    int64_t next_frame; /* number of the next one, in intervals */
+    uint64_t framed;    /* the step of the latest frame, UINT64_MAX: none */
+    int frames;
+    double elapsed; /* [s] */
+    bool progress_shown;
+} run;
+
+/* ---- stopping --------------------------------------------------------------------------- */
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_stop(int signal_number) {
+    stop_asked = signal_number;
+}
+
+/* The first signal ends the run with what there is, a second one ends the program. */
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+/* ---- progress --------------------------------------------------------------------------- */
+
+static void show_progress(run *r) {
+    static const double QUIET = 1.0; /* shorter runs say nothing [s] */
+    double elapsed = lar_step_clock_elapsed(&r->clock);
+    if (elapsed < QUIET || !isatty(STDERR_FILENO)) return;
+    double done = (double)lar_simulation_steps(r->simulation) / (double)r->last_step;
+    fprintf(stderr, "\r%5.1f %%  %.4g s simulated, %.0f s to go \033[K", 100 * done,
+            lar_simulation_time(r->simulation), ceil(elapsed * (1 - done) / done));
+    fflush(stderr);
+    r->progress_shown = true;
+}
+
+static void clear_progress(run *r) {
+    if (r->progress_shown) fputs("\r\033[K", stderr);
+    r->progress_shown = false;
+}
+
+static int fail(run *r, int status, const char *message) {
+    clear_progress(r);
+    return cli_complain(&cli_run, status, "%s", message);
+}
+
+/* ---- results ---------------------------------------------------------------------------- */
+
+static int add_frame(run *r) {
+    lar_error error;
+    uint64_t step = lar_simulation_steps(r->simulation);
+    if (!r->results || r->framed == step) return CLI_DONE;
+    if (lar_results_add(r->results, r->simulation, &error))
+        return fail(r, CLI_FAILED, error.message);
+    r->framed = step;
+    r->frames++;
+    return CLI_DONE;
+}
+
+/* The step nearest to the next frame, at least one ahead; the end when there are no more. */
+static uint64_t next_stop(const run *r) {
+    uint64_t now = lar_simulation_steps(r->simulation);
+    if (r->interval <= 0) return r->last_step;
+    double step =
+        round((double)r->next_frame * r->interval / lar_simulation_time_step(r->simulation));
+    if (step >= (double)r->last_step) return r->last_step;
+    return (uint64_t)step > now ? (uint64_t)step : now + 1;
+}
+
+static run_report report_of(const run *r) {
+    run_report report = {.element = cli_element_names[r->settings.element],
+                         .interrupted = stop_asked != 0,
+                         .folder = r->settings.out,
+                         .frames = r->frames,
+                         .simulation = r->simulation,
+                         .clock = &r->clock,
+                         .elapsed = r->elapsed};
+    lar_model_inspect(r->model, &report.info, NULL);
+    return report;
+}
+
+static int write_run_json(run *r, const run_report *report) {
+    char path[4096], part[4096 + 8];
+    int length = snprintf(path, sizeof path, "%s/run.json", r->settings.out);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return fail(r, CLI_FAILED, "the name of the folder for results is too long");
+    snprintf(part, sizeof part, "%s.part", path);
+    FILE *file = fopen(part, "w");
+    bool good = file != NULL;
+    int cause = errno;
+    if (file) {
+        run_report_json(report, file);
+        good = fflush(file) == 0 && !ferror(file);
+        cause = errno;
+        if (fclose(file) != 0 && good) good = false, cause = errno;
+        if (good && rename(part, path) != 0) good = false, cause = errno;
+        if (!good) remove(part);
+    }
+    if (good) return CLI_DONE;
+    return cli_complain(&cli_run, CLI_FAILED,
+                        "%s: cannot be written: %s; check the folder, its permissions and the "
+                        "free space",
+                        path, strerror(cause));
+}
+
+static int report(run *r) {
+    int status = CLI_DONE;
+    run_report made = report_of(r);
+    if (r->settings.out) status = write_run_json(r, &made);
+    if (r->settings.json)
+        run_report_json(&made, stdout);
+    else
+        run_report_table(&made, stdout);
+    return status;
+}
+
+/* ---- the run ---------------------------------------------------------------------------- */
+
+static int report_unstable(run *r, const char *message) {
+    int status = fail(r, CLI_UNSTABLE, message);
+    if (!r->results) return status;
+    if (add_frame(r) == CLI_DONE)
+        cli_complain(&cli_run, status,
+                     "the state of that moment is the last frame in %s, number %d", r->settings.out,
+                     r->frames - 1);
+    return status;
+}
+
+static int advance(run *r) {
+    static const double GLANCE = 0.1; /* progress and frames are looked at so often [s] */
+    int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
+    r->next_frame = 1;
+    lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
+    while (!status && !stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
+        uint64_t now = lar_simulation_steps(r->simulation), stop = next_stop(r);
+        lar_error error;
+        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, GLANCE, &stop_asked,
+                                   &error))
+            return error.status == LAR_ERROR_UNSTABLE ? report_unstable(r, error.message)
+                                                      : fail(r, CLI_FAILED, error.message);
+        if (r->interval > 0 && lar_simulation_steps(r->simulation) == stop) {
+            status = add_frame(r);
+            r->next_frame++;
+        }
+        show_progress(r);
+    }
+    r->elapsed = lar_step_clock_elapsed(&r->clock);
+    clear_progress(r);
+    return status ? status : add_frame(r);
+}
+
+/* Where the run ends: the step nearest to its time, as for frames. */
+static int choose_length(run *r) {
+    const run_settings *settings = &r->settings;
+    r->interval = lar_model_output_interval(r->model);
+    r->last_step = (uint64_t)settings->steps;
+    if (settings->steps > 0) return CLI_DONE;
+    double time = settings->time;
+    if (time <= 0) time = fmax(lar_model_duration(r->model), r->interval);
+    if (time <= 0) time = 1;
+    double steps = round(time / lar_simulation_time_step(r->simulation));
+    if (steps > 1e15)
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
+                            time, steps, lar_simulation_time_step(r->simulation));
+    r->last_step = (uint64_t)fmax(1, steps);
+    return CLI_DONE;
+}
+
+static int prepare(run *r) {
+    const run_settings *settings = &r->settings;
+    lar_options options = lar_options_default();
+    options.element = (lar_element_kind)settings->element;
+    options.isa = (lar_isa)settings->isa;
+    options.time_step = settings->time_step;
+    int status = cli_open_model(&cli_run, settings->scene, &r->model);
+    lar_error error;
+    if (status) return status;
+    if (lar_simulation_create(r->model, &options, &r->simulation, &error))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    status = choose_length(r);
+    if (!status && settings->out &&
+        lar_results_open(settings->out, r->simulation, &r->results, &error))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    return status;
+}
+
+static int run_scene(const run_settings *settings) {
+    run r = {.settings = *settings, .framed = UINT64_MAX};
+    int status = prepare(&r);
+    if (!status) {
+        catch_signals();
+        status = advance(&r);
+    }
+    lar_error error;
+    if (lar_results_close(r.results, &error) && !status)
+        status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status) status = report(&r);
+    if (!status && stop_asked) status = CLI_INTERRUPTED;
+    lar_simulation_destroy(r.simulation);
+    lar_model_destroy(r.model);
+    return status;
+}
+
+/* ---- the command line ------------------------------------------------------------------- */
+
+static int check_settings(const run_settings *s) {
+    if (s->time > 0 && s->steps > 0)
+        return cli_complain(&cli_run, CLI_USAGE, "--time and --steps both say how long; give one");
+    if (strcmp(s->grid, "1x1x1") != 0)
+        return cli_complain(&cli_run, CLI_USAGE,
+                            "--grid %s: the parallel engine is not there yet; leave --grid out or "
+                            "give 1x1x1",
+                            s->grid);
+    if (s->threads != 1)
+        return cli_complain(&cli_run, CLI_USAGE,
+                            "--threads %lld: the parallel engine is not there yet; leave --threads "
+                            "out or give 1",
+                            (long long)s->threads);
+    return CLI_DONE;
+}
+
+static int run_main(int argc, char **argv) {
+    run_settings s = {.grid = "1x1x1", .threads = 1};
+    const cli_option options[] = {
+        CLI_REAL("--time", "S",
+                 "simulated seconds; without: the scene's duration,\nat least one "
+                 "output interval, 1 when it has none",
+                 &s.time, 1e-12, 1e9),
+        CLI_COUNT("--steps", "N", "the same in steps", &s.steps, 1, 1e15),
+        CLI_REAL("--time-step", "S",
+                 "seconds, instead of the scene's; above the stable\nstep an "
+                 "error",
+                 &s.time_step, 1e-15, 1e3),
+        CLI_CHOICE("--element", "NAME",
+                   "hex8 (default), or the slow oracles hex8-full and\n"
+                   "hex8-matrix",
+                   &s.element, cli_element_names),
+        CLI_CHOICE("--isa", "NAME",
+                   "instruction set: auto (default), c, neon, avx2,\navx512; the "
+                   "results are the same",
+                   &s.isa, cli_isa_names),
+        CLI_TEXT("--out", "DIR", "write frames, .pvd, probes.csv and run.json there", &s.out),
+        CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
+        CLI_TEXT("--grid", "NXxNYxNZ", "processors; only 1x1x1 for now", &s.grid),
+        CLI_COUNT("--threads", "N", "of a processor; only 1 for now", &s.threads, 1, 1e6),
+        CLI_FLAG("--json", "the summary as one JSON object on standard output", &s.json),
+        CLI_END};
+    int status = cli_parse(&cli_run, options, argc, argv, &s.scene, 1);
+    if (status >= 0) return status;
+    status = check_settings(&s);
+    return status ? status : run_scene(&s);
+}
+
+const cli_command cli_run = {
+    .name = "run",
+    .summary = "simulate a scene",
+    .arguments = "SCENE",
+    .description =
+        "Simulates a scene (.yaml), a FEBio deck (.feb) or a bare mesh, and ends with a summary.\n"
+        "With --out the folder can be opened in ParaView while the run goes on. Ctrl-C ends a run\n"
+        "with what there is (exit status 130); an unstable run ends with a message and its last\n"
+        "state (exit status 3).",
+    .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
+                "  lariat run demo/uterus.yaml --time 2 --realtime\n"
+                "  lariat run demo/uterus.yaml --steps 1000 --json\n"
+                "  lariat run demo/uterus.yaml --steps 100 --element hex8-full\n",
+    .main = run_main};

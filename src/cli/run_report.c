@@ -1,0 +1,118 @@
+#include "cli/run_report.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+#include "cli/json.h"
+
+/* Wall time that the simulated time is compared with: the steps, and the waiting between them when
+ * they were paced. Writing frames is no part of it unless it had to fit between two ticks. */
+static double stepping_time(const run_report *report) {
+    return report->clock->paced ? report->elapsed : lar_step_clock_busy(report->clock);
+}
+
+static double real_time_factor(const run_report *report) {
+    return lar_simulation_time(report->simulation) / stepping_time(report);
+}
+
+static double ns_per_element(const run_report *report) {
+    return 1e9 * lar_step_clock_busy(report->clock) /
+           ((double)lar_simulation_steps(report->simulation) * report->info.elements);
+}
+
+/* ---- for machines ----------------------------------------------------------------------- */
+
+static void write_times(json_writer *json, const lar_step_clock *clock) {
+    json_open(json, "wall_per_step_us", '{');
+    json_number(json, "p50", lar_step_clock_quantile(clock, 0.5));
+    json_number(json, "p99", lar_step_clock_quantile(clock, 0.99));
+    json_number(json, "p999", lar_step_clock_quantile(clock, 0.999));
+    json_number(json, "max", lar_step_clock_longest(clock));
+    json_close(json);
+}
+
+static void write_energy(json_writer *json, const lar_simulation *simulation) {
+    lar_energy energy;
+    lar_simulation_energy(simulation, &energy);
+    json_open(json, "energy", '{');
+    json_number(json, "kinetic", energy.kinetic);
+    json_number(json, "strain", energy.strain);
+    json_number(json, "hourglass", energy.hourglass);
+    json_number(json, "external", energy.external);
+    json_number(json, "damping", energy.damping);
+    json_close(json);
+}
+
+void run_report_json(const run_report *report, FILE *out) {
+    const lar_simulation *simulation = report->simulation;
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
+    json_writer json = json_begin(out);
+    json_text(&json, "title", report->info.title);
+    json_integer(&json, "elements", report->info.elements);
+    json_integer(&json, "nodes", report->info.nodes);
+    json_text(&json, "element", report->element);
+    json_integer(&json, "steps", (int64_t)lar_simulation_steps(simulation));
+    json_number(&json, "time", lar_simulation_time(simulation));
+    json_number(&json, "time_step", lar_simulation_time_step(simulation));
+    json_number(&json, "stable_step", report->info.stable_step);
+    /* One processor: no grid to speak of, nobody to talk to. */
+    json_text(&json, "grid", "1x1x1");
+    json_integer(&json, "threads", 1);
+    json_text(&json, "scheme", "none");
+    json_text(&json, "comm", "none");
+    json_text(&json, "isa", lar_simulation_isa(simulation));
+    json_number(&json, "wall_time", stepping_time(report));
+    write_times(&json, report->clock);
+    json_number(&json, "ns_per_element", ns_per_element(report));
+    json_number(&json, "real_time_factor", real_time_factor(report));
+    json_boolean(&json, "realtime", report->clock->paced);
+    json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
+    write_energy(&json, simulation);
+    json_text(&json, "state_hash", hash);
+    json_integer(&json, "frames", report->frames);
+    json_boolean(&json, "interrupted", report->interrupted);
+    json_end(&json);
+}
+
+/* ---- for people ------------------------------------------------------------------------- */
+
+static void print_pace(const run_report *report, FILE *out) {
+    const lar_step_clock *clock = report->clock;
+    double factor = real_time_factor(report);
+    fprintf(out, "%-17s%.4g s", "wall time", stepping_time(report));
+    if (clock->paced)
+        fprintf(out, ", paced; %" PRIu64 " of %" PRIu64 " steps ended after their tick\n",
+                clock->misses, clock->times.count);
+    else if (isfinite(factor))
+        fprintf(out, ", %.3g times as fast as real time\n", factor);
+    else
+        fputc('\n', out);
+}
+
+void run_report_table(const run_report *report, FILE *out) {
+    const lar_simulation *simulation = report->simulation;
+    const lar_step_clock *clock = report->clock;
+    lar_energy energy;
+    lar_simulation_energy(simulation, &energy);
+    fprintf(out, "%s: %d elements, %d nodes (%s, %s)\n", report->info.title,
+            (int)report->info.elements, (int)report->info.nodes, report->element,
+            lar_simulation_isa(simulation));
+    fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
+            lar_simulation_time(simulation), lar_simulation_steps(simulation),
+            lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");
+    print_pace(report, out);
+    if (clock->times.count > 0) {
+        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
+                "a step", lar_step_clock_quantile(clock, 0.5), lar_step_clock_quantile(clock, 0.99),
+                lar_step_clock_quantile(clock, 0.999), lar_step_clock_longest(clock));
+        fprintf(out, "%-17s%.4g ns on average\n", "an element", ns_per_element(report));
+    }
+    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g; external %.4g\n",
+            "energy [J]", energy.kinetic, energy.strain, energy.hourglass, energy.damping,
+            energy.external);
+    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(simulation));
+    if (report->folder)
+        fprintf(out, "%-17s%s: %d frame%s, .pvd, probes.csv, run.json\n", "results", report->folder,
+                report->frames, report->frames == 1 ? "" : "s");
+}

@@ -1,0 +1,25 @@
+/* What `lariat run` says at its end: a table for people, one JSON object for machines. */
+#ifndef LAR_CLI_RUN_REPORT_H
+#define LAR_CLI_RUN_REPORT_H
+
+#include <stdio.h>
+
+#include "lariat.h"
+#include "study/step_clock.h"
+
+typedef struct run_report {
+    lar_model_info info;
+    const char *element; /* kind */
+    bool interrupted;
+    const char *folder; /* of the results, NULL: none */
+    int frames;
+    const lar_simulation *simulation;
+    const lar_step_clock *clock;
+    double elapsed; /* wall time from the first step to the last, frames included [s] */
+} run_report;
+
+/* Keys: DESIGN section 11 and docs/cli.md. */
+void run_report_json(const run_report *report, FILE *out);
+void run_report_table(const run_report *report, FILE *out);
+
+#endif
