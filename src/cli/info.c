@@ -1,5 +1,6 @@
 /* lariat info: what a model holds, before it is run. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "cli/commands.h"
@@ -77,12 +78,27 @@ static void print_sets(const lar_model *model) {
     if (count > SHOWN) printf("%-17sand %d more (--json lists all)\n", "", (int)(count - SHOWN));
 }
 
+static void print_duration(const lar_model *model) {
+    double duration = lar_model_duration(model), interval = lar_model_output_interval(model);
+    if (duration > 0)
+        printf("%-17s%g s, ", "duration", duration);
+    else
+        printf("%-17sopen, ", "duration");
+    if (interval > 0)
+        printf("a frame every %g s\n", interval);
+    else
+        printf("one frame at the end\n");
+}
+
 static void print_table(const lar_model *model, const lar_model_info *info) {
     double size[3];
     for (int i = 0; i < 3; i++) size[i] = info->upper[i] - info->lower[i];
-    printf("%-17s%s\n", "title", info->title);
-    printf("%-17s%d elements, %d nodes, of these %d held or moved\n", "mesh", (int)info->elements,
-           (int)info->nodes, (int)info->fixed_nodes);
+    printf("%-17s%s\n", "title", *info->title ? info->title : "(none)");
+    printf("%-17s%d elements, %d nodes, ", "mesh", (int)info->elements, (int)info->nodes);
+    if (info->fixed_nodes > 0)
+        printf("of these %d held or moved\n", (int)info->fixed_nodes);
+    else
+        printf("none held or moved\n");
     printf("%-17s%.4g x %.4g x %.4g m, from (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g)\n", "size",
            size[0], size[1], size[2], info->lower[0], info->lower[1], info->lower[2],
            info->upper[0], info->upper[1], info->upper[2]);
@@ -93,10 +109,21 @@ static void print_table(const lar_model *model, const lar_model_info *info) {
            lar_model_element_id(model, info->scaled_jacobian_worst));
     printf("%-17s%.4g s (stable up to %.4g s, set by element %" PRId64 ")\n", "time step",
            info->time_step, info->stable_step, lar_model_element_id(model, info->stable_worst));
-    printf("%-17s%g s, a frame every %g s\n", "duration", lar_model_duration(model),
-           lar_model_output_interval(model));
+    print_duration(model);
     print_materials(model);
     print_sets(model);
+}
+
+/* Organs are not ten metres long: a mesh in millimetres is the commonest slip. */
+static void doubt_scale(const lar_model_info *info) {
+    static const double LARGE = 10;
+    double size = 0;
+    for (int i = 0; i < 3; i++) size = fmax(size, info->upper[i] - info->lower[i]);
+    if (size > LARGE)
+        cli_complain(&cli_info, CLI_DONE,
+                     "note: the model is %.4g m long; if the mesh is in millimetres, read it "
+                     "through a scene with scale: 0.001",
+                     size);
 }
 
 static int info_main(int argc, char **argv) {
@@ -117,6 +144,7 @@ static int info_main(int argc, char **argv) {
         write_json(path, model, &info);
     else
         print_table(model, &info);
+    if (!status) doubt_scale(&info);
     lar_model_destroy(model);
     return status;
 }

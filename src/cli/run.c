@@ -98,7 +98,8 @@ static uint64_t next_stop(const run *r) {
 }
 
 static run_report report_of(const run *r) {
-    run_report report = {.element = cli_element_names[r->settings.element],
+    run_report report = {.scene = r->settings.scene,
+                         .element = cli_element_names[r->settings.element],
                          .interrupted = stop_asked != 0,
                          .folder = r->settings.out,
                          .frames = r->frames,

@@ -95,9 +95,10 @@ void run_report_table(const run_report *report, FILE *out) {
     const lar_step_clock *clock = report->clock;
     lar_energy energy;
     lar_simulation_energy(simulation, &energy);
-    fprintf(out, "%s: %d elements, %d nodes (%s, %s)\n", report->info.title,
-            (int)report->info.elements, (int)report->info.nodes, report->element,
-            lar_simulation_isa(simulation));
+    bool titled = *report->info.title != '\0';
+    fprintf(out, "%s: %d elements, %d nodes (%s, %s)\n",
+            titled ? report->info.title : report->scene, (int)report->info.elements,
+            (int)report->info.nodes, report->element, lar_simulation_isa(simulation));
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
             lar_simulation_time(simulation), lar_simulation_steps(simulation),
             lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");

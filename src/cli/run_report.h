@@ -8,6 +8,7 @@
 #include "study/step_clock.h"
 
 typedef struct run_report {
+    const char *scene; /* the file */
     lar_model_info info;
     const char *element; /* kind */
     bool interrupted;

@@ -1,0 +1,83 @@
+/* Percentiles of step times: exact where values are small, to a bin's width elsewhere. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/histogram.h"
+
+static lar_histogram *empty(void) {
+    lar_histogram *histogram = calloc(1, sizeof *histogram);
+    assert_non_null(histogram);
+    return histogram;
+}
+
+static void nothing_added_is_zero(void **state) {
+    (void)state;
+    lar_histogram *h = empty();
+    assert_true(lar_histogram_quantile(h, 0.5) == 0);
+    free(h);
+}
+
+static void small_values_are_exact(void **state) {
+    (void)state;
+    lar_histogram *h = empty();
+    for (uint64_t i = 1; i <= 60; i++) lar_histogram_add(h, i);
+    assert_true(lar_histogram_quantile(h, 0) == 1);
+    assert_true(lar_histogram_quantile(h, 0.5) == 30);
+    assert_true(lar_histogram_quantile(h, 0.9) == 54);
+    assert_true(lar_histogram_quantile(h, 1) == 60);
+    assert_int_equal(h->count, 60);
+    assert_int_equal(h->sum, 60 * 61 / 2);
+    free(h);
+}
+
+static void every_size_is_known_to_a_bin(void **state) {
+    (void)state;
+    for (double value = 70; value < 1e12; value *= 1.37) {
+        lar_histogram *h = empty();
+        for (int i = 0; i < 3; i++) lar_histogram_add(h, (uint64_t)(value / 100));
+        for (int i = 0; i < 3; i++) lar_histogram_add(h, (uint64_t)value);
+        for (int i = 0; i < 3; i++) lar_histogram_add(h, (uint64_t)(value * 100));
+        double median = lar_histogram_quantile(h, 0.5);
+        assert_true(fabs(median - floor(value)) <= value / 64);
+        assert_true(lar_histogram_quantile(h, 1) <= floor(value * 100));
+        free(h);
+    }
+}
+
+static void tails_are_found(void **state) {
+    (void)state;
+    lar_histogram *h = empty();
+    for (int i = 0; i < 9989; i++) lar_histogram_add(h, 20000);
+    for (int i = 0; i < 10; i++) lar_histogram_add(h, 500000);
+    lar_histogram_add(h, 7000000);
+    assert_true(fabs(lar_histogram_quantile(h, 0.5) - 20000) < 400);
+    assert_true(fabs(lar_histogram_quantile(h, 0.998) - 20000) < 400);
+    assert_true(fabs(lar_histogram_quantile(h, 0.9995) - 500000) < 8000);
+    assert_true(h->most == 7000000 && h->least == 20000);
+    free(h);
+}
+
+static void values_beyond_the_last_bin_are_counted(void **state) {
+    (void)state;
+    lar_histogram *h = empty();
+    lar_histogram_add(h, UINT64_MAX);
+    lar_histogram_add(h, 0);
+    assert_int_equal(h->count, 2);
+    assert_true(lar_histogram_quantile(h, 0.1) == 0);
+    assert_true(lar_histogram_quantile(h, 1) > 1e12);
+    free(h);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_added_is_zero), cmocka_unit_test(small_values_are_exact),
+        cmocka_unit_test(every_size_is_known_to_a_bin), cmocka_unit_test(tails_are_found),
+        cmocka_unit_test(values_beyond_the_last_bin_are_counted)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,68 @@
+#!/bin/sh
+# Folders and disks that cannot be written: a message, no success, nothing half-written. Run as
+# root too, so it does not rely on permissions.
+. "$(dirname "$0")/lib.sh"
+scene=$SOURCE/examples/beam.yaml
+
+: >"$SCRATCH/file"
+for folder in "$SCRATCH/file" "$SCRATCH/file/below" /proc/none /dev/null; do
+    expect 1 "$LARIAT" run "$scene" --steps 1 --out "$folder"
+    complains "^lariat run: $folder: .*\(choose\|check\)"
+    silent
+    expect 1 "$LARIAT" demo-model "$folder"
+    complains "^lariat demo-model: "
+    silent
+done
+
+# A disk that is full for one file at a time.
+if [ -c /dev/full ]; then
+    full_for() {
+        rm -rf "$SCRATCH/full"
+        mkdir "$SCRATCH/full"
+        ln -s /dev/full "$SCRATCH/full/$1"
+        expect 1 "$LARIAT" run "$scene" --steps 10 --json --out "$SCRATCH/full"
+        complains "$2"
+        complains 'No space left'
+    }
+    full_for probes.csv 'probes\.csv: cannot be written'
+    full_for beam_000000.vtu.part 'beam_000000\.vtu: cannot be written'
+    [ ! -e "$SCRATCH/full/beam_000000.vtu" ] || fail "a half frame"
+    [ ! -e "$SCRATCH/full/beam.pvd" ] || fail "a series without its frame"
+    full_for beam.pvd.part 'beam\.pvd: cannot be written'
+    [ ! -e "$SCRATCH/full/beam.pvd" ] || fail "a half series"
+    full_for run.json.part 'run\.json: cannot be written'
+    [ ! -e "$SCRATCH/full/run.json" ] || fail "a half run.json"
+
+    # Standard output is a file like any other.
+    for command in --help --version "info $scene" "run $scene --steps 1 --json"; do
+        # shellcheck disable=SC2086
+        "$LARIAT" $command >/dev/full 2>"$SCRATCH/err"
+        [ $? -eq 1 ] || fail "success although standard output is full: $command"
+        complains 'standard output cannot be written'
+    done
+fi
+
+# A small file system that fills up during the run; only root can make one.
+mkdir "$SCRATCH/small"
+if mount -t tmpfs -o size=64k none "$SCRATCH/small" 2>/dev/null; then
+    trap 'umount "$SCRATCH/small" 2>/dev/null' EXIT
+    expect 0 "$LARIAT" demo-model "$SCRATCH/demo"
+    expect 1 "$LARIAT" run "$SCRATCH/demo/uterus.yaml" --steps 10 --out "$SCRATCH/small"
+    complains 'No space left'
+    left=$(find "$SCRATCH/small" -name '*.part' -o -name '*.vtu')
+    umount "$SCRATCH/small"
+    [ -z "$left" ] || fail "left on the full disk: $left"
+else
+    echo "skipped: no small file system can be mounted here"
+fi
+
+# A frame never overwrites the mesh that is simulated.
+expect 0 "$LARIAT" run "$scene" --steps 1 --out "$SCRATCH/again"
+printf '%s\n' 'lariat: 1' 'mesh: beam_000000.vtu' 'materials:' '  - { cells: all,' \
+    '    law: neo-hookean, density: 1e3, shear_modulus: 4e3, bulk_modulus: 4e5 }' \
+    >"$SCRATCH/again/beam.yaml"
+expect 1 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/again"
+complains 'will not be overwritten'
+expect 0 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/elsewhere"
+
+finish "full disks and wrong folders are reported"

@@ -1,0 +1,60 @@
+# What the tests of the command share. Sourced with: LARIAT (the command), JSON (json_check),
+# SCRATCH (an empty folder, made new), SOURCE (the checkout).
+set -u
+LARIAT=$1 JSON=$2 SCRATCH=$3 SOURCE=$4
+rm -rf "$SCRATCH"
+mkdir -p "$SCRATCH" || exit 1
+unset LARIAT_ISA
+failures=0
+
+fail() {
+    echo "FAILED: $*" >&2
+    failures=$((failures + 1))
+}
+
+# expect STATUS COMMAND...: runs it, keeps $SCRATCH/out and $SCRATCH/err, compares the exit status.
+# No output may hold a NaN or an infinity, but for messages that repeat a wrong argument.
+expect() {
+    wanted=$1
+    shift
+    "$@" >"$SCRATCH/out" 2>"$SCRATCH/err"
+    got=$?
+    if [ "$got" -ne "$wanted" ]; then
+        fail "exit status $got instead of $wanted: $*"
+        sed 's/^/    /' "$SCRATCH/err" >&2
+    fi
+    if [ "$wanted" -ne 2 ] && grep -Eiwq -e '-?nan|-?inf' "$SCRATCH/out" "$SCRATCH/err"; then
+        fail "a number that is none: $*"
+    fi
+}
+
+# The last command's standard output or error contains (a basic regular expression).
+says() {
+    grep -q -e "$1" "$SCRATCH/out" || fail "standard output lacks '$1'"
+}
+complains() {
+    grep -q -e "$1" "$SCRATCH/err" || {
+        fail "standard error lacks '$1':"
+        sed 's/^/    /' "$SCRATCH/err" >&2
+    }
+}
+silent() {
+    [ ! -s "$SCRATCH/out" ] || fail "standard output is not empty"
+}
+
+# The last command's JSON has these keys; every one a number after --numbers.
+has_keys() {
+    "$JSON" "$@" <"$SCRATCH/out" || fail "JSON: $*"
+}
+value_of() {
+    "$JSON" --print "$1" <"$SCRATCH/out"
+}
+
+finish() {
+    [ "$failures" -eq 0 ] || {
+        echo "$failures failed" >&2
+        exit 1
+    }
+    rm -rf "$SCRATCH"
+    echo "$1"
+}

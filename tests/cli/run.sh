@@ -1,0 +1,74 @@
+#!/bin/sh
+# The demonstration organ from disk to results, and what stays the same.
+. "$(dirname "$0")/lib.sh"
+demo=$SCRATCH/deep/demo
+
+expect 0 "$LARIAT" demo-model "$demo"
+says 'lariat run'
+scene=$demo/uterus.yaml
+
+expect 0 "$LARIAT" info "$scene"
+says '^mesh  *1840 elements'
+says 'fundus: .* nodes'
+expect 0 "$LARIAT" info "$scene" --json
+has_keys title file lower upper sets.0.name sets.0.kind materials.0.law notices --numbers nodes \
+    elements fixed_nodes volume mass shortest_edge scaled_jacobian.min scaled_jacobian.mean \
+    scaled_jacobian.worst_element stable_step stable_step_element time_step duration \
+    output_interval sets.0.count materials.0.shear_modulus
+[ "$(value_of elements)" = 1840 ] || fail "the organ has $(value_of elements) elements"
+
+expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"
+[ ! -s "$SCRATCH/err" ] || fail "messages during a good run"
+has_keys title element grid scheme comm isa state_hash realtime interrupted --numbers elements \
+    nodes steps time time_step stable_step threads wall_per_step_us.p50 wall_per_step_us.p99 \
+    wall_per_step_us.p999 wall_per_step_us.max real_time_factor deadline_misses energy.kinetic \
+    energy.strain energy.hourglass energy.external energy.damping wall_time ns_per_element frames
+[ "$(value_of steps)" = 200 ] || fail "$(value_of steps) steps instead of 200"
+value_of state_hash | grep -Eq '^"[0-9a-f]{16}"$' || fail "state_hash is $(value_of state_hash)"
+cmp -s "$SCRATCH/out" "$SCRATCH/results/run.json" || fail "run.json differs from --json"
+hash=$(value_of state_hash)
+
+# Frames, series and probes agree.
+frames=$(value_of frames)
+[ "$(find "$SCRATCH/results" -name 'uterus_*.vtu' | wc -l)" -eq "$frames" ] || fail "frames"
+[ "$(grep -c '<DataSet' "$SCRATCH/results/uterus.pvd")" -eq "$frames" ] || fail "uterus.pvd"
+[ "$(wc -l <"$SCRATCH/results/probes.csv")" -eq $((frames + 1)) ] || fail "probes.csv"
+head -n 1 "$SCRATCH/results/probes.csv" | grep -q '^time \[s\],fundus x \[m\]' || fail "header"
+find "$SCRATCH/results" -name '*.part' | grep -q . && fail "a part file is left"
+expect 0 "$LARIAT" info "$SCRATCH/results/uterus_000000.vtu"
+says '^mesh  *1840 elements'
+
+# The same bits from every instruction set, and without results.
+for isa in c auto; do
+    expect 0 "$LARIAT" run "$scene" --steps 200 --json --isa $isa
+    [ "$(value_of state_hash)" = "$hash" ] || fail "another hash with --isa $isa"
+done
+LARIAT_ISA=c
+export LARIAT_ISA
+expect 0 "$LARIAT" run "$scene" --steps 200 --json
+[ "$(value_of state_hash)$(value_of isa)" = "$hash\"c\"" ] || fail "LARIAT_ISA=c"
+LARIAT_ISA=z80
+expect 1 "$LARIAT" run "$scene" --steps 1
+complains "z80.*there are: "
+unset LARIAT_ISA
+
+# The oracle elements run too; a step above the stable one is refused.
+expect 0 "$LARIAT" run "$scene" --steps 2 --element hex8-full
+says 'hex8-full'
+expect 0 "$LARIAT" run "$scene" --steps 2 --element hex8-matrix --json
+[ "$(value_of element)" = '"hex8-matrix"' ] || fail "element"
+expect 1 "$LARIAT" run "$scene" --steps 1 --time-step 1
+complains 'above the stable step'
+expect 0 "$LARIAT" run "$scene" --time 0.001 --time-step 5e-5 --json
+[ "$(value_of steps)" = 20 ] || fail "0.001 s in steps of 5e-5 s are $(value_of steps) steps"
+
+# Pacing: 0.05 s take at least that long.
+expect 0 "$LARIAT" run "$scene" --time 0.05 --realtime --json
+has_keys --numbers deadline_misses
+[ "$(value_of realtime)" = true ] || fail "realtime"
+value_of wall_time | awk '{ exit !($1 >= 0.0499) }' || fail "paced in $(value_of wall_time) s"
+
+# A table for people.
+expect 0 "$LARIAT" run "$scene" --steps 10
+says '^state hash  *[0-9a-f]'
+finish "demo model: $frames frames, hash $hash"

@@ -1,0 +1,24 @@
+#!/bin/sh
+# A run that cannot end well says where, when and why, keeps its last state, and exits with 3.
+. "$(dirname "$0")/lib.sh"
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH/beam.vtk"
+sed 's/^fix:/load: [ { nodes: all, force: [0, 0, -1.0e5] } ]\nfix:/' "$SOURCE/examples/beam.yaml" \
+    >"$SCRATCH/violent.yaml"
+grep -q 'force' "$SCRATCH/violent.yaml" || fail "the scene has no load"
+
+expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --json --out "$SCRATCH/results"
+silent
+complains '^lariat run: unstable at step [0-9]* ([0-9.e-]* s): \(element\|node\) [0-9]* near (.*) m '
+complains 'use a smaller time step'
+complains 'the last frame in .*results, number 0'
+[ -s "$SCRATCH/results/violent_000000.vtu" ] || fail "the last state was not written"
+[ -s "$SCRATCH/results/violent.pvd" ] || fail "the series was not written"
+[ ! -e "$SCRATCH/results/run.json" ] || fail "a summary of a failed run"
+grep -Eiw 'nan|inf' "$SCRATCH/results/probes.csv" && fail "numbers that are none in probes.csv"
+expect 0 "$LARIAT" info "$SCRATCH/results/violent_000000.vtu"
+
+for element in hex8-full hex8-matrix; do
+    expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --element $element
+    complains 'unstable at step'
+done
+finish "an unstable run is reported"

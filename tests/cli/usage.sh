@@ -1,0 +1,74 @@
+#!/bin/sh
+# Help, wrong usage, and what the messages suggest.
+. "$(dirname "$0")/lib.sh"
+
+expect 0 "$LARIAT" --version
+says '^lariat [0-9]*\.[0-9]*\.[0-9]*$'
+expect 0 "$LARIAT" --help
+says 'demo-model'
+expect 2 "$LARIAT"
+silent
+complains 'Usage: lariat COMMAND'
+
+for command in info run demo-model bench 'bench kernel'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" $command --help
+    says "^Usage: lariat $command"
+    says '^Examples:'
+    says '  --help'
+    # shellcheck disable=SC2086
+    expect 2 "$LARIAT" $command --no-such-option
+    complains 'unknown option --no-such-option'
+    silent
+done
+expect 0 "$LARIAT" help run
+says '^Usage: lariat run'
+
+expect 2 "$LARIAT" rnu
+complains 'did you mean run?'
+expect 2 "$LARIAT" demo
+complains 'did you mean demo-model?'
+expect 2 "$LARIAT" xyzzy
+complains 'lariat --help'
+expect 2 "$LARIAT" help xyzzy
+expect 2 "$LARIAT" bench kernl
+complains 'did you mean kernel?'
+expect 2 "$LARIAT" bench
+
+beam=$SOURCE/examples/beam.yaml
+expect 2 "$LARIAT" run
+complains 'SCENE is missing'
+expect 2 "$LARIAT" run "$beam" another.yaml
+complains 'unexpected argument another.yaml'
+expect 2 "$LARIAT" run "$beam" --jsno
+complains 'did you mean --json?'
+expect 2 "$LARIAT" run "$beam" --time
+complains '--time needs a value'
+expect 2 "$LARIAT" run "$beam" --json=yes
+complains '--json takes no value'
+for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--steps 0' '--steps 1.5' \
+    '--steps 99999999999999999999' '--time-step 0' '--element tet' '--isa sse' '--out=' \
+    '--time 1 --steps 1'; do
+    # shellcheck disable=SC2086
+    expect 2 "$LARIAT" run "$beam" $wrong
+    silent
+done
+expect 2 "$LARIAT" run "$beam" --element tet
+complains 'hex8, hex8-full, hex8-matrix'
+expect 2 "$LARIAT" run "$beam" --grid 2x2x1
+complains 'parallel engine is not there yet'
+expect 2 "$LARIAT" run "$beam" --threads 2
+complains 'parallel engine is not there yet'
+expect 0 "$LARIAT" run --steps 1 --grid 1x1x1 --threads=1 -- "$beam"
+
+expect 1 "$LARIAT" run "$SCRATCH/none.yaml"
+complains '^lariat run: .*none\.yaml'
+expect 1 "$LARIAT" info "$SCRATCH"
+complains '^lariat info: '
+expect 1 "$LARIAT" info "$beam.txt"
+complains 'extension'
+expect 2 "$LARIAT" bench kernel --elements 0
+expect 2 "$LARIAT" bench kernel --shape ball
+complains 'general, box'
+
+finish "help and wrong usage are answered"

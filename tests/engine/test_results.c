@@ -1,0 +1,335 @@
+/* Results on disk: what is in the files, after every frame, and what happens when they cannot be
+ * written. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/folder.h"
+#include "engine/measure.h"
+#include "engine/simulation.h"
+#include "mechanics/law.h"
+#include "model/brick.h"
+#include "model/mesh_io.h"
+
+#define FOLDER LAR_TEST_BUILD "/results"
+
+typedef struct fixture {
+    lar_model *model;
+    lar_simulation *simulation;
+    lar_results *results;
+    lar_error error;
+} fixture;
+
+static void remove_results(void) {
+    static const char *const names[] = {"organ_000000.vtu", "organ_000001.vtu", "organ_000002.vtu",
+                                        "organ.pvd",        "probes.csv",       "expected.vtu"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", FOLDER, names[i]);
+        remove(path);
+    }
+    remove(FOLDER);
+}
+
+static void add_probe(lar_model *model, const char *name, int what, int32_t first, int32_t count) {
+    lar_probe *probe = LAR_MODEL_APPEND(model, output.probe);
+    *probe = (lar_probe){.name = lar_strdup(name), .what = what};
+    probe->nodes = (lar_node_list){count, lar_calloc((size_t)count, sizeof(int32_t))};
+    for (int32_t i = 0; i < count; i++) probe->nodes.node[i] = first + i;
+}
+
+/* The brick under its weight, its nine lower nodes held, a mean and a reaction probed. */
+static int set_up(void **state) {
+    fixture *f = calloc(1, sizeof *f);
+    lar_model *model = f->model = lar_model_create();
+    if (brick_read("one.vtu", 1, &model->mesh, &f->error)) return -1;
+    model->source = lar_strdup("some/folder/organ.yaml");
+    model->element_material = lar_calloc(BRICK_ELEMENTS, sizeof(int32_t));
+    lar_material *material = LAR_MODEL_APPEND(model, material);
+    material->law = LAR_LAW_neo_hookean;
+    material->density = 1000;
+    lar_material_from_shear_bulk(material, 4e3, 4e5);
+    model->gravity[2] = -9.81;
+    model->damping = 10;
+    lar_fix *fix = LAR_MODEL_APPEND(model, fix);
+    fix->axes = LAR_AXIS_ALL;
+    fix->nodes = (lar_node_list){9, lar_calloc(9, sizeof(int32_t))};
+    for (int i = 0; i < 9; i++) fix->nodes.node[i] = i;
+    model->output.fields = LAR_FIELD_DISPLACEMENT | LAR_FIELD_VELOCITY | LAR_FIELD_VON_MISES |
+                           LAR_FIELD_PRESSURE | LAR_FIELD_ENERGY;
+    add_probe(model, "lid", LAR_PROBE_DISPLACEMENT, 18, 9);
+    add_probe(model, "foot, \"left\"", LAR_PROBE_REACTION, 0, 9);
+    remove_results();
+    if (lar_model_check(model, &f->error)) return -1;
+    if (lar_simulation_create(model, NULL, &f->simulation, &f->error)) return -1;
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    fixture *f = *state;
+    lar_results_close(f->results, NULL);
+    lar_simulation_destroy(f->simulation);
+    lar_model_destroy(f->model);
+    free(f);
+    remove_results();
+    return 0;
+}
+
+static void open_results(fixture *f) {
+    if (lar_results_open(FOLDER, f->simulation, &f->results, &f->error))
+        fail_msg("%s", f->error.message);
+}
+
+static void add(fixture *f) {
+    if (lar_results_add(f->results, f->simulation, &f->error)) fail_msg("%s", f->error.message);
+}
+
+static lar_bytes read_all(const char *path) {
+    lar_bytes bytes = {0};
+    lar_error error;
+    if (lar_bytes_read(path, &bytes, &error)) fail_msg("%s", error.message);
+    return bytes;
+}
+
+/* ---- frames ----------------------------------------------------------------------------- */
+
+/* The same frame, put together from the public calls. */
+static void write_expected(fixture *f, const char *path) {
+    double u[BRICK_NODES][3], v[BRICK_NODES][3], mises[8], pressure[8], energy[8], cauchy[6];
+    lar_simulation_displacements(f->simulation, u);
+    lar_simulation_velocities(f->simulation, v);
+    for (int e = 0; e < 8; e++) {
+        energy[e] = lar_measure_stress(&f->simulation->domain, &f->simulation->state, e, cauchy);
+        mises[e] = lar_von_mises(cauchy);
+        pressure[e] = lar_mean_pressure(cauchy);
+    }
+    const lar_vtu_array point[] = {{"displacement", 3, &u[0][0]}, {"velocity", 3, &v[0][0]}};
+    const lar_vtu_array cell[] = {
+        {"von_mises", 1, mises}, {"pressure", 1, pressure}, {"energy", 1, energy}};
+    const lar_vtu_frame frame = {.mesh = &f->model->mesh,
+                                 .point_array = point,
+                                 .point_array_count = 2,
+                                 .cell_array = cell,
+                                 .cell_array_count = 3,
+                                 .time = lar_simulation_time(f->simulation)};
+    assert_int_equal(lar_vtu_write(path, &frame, &f->error), LAR_OK);
+    assert_true(mises[0] > 0 && energy[0] > 0 && u[26][2] < 0);
+}
+
+static void a_frame_holds_the_state(void **state) {
+    fixture *f = *state;
+    open_results(f);
+    lar_simulation_advance(f->simulation, 100, NULL);
+    add(f);
+    write_expected(f, FOLDER "/expected.vtu");
+    lar_bytes got = read_all(FOLDER "/organ_000000.vtu"),
+              expected = read_all(FOLDER "/expected.vtu");
+    assert_int_equal(got.size, expected.size);
+    assert_memory_equal(got.data, expected.data, got.size);
+    lar_bytes_free(&got);
+    lar_bytes_free(&expected);
+
+    lar_mesh mesh = {0};
+    assert_int_equal(lar_mesh_read(FOLDER "/organ_000000.vtu", 1, &mesh, &f->error), LAR_OK);
+    assert_memory_equal(mesh.position, f->model->mesh.position, BRICK_NODES * 3 * sizeof(double));
+    assert_non_null(lar_mesh_find_set(&mesh, "bottom", LAR_SET_NODES));
+    lar_mesh_clear(&mesh);
+}
+
+static void fields_are_those_asked_for(void **state) {
+    fixture *f = *state;
+    f->model->output.fields = LAR_FIELD_PRESSURE;
+    open_results(f);
+    add(f);
+    lar_bytes bytes = read_all(FOLDER "/organ_000000.vtu");
+    const char *text = (const char *)bytes.data;
+    assert_non_null(strstr(text, "Name=\"pressure\""));
+    assert_null(strstr(text, "Name=\"displacement\""));
+    assert_null(strstr(text, "Name=\"von_mises\""));
+    lar_bytes_free(&bytes);
+}
+
+static void the_series_lists_what_is_there(void **state) {
+    fixture *f = *state;
+    open_results(f);
+    for (int frame = 0; frame < 3; frame++) {
+        add(f);
+        lar_bytes bytes = read_all(FOLDER "/organ.pvd");
+        int listed = 0;
+        for (const char *at = (const char *)bytes.data; (at = strstr(at, "<DataSet")); at++) {
+            char expected[64];
+            snprintf(expected, sizeof expected, "file=\"organ_%06d.vtu\"", listed++);
+            assert_non_null(strstr(at, expected));
+        }
+        assert_int_equal(listed, frame + 1);
+        lar_bytes_free(&bytes);
+        lar_simulation_advance(f->simulation, 10, NULL);
+    }
+}
+
+static void adding_frames_changes_nothing(void **state) {
+    fixture *f = *state;
+    lar_simulation *other = NULL;
+    assert_int_equal(lar_simulation_create(f->model, NULL, &other, &f->error), LAR_OK);
+    open_results(f);
+    for (int frame = 0; frame < 3; frame++) {
+        add(f);
+        lar_simulation_advance(f->simulation, 25, NULL);
+    }
+    lar_simulation_advance(other, 75, NULL);
+    assert_true(lar_simulation_hash(f->simulation) == lar_simulation_hash(other));
+    lar_energy a, b;
+    lar_simulation_energy(f->simulation, &a);
+    lar_simulation_energy(other, &b);
+    assert_memory_equal(&a, &b, sizeof a);
+    lar_simulation_destroy(other);
+}
+
+/* ---- probes ----------------------------------------------------------------------------- */
+
+static void probes_have_names_units_and_values(void **state) {
+    fixture *f = *state;
+    open_results(f);
+    add(f);
+    lar_simulation_advance(f->simulation, 40000, NULL);
+    add(f);
+    lar_bytes bytes = read_all(FOLDER "/probes.csv");
+    char *text = (char *)bytes.data;
+    const char *header = "time [s],lid x [m],lid y [m],lid z [m],\"foot, \"\"left\"\" x [N]\","
+                         "\"foot, \"\"left\"\" y [N]\",\"foot, \"\"left\"\" z [N]\"\n";
+    assert_memory_equal(text, header, strlen(header));
+    char *line = text + strlen(header);
+    assert_memory_equal(line, "0,0,0,0,", 8);
+    line = strchr(line, '\n') + 1;
+    double value[7];
+    for (int i = 0; i < 7; i++) {
+        value[i] = strtod(line, &line);
+        assert_int_equal(*line++, i < 6 ? ',' : '\n');
+    }
+    assert_int_equal(*line, 0);
+
+    double u[BRICK_NODES][3], mean = 0;
+    lar_simulation_displacements(f->simulation, u);
+    for (int n = 18; n < 27; n++) mean += u[n][2] / 9;
+    assert_true(fabs(value[0] - lar_simulation_time(f->simulation)) < 1e-9 * value[0]);
+    assert_true(fabs(value[3] - mean) <= 1e-12 * fabs(mean));
+    /* At rest the foot carries the whole weight: 1000 kg/m^3 in a cube of 20 mm. */
+    assert_true(fabs(value[6] - 8e-6 * 1000 * 9.81) < 1e-6);
+    assert_true(fabs(value[4]) < 1e-9 && fabs(value[5]) < 1e-9);
+    lar_bytes_free(&bytes);
+}
+
+static void without_probes_there_is_the_time(void **state) {
+    fixture *f = *state;
+    for (int i = 0; i < f->model->output.probe_count; i++) {
+        free(f->model->output.probe[i].name);
+        free(f->model->output.probe[i].nodes.node);
+    }
+    f->model->output.probe_count = 0;
+    open_results(f);
+    add(f);
+    lar_bytes bytes = read_all(FOLDER "/probes.csv");
+    assert_string_equal((char *)bytes.data, "time [s]\n0\n");
+    lar_bytes_free(&bytes);
+}
+
+/* ---- what can go wrong ------------------------------------------------------------------ */
+
+static void names_follow_the_models_file(void **state) {
+    fixture *f = *state;
+    free(f->model->source);
+    f->model->source = NULL;
+    open_results(f);
+    add(f);
+    assert_int_equal(access(FOLDER "/model_000000.vtu", F_OK), 0);
+    remove(FOLDER "/model_000000.vtu");
+    remove(FOLDER "/model.pvd");
+}
+
+static void senseless_calls_are_refused(void **state) {
+    fixture *f = *state;
+    lar_results *none = NULL;
+    assert_int_equal(lar_results_open(NULL, f->simulation, &none, NULL), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_results_open("", f->simulation, &none, NULL), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_results_open(FOLDER, NULL, &none, NULL), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_results_add(NULL, f->simulation, NULL), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_results_close(NULL, NULL), LAR_OK);
+    assert_null(none);
+}
+
+static void a_file_is_no_folder(void **state) {
+    fixture *f = *state;
+    FILE *file = fopen(FOLDER, "w");
+    assert_non_null(file);
+    fclose(file);
+    assert_int_equal(lar_results_open(FOLDER, f->simulation, &f->results, &f->error), LAR_ERROR_IO);
+    assert_non_null(strstr(f->error.message, FOLDER));
+    assert_int_equal(lar_results_open(FOLDER "/below", f->simulation, &f->results, &f->error),
+                     LAR_ERROR_IO);
+    assert_null(f->results);
+}
+
+static void a_lost_folder_is_reported_and_may_come_back(void **state) {
+    fixture *f = *state;
+    open_results(f);
+    remove(FOLDER "/probes.csv");
+    assert_int_equal(rmdir(FOLDER), 0);
+    assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_IO);
+    assert_non_null(strstr(f->error.message, "organ_000000.vtu"));
+    assert_int_equal(mkdir(FOLDER, 0777), 0);
+    add(f);
+    assert_int_equal(access(FOLDER "/organ_000000.vtu", F_OK), 0);
+    assert_int_equal(access(FOLDER "/organ_000001.vtu", F_OK), -1);
+}
+
+static void a_state_without_numbers_is_not_written(void **state) {
+    fixture *f = *state;
+    open_results(f);
+    f->simulation->state.u[4 * f->simulation->domain.local[7] + 1] = NAN;
+    assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_UNSTABLE);
+    assert_non_null(strstr(f->error.message, "node 8 "));
+    assert_int_equal(access(FOLDER "/organ_000000.vtu", F_OK), -1);
+    assert_int_equal(access(FOLDER "/organ.pvd", F_OK), -1);
+}
+
+static void folders_are_made_with_those_above(void **state) {
+    (void)state;
+    lar_error error;
+    assert_int_equal(lar_folder_make(FOLDER "/a//b/c/", &error), LAR_OK);
+    assert_int_equal(lar_folder_make(FOLDER "/a/b/c", &error), LAR_OK);
+    assert_int_equal(rmdir(FOLDER "/a/b/c"), 0);
+    assert_int_equal(rmdir(FOLDER "/a/b"), 0);
+    assert_int_equal(rmdir(FOLDER "/a"), 0);
+    assert_int_equal(lar_folder_make("/", &error), LAR_OK);
+    assert_int_equal(lar_folder_make("", &error), LAR_ERROR_IO);
+    char *path = lar_folder_join("a/", "b");
+    assert_string_equal(path, "a/b");
+    free(path);
+}
+
+int main(void) {
+#define WITH_FIXTURE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {WITH_FIXTURE(a_frame_holds_the_state),
+                                       WITH_FIXTURE(fields_are_those_asked_for),
+                                       WITH_FIXTURE(the_series_lists_what_is_there),
+                                       WITH_FIXTURE(adding_frames_changes_nothing),
+                                       WITH_FIXTURE(probes_have_names_units_and_values),
+                                       WITH_FIXTURE(without_probes_there_is_the_time),
+                                       WITH_FIXTURE(names_follow_the_models_file),
+                                       WITH_FIXTURE(senseless_calls_are_refused),
+                                       WITH_FIXTURE(a_file_is_no_folder),
+                                       WITH_FIXTURE(a_lost_folder_is_reported_and_may_come_back),
+                                       WITH_FIXTURE(a_state_without_numbers_is_not_written),
+                                       WITH_FIXTURE(folders_are_made_with_those_above)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

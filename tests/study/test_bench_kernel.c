@@ -1,0 +1,132 @@
+/* The benchmark measures what it says: the block's shape, its motion, the peak's loop. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "model/model.h"
+#include "study/bench_kernel.h"
+#include "study/fma_peak.h"
+
+static void edges_are_exact_where_they_can_be(void **state) {
+    (void)state;
+    static const int32_t exact[] = {1, 8, 12, 27, 64, 1840, 1000, 4096, 100000, 1000000};
+    for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
+        int32_t edge[3];
+        lar_bench_edges(exact[i], edge);
+        assert_int_equal((int64_t)edge[0] * edge[1] * edge[2], exact[i]);
+    }
+    int32_t edge[3];
+    lar_bench_edges(1840, edge);
+    assert_int_equal(edge[0], 23);
+    assert_int_equal(edge[1], 10);
+    assert_int_equal(edge[2], 8);
+}
+
+static void edges_are_near_where_not(void **state) {
+    (void)state;
+    for (int32_t wanted = 1; wanted < 30000; wanted = wanted * 5 / 4 + 1) {
+        int32_t edge[3];
+        lar_bench_edges(wanted, edge);
+        int64_t product = (int64_t)edge[0] * edge[1] * edge[2];
+        assert_true(edge[0] >= 1 && edge[1] >= 1 && edge[2] >= 1);
+        assert_true(edge[0] <= 3 * edge[2]);
+        assert_true(llabs(product - wanted) <= 1 + wanted / 8);
+    }
+}
+
+/* The greatest difference between opposite edges, over the shortest edge: 0 for a
+ * parallelepiped. */
+static double crookedness(const double corner[8][3]) {
+    static const int pairs[9][4] = {{0, 1, 3, 2}, {0, 1, 4, 5}, {0, 1, 7, 6},
+                                    {0, 3, 1, 2}, {0, 3, 4, 7}, {0, 3, 5, 6},
+                                    {0, 4, 1, 5}, {0, 4, 2, 6}, {0, 4, 3, 7}};
+    double most = 0;
+    for (int k = 0; k < 9; k++)
+        for (int i = 0; i < 3; i++) {
+            double first = corner[pairs[k][1]][i] - corner[pairs[k][0]][i];
+            double second = corner[pairs[k][3]][i] - corner[pairs[k][2]][i];
+            most = fmax(most, fabs(first - second));
+        }
+    return most;
+}
+
+static void general_blocks_have_no_parallelepiped(void **state) {
+    (void)state;
+    static const int32_t edge[3] = {9, 8, 7};
+    for (int general = 0; general < 2; general++) {
+        lar_model *model = NULL;
+        lar_error error;
+        assert_int_equal(lar_bench_block(edge, general, &model, &error), LAR_OK);
+        assert_int_equal(model->mesh.element_count, 9 * 8 * 7);
+        for (int32_t e = 0; e < model->mesh.element_count; e++) {
+            double corner[8][3];
+            lar_mesh_corners(&model->mesh, e, corner);
+            if (general) {
+                assert_true(crookedness(corner) > 1e-4); /* of 5 mm */
+                assert_true(lar_scaled_jacobian(corner) > 0.3);
+            } else {
+                assert_true(crookedness(corner) < 1e-15);
+            }
+        }
+        lar_model_destroy(model);
+    }
+}
+
+static void figures_fit_together(void **state) {
+    (void)state;
+    lar_bench_kernel_options options = {.elements = 216, .general = true, .repeat = 3};
+    lar_bench_kernel_result r;
+    lar_error error;
+    assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_OK);
+    assert_int_equal(r.elements, 216);
+    assert_int_equal(r.nodes, 343);
+    assert_true(0 < r.nanoseconds.least && r.nanoseconds.least <= r.nanoseconds.median &&
+                r.nanoseconds.median <= r.nanoseconds.most);
+    assert_true(0 < r.peak_gflops.least && r.peak_gflops.least <= r.peak_gflops.most);
+    double share = 816 / r.nanoseconds.median / r.peak_gflops.median;
+    assert_true(fabs(share - r.fraction_of_peak) < 1e-12);
+    /* 328 bytes of a block's lane at least, and the nodes. */
+    assert_true(r.bytes_per_element > 328 && r.bytes_per_element < 2000);
+}
+
+static void nonsense_is_refused(void **state) {
+    (void)state;
+    lar_bench_kernel_options options = {.elements = 0, .repeat = 3};
+    lar_bench_kernel_result r;
+    lar_error error;
+    assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_ERROR_ARGUMENT);
+    options.elements = 8;
+    options.repeat = LAR_BENCH_REPEAT_MOST + 1;
+    assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_ERROR_ARGUMENT);
+}
+
+/* Every accumulator follows x' = (x + 1)/2 towards 1: the sum tells that no round was left out. */
+static void the_peak_computes_what_it_counts(void **state) {
+    (void)state;
+    const lar_fma_peak *peak = lar_fma_peak_find("c");
+    assert_non_null(peak);
+    assert_null(lar_fma_peak_find("z80"));
+    double accumulators = peak->run(1000);
+    assert_true(accumulators == floor(accumulators) && accumulators >= 8);
+    assert_true(peak->operations % (2 * (int)accumulators) == 0);
+    int repeats = peak->operations / (2 * (int)accumulators);
+    double expected = 0;
+    for (int i = 0; i < (int)accumulators; i++)
+        expected += 1 - (1 - 1.0 / (i + 2)) * pow(0.5, 2 * repeats);
+    assert_true(fabs(peak->run(2) - expected) < 1e-12);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(edges_are_exact_where_they_can_be),
+                                       cmocka_unit_test(edges_are_near_where_not),
+                                       cmocka_unit_test(general_blocks_have_no_parallelepiped),
+                                       cmocka_unit_test(figures_fit_together),
+                                       cmocka_unit_test(nonsense_is_refused),
+                                       cmocka_unit_test(the_peak_computes_what_it_counts)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
