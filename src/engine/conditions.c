@@ -161,12 +161,16 @@ void lar_conditions_load(lar_conditions *c, const lar_condition_context *context
 }
 
 void lar_conditions_observe(lar_conditions *c, const lar_condition_context *context,
-                            const lar_state *state) {
+                            lar_state *state) {
     for (int32_t i = 0; i < c->constraint_count; i++) {
         lar_constraint *constraint = &c->constraint[i];
-        if (constraint->curve < 0) continue; /* what stands still does no work */
-        constraint->force = (double)state->force[constraint->value] / context->scale;
-        constraint->before = state->v[constraint->value];
+        int64_t *force = &state->force[constraint->value];
+        if (constraint->curve >= 0) { /* what stands still does no work */
+            constraint->force = (double)*force / context->scale;
+            constraint->before = state->v[constraint->value];
+        }
+        /* The support takes it: a large reaction is no fast node. */
+        *force = 0;
     }
 }
 

@@ -73,9 +73,9 @@ double lar_conditions_half_work(const lar_conditions *conditions,
                                 const lar_state *state);
 
 /* After the elements, before the nodes move: remembers residual force and velocity where motion is
- * prescribed. */
+ * prescribed, and takes the residual from every supported value: it goes into the ground. */
 void lar_conditions_observe(lar_conditions *conditions, const lar_condition_context *context,
-                            const lar_state *state);
+                            lar_state *state);
 
 /* After the nodes moved from `time`: imposes supports and motion at time + dt; returns the work
  * that moving the supports took [J]. */

@@ -1,6 +1,7 @@
 #include "engine/step.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
@@ -71,6 +72,10 @@ static void move_nodes(const lar_domain *domain, double time, lar_state *state, 
                                  domain->push, mass, &state->damped) &&
         !trip->kind)
         *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
+    /* The spare nodes have no mass, but gravity moved them like all others: they must not fall. */
+    size_t first = 4 * (size_t)domain->node_count, end = 4 * (size_t)domain->node_padded;
+    memset(state->u + first, 0, (end - first) * sizeof *state->u);
+    memset(state->v + first, 0, (end - first) * sizeof *state->v);
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
