@@ -31,8 +31,8 @@ typedef struct run {
     int64_t next_frame; /* number of the next one, in intervals */
     uint64_t framed;    /* the step of the latest frame, UINT64_MAX: none */
     int frames;
-    double elapsed; /* [s] */
-    bool progress_shown;
+    double elapsed;     /* [s] */
+    double progress_at; /* when progress was last shown [s]; 0: it is not on the screen */
 } run;
 
 /* ---- stopping --------------------------------------------------------------------------- */
@@ -54,19 +54,19 @@ static void catch_signals(void) {
 /* ---- progress --------------------------------------------------------------------------- */
 
 static void show_progress(run *r) {
-    static const double QUIET = 1.0; /* shorter runs say nothing [s] */
+    static const double QUIET = 1.0, EVERY = 0.1; /* shorter runs say nothing [s] */
     double elapsed = lar_step_clock_elapsed(&r->clock);
-    if (elapsed < QUIET || !isatty(STDERR_FILENO)) return;
+    if (elapsed < QUIET || elapsed < r->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
     double done = (double)lar_simulation_steps(r->simulation) / (double)r->last_step;
     fprintf(stderr, "\r%5.1f %%  %.4g s simulated, %.0f s to go \033[K", 100 * done,
             lar_simulation_time(r->simulation), ceil(elapsed * (1 - done) / done));
     fflush(stderr);
-    r->progress_shown = true;
+    r->progress_at = elapsed;
 }
 
 static void clear_progress(run *r) {
-    if (r->progress_shown) fputs("\r\033[K", stderr);
-    r->progress_shown = false;
+    if (r->progress_at > 0) fputs("\r\033[K", stderr);
+    r->progress_at = 0;
 }
 
 static int fail(run *r, int status, const char *message) {

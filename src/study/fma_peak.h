@@ -3,7 +3,8 @@
  * The yardstick for the element kernel, measured in the same run on the same core. Compiled once
  * per instruction set, as the kernel itself. Twenty accumulators do not depend on each other:
  * more than latency times throughput (4 cycles x 2 units = 8) on every processor of today, and few
- * enough for the 32 registers of AVX-512 and NEON; AVX2 has 16 registers and takes twelve.
+ * enough for the 32 registers of AVX-512 and NEON; AVX2 has 16 registers and takes twelve. Plain C
+ * multiplies and adds where the compiler may not use the instruction.
  */
 #ifndef LAR_STUDY_FMA_PEAK_H
 #define LAR_STUDY_FMA_PEAK_H

@@ -25,7 +25,8 @@ typedef struct lar_step_clock {
     uint64_t first_step; /* of the simulation, at the start */
 } lar_step_clock;
 
-/* Begins now: the step that the simulation is at belongs to this moment. */
+/* Begins now: the step that the simulation is at belongs to this moment. When paced, the calling
+ * thread's timers are made as exact as the system allows. */
 void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simulation, bool paced);
 
 /* Up to `steps` steps, each measured. Returns early, with LAR_OK, when `most_seconds` have passed

@@ -1,0 +1,34 @@
+#!/bin/sh
+# docs/cli.md tells the truth: its examples run, every option and every JSON key is in it.
+. "$(dirname "$0")/lib.sh"
+page=$SOURCE/docs/cli.md
+cd "$SCRATCH" || exit 1
+
+awk '/^```sh/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page" >examples
+[ "$(grep -c '^lariat ' examples)" -ge 10 ] || fail "the examples were not found"
+while read -r word line; do
+    [ "$word" = lariat ] || fail "an example that is no lariat command: $word $line"
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" $line </dev/null
+done <examples
+
+# Every option that --help lists.
+for command in run demo-model info 'bench kernel'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" $command --help
+    grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do
+        grep -q -e "\`$option" "$page" || echo "$command $option"
+    done >>"$SCRATCH/undocumented"
+done
+
+# Every key, whatever its depth.
+keys() {
+    "$@" 2>/dev/null | grep -o '"[a-z0-9_]*":' | tr -d '":' | sort -u
+}
+for key in $(keys "$LARIAT" info demo/uterus.yaml --json) \
+    $(keys "$LARIAT" run demo/uterus.yaml --steps 1 --json) \
+    $(keys "$LARIAT" bench kernel --elements 8 --repeat 1 --json); do
+    grep -q "\`$key\`" "$page" || echo "key $key"
+done >>"$SCRATCH/undocumented"
+[ ! -s "$SCRATCH/undocumented" ] || fail "not in docs/cli.md: $(tr '\n' ' ' <"$SCRATCH/undocumented")"
+finish "docs/cli.md: examples run, options and keys are all there"
