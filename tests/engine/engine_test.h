@@ -131,8 +131,8 @@ TEST_UNUSED static int add_ramp(lar_model *model, double over) {
 TEST_UNUSED static int add_table(lar_model *model, lar_curve_shape shape, int count,
                                  const double (*point)[2]) {
     lar_curve *curve = LAR_MODEL_APPEND(model, curve);
-    *curve = (lar_curve){LAR_CURVE_TABLE, 0, shape, count,
-                         lar_calloc((size_t)count, sizeof *point)};
+    *curve =
+        (lar_curve){LAR_CURVE_TABLE, 0, shape, count, lar_calloc((size_t)count, sizeof *point)};
     memcpy(curve->point, point, (size_t)count * sizeof *point);
     return model->curve_count - 1;
 }
@@ -144,8 +144,7 @@ TEST_UNUSED static void move_nodes(lar_model *model, lar_node_list nodes, unsign
 
 TEST_UNUSED static void load_nodes(lar_model *model, lar_node_list nodes, double x, double y,
                                    double z, int curve) {
-    *(lar_nodal_load *)LAR_MODEL_APPEND(model, load) =
-        (lar_nodal_load){nodes, {x, y, z}, curve};
+    *(lar_nodal_load *)LAR_MODEL_APPEND(model, load) = (lar_nodal_load){nodes, {x, y, z}, curve};
 }
 
 /* Pressure on the whole boundary, or on local face `face` of the boundary. */

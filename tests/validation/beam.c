@@ -43,8 +43,8 @@ static void interpolate(const beam_mesh *coarse, double (*from)[3], const int ce
         int far[3] = {a & 1, a >> 1 & 1, a >> 2};
         double weight = 1;
         for (int i = 0; i < 3; i++) weight *= far[i] ? share[i] : 1 - share[i];
-        const double *u = from[node_at(coarse, cell[0] + far[0], cell[1] + far[1],
-                                       cell[2] + far[2])];
+        const double *u =
+            from[node_at(coarse, cell[0] + far[0], cell[1] + far[1], cell[2] + far[2])];
         for (int i = 0; i < 3; i++) out[i] += weight * u[i];
     }
 }

@@ -7,7 +7,8 @@
  * near critical for the slowest mode until the kinetic energy is negligible. Every figure that a
  * test looks at is also printed as one line
  *
- *     case | element | mesh | quantity | reference | ours | difference | hourglass | steps | seconds
+ *     case | element | mesh | quantity | reference | ours | difference | hourglass | steps |
+ * seconds
  *
  * from which docs/validation.md is made.
  */

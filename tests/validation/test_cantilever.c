@@ -43,8 +43,8 @@ static void report_level(int poisson, const beam_mesh *mesh, double t, const lar
            displacement(simulation, beam_tip(model), 0), simulation);
 }
 
-/* One load level on one mesh: from the answer of the coarser mesh, or from the level before. (At 1 g
- * the clamped end folds so sharply that interpolation would crush the smallest elements.) */
+/* One load level on one mesh: from the answer of the coarser mesh, or from the level before. (At 1
+ * g the clamped end folds so sharply that interpolation would crush the smallest elements.) */
 static void bend(const lar_model *model, const beam_mesh *mesh, int l, lar_simulation *simulation,
                  const beam_mesh *coarse, double (*answer)[3]) {
     double time = lar_simulation_time(simulation);
@@ -115,10 +115,10 @@ static void full_is_febios_full(void **unused) {
             bend(model, &beam_meshes[0], l, simulation, NULL, NULL);
             snprintf(title, sizeof title, "beam nu 0.%d", poisson);
             snprintf(quantity, sizeof quantity, "tip uz at %g g [m]", level[l]);
-            double difference = report(
-                title, "hex8-full", "20x2x2", quantity,
-                reference_value(case_name(poisson, "20x2x2"), "full", level[l], "tip_uz"),
-                displacement(simulation, beam_tip(model), 2), simulation);
+            double difference =
+                report(title, "hex8-full", "20x2x2", quantity,
+                       reference_value(case_name(poisson, "20x2x2"), "full", level[l], "tip_uz"),
+                       displacement(simulation, beam_tip(model), 2), simulation);
             assert_within(difference, 0.005);
         }
         lar_simulation_destroy(simulation);

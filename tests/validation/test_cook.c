@@ -1,5 +1,5 @@
-/* Cook's membrane against CalculiX and FEBio: bending and shear of a tapered, distorted mesh, almost
- * incompressible (nu = 0.4999). Where elements lock, they lock here. */
+/* Cook's membrane against CalculiX and FEBio: bending and shear of a tapered, distorted mesh,
+ * almost incompressible (nu = 0.4999). Where elements lock, they lock here. */
 #include "validation/cook.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
-/* A measured experiment: a silicone cylinder, 38 x 178 mm, clamped at one end, sagging by two thirds
- * of its length; its surface was scanned. The stiffness is not known independently: E = 78 kPa is
- * what CalculiX needs to meet the scan, so this tests shape, and code against code. */
+/* A measured experiment: a silicone cylinder, 38 x 178 mm, clamped at one end, sagging by two
+ * thirds of its length; its surface was scanned. The stiffness is not known independently: E = 78
+ * kPa is what CalculiX needs to meet the scan, so this tests shape, and code against code. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 /* Decks of FEBio's own test suite, read as they are and run with the element that FEBio uses. What
- * is compared is FEBio's gold standard: the L2 norm of the free displacement unknowns at the end. */
+ * is compared is FEBio's gold standard: the L2 norm of the free displacement unknowns at the end.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

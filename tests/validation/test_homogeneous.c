@@ -37,9 +37,8 @@ static void stretch(int poisson, int kind) {
     double force[3], side = 1 + displacement(simulation, node_near(model, 1, 1, 1), 1);
     lar_node_list left = nodes_at(model, 0, 0);
     sum_reactions(simulation, left, force);
-    double off_side =
-        report(title, kind_names[kind], "2x2x2", "lateral stretch",
-               reference_value(name, "C3D8", 1, "lateral_stretch"), side, simulation);
+    double off_side = report(title, kind_names[kind], "2x2x2", "lateral stretch",
+                             reference_value(name, "C3D8", 1, "lateral_stretch"), side, simulation);
     double off_force = report(title, kind_names[kind], "2x2x2", "force [N]",
                               reference_value(name, "C3D8", 1, "Fx"), -force[0], simulation);
     assert_within(off_side, 0.00001);

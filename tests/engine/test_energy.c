@@ -1,0 +1,136 @@
+/* Where the energy goes: undamped bodies keep it, and with damping, gravity, moved supports,
+ * pressure and nodal loads every joule is accounted for. */
+#include "engine/engine_test.h"
+
+static double total(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass;
+}
+
+/* Slope of a regression line through `count` equidistant values, times the whole time, and its
+ * standard error. */
+static double trend(const double *value, int count, double *standard_error) {
+    double mean = 0, sxy = 0, sxx = 0, squares = 0;
+    for (int i = 0; i < count; i++) mean += value[i] / count;
+    for (int i = 0; i < count; i++) {
+        double x = i - 0.5 * (count - 1);
+        sxx += x * x;
+        sxy += x * (value[i] - mean);
+    }
+    for (int i = 0; i < count; i++) {
+        double rest = value[i] - mean - sxy / sxx * (i - 0.5 * (count - 1));
+        squares += rest * rest;
+    }
+    *standard_error = sqrt(squares / (count - 2) / sxx) * count;
+    return sxy / sxx * count;
+}
+
+/* The total is not quite constant: what central differences conserve differs from it by a ripple of
+ * second order in the step, whose mean wanders a little while the modes exchange their energy. A
+ * scheme or an element that makes or eats energy would show as a trend above it. */
+static void vibrate(lar_law law, bool held) {
+    enum { SAMPLES = 2000, STRIDE = 50 };
+    static double value[SAMPLES];
+    brick b = soft_brick;
+    b.law = law;
+    lar_model *model = brick_model(&b);
+    if (held) fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+    throw_body(model, (double[]){0, 0, 0}, (double[]){0, held ? 2 : 1, -1}, 0.06);
+    lar_options options = lar_options_default();
+    options.time_step = 2e-4; /* a sixth of the stable step */
+    lar_simulation *simulation = start_with(model, options);
+    lar_energy energy;
+    advance(simulation, STRIDE);
+    double strain = 0, highest = 0, lowest = INFINITY;
+    for (int i = 0; i < SAMPLES; i++) {
+        lar_simulation_energy(simulation, &energy);
+        value[i] = total(&energy);
+        highest = fmax(highest, value[i]);
+        lowest = fmin(lowest, value[i]);
+        strain = fmax(strain, (energy.strain + energy.hourglass) / value[i]);
+        advance(simulation, STRIDE);
+    }
+    assert_true(lar_simulation_steps(simulation) >= 100000);
+    assert_true(strain > 0.2);                       /* a real vibration */
+    assert_below((highest - lowest) / lowest, 2e-3); /* within 0.1% of the middle */
+    double error, slope = trend(value, SAMPLES, &error);
+    assert_below(fabs(slope) / value[0], 1e-4);
+    print_message("%s, %s: spread %.2g, trend %.2g +- %.2g over 100,000 steps\n", lar_law_name[law],
+                  held ? "held" : "free", (highest - lowest) / lowest, slope / value[0],
+                  error / value[0]);
+    finish(simulation, model);
+}
+
+static void an_undamped_body_keeps_its_energy(void **unused) {
+    (void)unused;
+    for (int law = 0; law < LAR_LAW_COUNT; law++) {
+        vibrate((lar_law)law, true);
+        vibrate((lar_law)law, false);
+    }
+}
+
+/* ---- the balance ---------------------------------------------------------------------------- */
+
+enum { DAMPED = 1, HEAVY = 2, HEAVY_CURVE = 4, MOVED = 8, PRESSED = 16, LOADED = 32 };
+
+static lar_model *busy_model(unsigned what) {
+    brick b = soft_brick;
+    lar_model *model = brick_model(&b);
+    static const double up_and_down[4][2] = {{0, 0}, {0.1, 1}, {0.2, -0.5}, {0.3, 0.8}};
+    int ramp = add_ramp(model, 0.1);
+    int table = add_table(model, LAR_CURVE_SMOOTH, 4, up_and_down);
+    fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+    if (what & DAMPED) model->damping = 8;
+    if (what & (HEAVY | HEAVY_CURVE)) memcpy(model->gravity, (double[]){3, -2, -9.81}, 24);
+    if (what & HEAVY_CURVE)
+        for (int i = 0; i < 3; i++) model->gravity_curve[i] = table;
+    if (what & MOVED) move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_X, 0.006, table);
+    if (what & MOVED) move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_Y, 0.004, ramp);
+    if (what & PRESSED) press(model, 5, 150, table);
+    if (what & LOADED) load_nodes(model, brick_side(&b, 2, -1), 0.001, 0.002, -0.003, table);
+    return model;
+}
+
+/* Largest error of the balance over the largest external work. */
+static double imbalance(unsigned what, lar_element_kind kind, double step, double *work) {
+    lar_model *model = busy_model(what);
+    lar_options options = lar_options_default();
+    options.element = kind;
+    options.time_step = step;
+    lar_simulation *simulation = start_with(model, options);
+    double worst = 0;
+    *work = 0;
+    while (lar_simulation_time(simulation) < 0.5) {
+        lar_energy e;
+        advance(simulation, 10);
+        lar_simulation_energy(simulation, &e);
+        worst = fmax(worst, fabs(total(&e) + e.damping - e.external));
+        *work = fmax(*work, fabs(e.external));
+    }
+    finish(simulation, model);
+    return worst / *work;
+}
+
+static void every_joule_is_accounted_for(void **unused) {
+    (void)unused;
+    static const unsigned cases[] = {
+        HEAVY,           HEAVY_CURVE,
+        MOVED,           PRESSED,
+        LOADED,          HEAVY | DAMPED,
+        MOVED | DAMPED,  PRESSED | DAMPED,
+        LOADED | DAMPED, MOVED | HEAVY_CURVE | PRESSED | LOADED | DAMPED};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_FULL; kind++) {
+            double work, error = imbalance(cases[i], (lar_element_kind)kind, 1e-4, &work);
+            print_message("conditions %2u, %s: %.2g of %.3g J\n", cases[i],
+                          kind ? "hex8-full" : "hex8", error, work);
+            assert_below(error, 1e-4);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_undamped_body_keeps_its_energy),
+        cmocka_unit_test(every_joule_is_accounted_for),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

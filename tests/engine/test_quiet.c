@@ -1,0 +1,160 @@
+/* The step is quiet: after warm-up it allocates nothing, takes no lock and asks the system for
+ * nothing.
+ *
+ * Memory and locks are counted by the linker's --wrap, which leads every call from the library to
+ * the functions below; system calls are forbidden by a seccomp filter in a child process, which the
+ * kernel kills at the first one. Where the sandbox of the test allows no filter, that part says so
+ * and is skipped. */
+#include "engine/engine_test.h"
+
+#include <errno.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int calls;
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void __real_free(void *memory);
+int __real_pthread_mutex_lock(pthread_mutex_t *mutex);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+void __wrap_free(void *memory);
+int __wrap_pthread_mutex_lock(pthread_mutex_t *mutex);
+
+void *__wrap_malloc(size_t size) {
+    calls++;
+    return __real_malloc(size);
+}
+void *__wrap_calloc(size_t count, size_t size) {
+    calls++;
+    return __real_calloc(count, size);
+}
+void *__wrap_realloc(void *old, size_t size) {
+    calls++;
+    return __real_realloc(old, size);
+}
+void *__wrap_aligned_alloc(size_t alignment, size_t size) {
+    calls++;
+    return __real_aligned_alloc(alignment, size);
+}
+void __wrap_free(void *memory) {
+    calls++;
+    __real_free(memory);
+}
+int __wrap_pthread_mutex_lock(pthread_mutex_t *mutex) {
+    calls++;
+    return __real_pthread_mutex_lock(mutex);
+}
+
+/* Everything that a step can do: all laws, supports, motion, loads, pressure, varying gravity,
+ * damping. */
+static lar_model *busy_model(void) {
+    brick b = soft_brick;
+    lar_model *model = brick_model(&b);
+    static const double points[3][2] = {{0, 0}, {0.02, 1}, {0.05, -0.5}};
+    int ramp = add_ramp(model, 0.03), table = add_table(model, LAR_CURVE_SMOOTH, 3, points);
+    for (int law = 1; law < LAR_LAW_COUNT; law++) {
+        lar_material *material = LAR_MODEL_APPEND(model, material);
+        material->law = (lar_law)law;
+        material->density = b.density;
+        lar_material_from_shear_bulk(material, b.shear, b.bulk);
+        model->element_material[law] = law;
+    }
+    memcpy(model->gravity, (double[]){2, 1, -9.81}, 24);
+    model->gravity_curve[0] = table;
+    model->damping = 3;
+    fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+    move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_Y, 0.004, table);
+    press(model, 4, 60, ramp);
+    load_nodes(model, single_node(brick_node(&b, 1, 1, 1)), 0.002, -0.001, 0.001, ramp);
+    return model;
+}
+
+static void a_step_allocates_and_locks_nothing(void **unused) {
+    (void)unused;
+    for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_MATRIX; kind++) {
+        lar_model *model = busy_model();
+        lar_options options = lar_options_default();
+        options.element = (lar_element_kind)kind;
+        int before = calls;
+        lar_simulation *simulation = start_with(model, options);
+        assert_true(calls > before); /* the counting works */
+        advance(simulation, 10);
+        lar_error error;
+        before = calls;
+        lar_status status = lar_simulation_advance(simulation, 300, &error);
+        int counted = calls - before;
+        assert_int_equal(status, LAR_OK);
+        assert_int_equal(counted, 0);
+        finish(simulation, model);
+    }
+}
+
+/* From here on every system call but exit_group kills the process. */
+static bool forbid_system_calls(void) {
+    struct sock_filter rules[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_exit_group, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
+    };
+    struct sock_fprog program = {sizeof rules / sizeof rules[0], rules};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+enum { QUIET = 0, FAILED = 1, NO_FILTER = 77 };
+
+/* Runs in a child: its exit status, or 256 + the signal that ended it. */
+static int in_child(lar_simulation *simulation, uint64_t steps) {
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        if (!forbid_system_calls()) _exit(NO_FILTER);
+        lar_status status = LAR_OK;
+        if (steps > 0)
+            status = lar_simulation_advance(simulation, steps, NULL);
+        else
+            (void)syscall(SYS_getppid);
+        syscall(SYS_exit_group, status ? FAILED : QUIET);
+    }
+    int result;
+    while (waitpid(child, &result, 0) < 0) assert_int_equal(errno, EINTR);
+    return WIFEXITED(result) ? WEXITSTATUS(result) : 256 + WTERMSIG(result);
+}
+
+static void a_step_makes_no_system_call(void **unused) {
+    (void)unused;
+    lar_model *model = busy_model();
+    lar_simulation *simulation = start(model);
+    advance(simulation, 10);
+    int caught = in_child(simulation, 0);
+    if (caught == NO_FILTER) {
+        print_message("skipped: this system allows no seccomp filter\n");
+        finish(simulation, model);
+        skip();
+    }
+    assert_int_equal(caught, 256 + SIGSYS); /* the filter works */
+    assert_int_equal(in_child(simulation, 1000), QUIET);
+    finish(simulation, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_step_allocates_and_locks_nothing),
+        cmocka_unit_test(a_step_makes_no_system_call),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
