@@ -2,12 +2,14 @@
  * written. */
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,7 +17,7 @@
 
 #include "base/folder.h"
 #include "engine/measure.h"
-#include "engine/simulation.h"
+#include "engine/results_probe.h"
 #include "mechanics/law.h"
 #include "model/brick.h"
 #include "model/mesh_io.h"
@@ -243,6 +245,39 @@ static void without_probes_there_is_the_time(void **state) {
     lar_bytes_free(&bytes);
 }
 
+/* A disk that fills up in the middle of a line, played by a limit on the size of files. */
+static void a_line_is_whole_or_not_there(void **state) {
+    fixture *f = *state;
+    lar_probe_file file;
+    assert_int_equal(lar_folder_make(FOLDER, &f->error), LAR_OK);
+    assert_int_equal(lar_probe_file_open(&file, lar_strdup(FOLDER "/probes.csv"), f->model, NULL),
+                     LAR_OK);
+    lar_bytes header = read_all(FOLDER "/probes.csv");
+    struct rlimit before, tight;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    tight = before;
+    tight.rlim_cur = header.size + 5;
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &tight), 0);
+    lar_status status = lar_probe_file_add(&file, f->simulation, &f->error);
+    setrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, handler);
+    assert_int_equal(status, LAR_ERROR_IO);
+    assert_non_null(strstr(f->error.message, "probes.csv"));
+
+    lar_bytes after = read_all(FOLDER "/probes.csv");
+    assert_int_equal(after.size, header.size);
+    lar_bytes_free(&after);
+    assert_int_equal(lar_probe_file_add(&file, f->simulation, &f->error), LAR_OK);
+    after = read_all(FOLDER "/probes.csv");
+    assert_memory_equal(after.data, header.data, header.size);
+    assert_memory_equal(after.data + header.size, "0,0,0,0,", 8);
+    lar_bytes_free(&after);
+    lar_bytes_free(&header);
+    assert_int_equal(lar_probe_file_close(&file, &f->error), LAR_OK);
+    assert_int_equal(lar_probe_file_close(&file, &f->error), LAR_OK);
+}
+
 /* ---- what can go wrong ------------------------------------------------------------------ */
 
 static void names_follow_the_models_file(void **state) {
@@ -325,6 +360,7 @@ int main(void) {
                                        WITH_FIXTURE(adding_frames_changes_nothing),
                                        WITH_FIXTURE(probes_have_names_units_and_values),
                                        WITH_FIXTURE(without_probes_there_is_the_time),
+                                       WITH_FIXTURE(a_line_is_whole_or_not_there),
                                        WITH_FIXTURE(names_follow_the_models_file),
                                        WITH_FIXTURE(senseless_calls_are_refused),
                                        WITH_FIXTURE(a_file_is_no_folder),
