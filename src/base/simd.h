@@ -33,6 +33,9 @@
 #endif
 #define LAR_LANES LAR_SIMD
 
+/* Element p of a row stands in lane LAR_ROW_LANES[p] (its own inverse); see lar_lane_gather_row. */
+static const int8_t LAR_ROW_LANES[8] __attribute__((unused)) = {0, 2, 1, 3, 4, 6, 5, 7};
+
 #define LAR_INLINE static inline __attribute__((always_inline, unused))
 
 #if LAR_SIMD == LAR_SIMD_AVX512
@@ -94,8 +97,7 @@ LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
 }
 
 /* One local node of eight elements: offset[lane] counts doubles from `nodes` (4 per node). */
-LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
-                                lar_lane *y, lar_lane *z) {
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane out[3]) {
 #define LAR_PAIR(i, j)                                                                             \
     _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(nodes + offset[i])),                  \
                        _mm256_load_pd(nodes + offset[j]), 1)
@@ -103,37 +105,99 @@ LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_
 #undef LAR_PAIR
     __m512d xz0 = _mm512_unpacklo_pd(n02, n13), yw0 = _mm512_unpackhi_pd(n02, n13);
     __m512d xz4 = _mm512_unpacklo_pd(n46, n57), yw4 = _mm512_unpackhi_pd(n46, n57);
-    *x = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0x88);
-    *z = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0xdd);
-    *y = (lar_lane)_mm512_shuffle_f64x2(yw0, yw4, 0x88);
+    out[0] = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0x88);
+    out[2] = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0xdd);
+    out[1] = (lar_lane)_mm512_shuffle_f64x2(yw0, yw4, 0x88);
+}
+
+/* Two nodes' (x, y, z, 0) picked out of xy and z, added one after the other. */
+LAR_INLINE void lar_node_add(int64_t *nodes, int32_t first, int32_t second, __m512i xy,
+                             __m512i pick, __m512i z) {
+    __m512i pair = _mm512_maskz_permutex2var_epi64(0x77, xy, pick, z);
+    __m256i *node = (__m256i *)(nodes + first);
+    _mm256_store_si256(node,
+                       _mm256_add_epi64(_mm256_load_si256(node), _mm512_castsi512_si256(pair)));
+    node = (__m256i *)(nodes + second);
+    _mm256_store_si256(
+        node, _mm256_add_epi64(_mm256_load_si256(node), _mm512_extracti64x4_epi64(pair, 1)));
 }
 
 /* Adds lanes to eight nodes, one after the other: the same node may appear in several lanes. */
-LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
-                                      lar_ilane y, lar_ilane z) {
-    __m512i xy_even = _mm512_unpacklo_epi64((__m512i)x, (__m512i)y);
-    __m512i xy_odd = _mm512_unpackhi_epi64((__m512i)x, (__m512i)y);
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset,
+                                      const lar_ilane add[3]) {
+    __m512i x = (__m512i)add[0], y = (__m512i)add[1], z = (__m512i)add[2];
+    __m512i xy_even = _mm512_unpacklo_epi64(x, y), xy_odd = _mm512_unpackhi_epi64(x, y);
     const __m512i pick02 = _mm512_setr_epi64(0, 1, 8, 0, 2, 3, 10, 0);
     const __m512i pick46 = _mm512_setr_epi64(4, 5, 12, 0, 6, 7, 14, 0);
     const __m512i pick13 = _mm512_setr_epi64(0, 1, 9, 0, 2, 3, 11, 0);
     const __m512i pick57 = _mm512_setr_epi64(4, 5, 13, 0, 6, 7, 15, 0);
-#define LAR_ADD(i, v)                                                                              \
-    do {                                                                                           \
-        __m256i *node = (__m256i *)(nodes + offset[i]);                                            \
-        _mm256_store_si256(node, _mm256_add_epi64(_mm256_load_si256(node), v));                    \
-    } while (0)
-#define LAR_ADD_PAIR(i, j, xy, pick)                                                               \
-    do {                                                                                           \
-        __m512i pair = _mm512_maskz_permutex2var_epi64(0x77, xy, pick, (__m512i)z);                \
-        LAR_ADD(i, _mm512_castsi512_si256(pair));                                                  \
-        LAR_ADD(j, _mm512_extracti64x4_epi64(pair, 1));                                            \
-    } while (0)
-    LAR_ADD_PAIR(0, 2, xy_even, pick02);
-    LAR_ADD_PAIR(4, 6, xy_even, pick46);
-    LAR_ADD_PAIR(1, 3, xy_odd, pick13);
-    LAR_ADD_PAIR(5, 7, xy_odd, pick57);
-#undef LAR_ADD_PAIR
-#undef LAR_ADD
+    lar_node_add(nodes, offset[0], offset[2], xy_even, pick02, z);
+    lar_node_add(nodes, offset[4], offset[6], xy_even, pick46, z);
+    lar_node_add(nodes, offset[1], offset[3], xy_odd, pick13, z);
+    lar_node_add(nodes, offset[5], offset[7], xy_odd, pick57, z);
+}
+
+/* A row of eight elements, or two of four (`half`), whose left and right nodes are consecutive in
+ * memory: nine nodes from left[0], or five from left[0] and five from left[4]. Element p of a row
+ * of eight is in lane p, but 1 and 2 and 5 and 6 change places (LAR_ROW_LANES): then pairs of
+ * nodes are loaded and stored whole. */
+LAR_INLINE void lar_lane_gather_row(const double *nodes, const int32_t *left_offset,
+                                    const int32_t *right_offset, bool half, lar_lane left[3],
+                                    lar_lane right[3]) {
+    (void)right_offset;
+    const double *a = nodes + left_offset[0], *b = half ? nodes + left_offset[4] : a + 16;
+    __m512d n01 = _mm512_loadu_pd(a), n23 = _mm512_loadu_pd(a + 8);
+    __m512d n45 = _mm512_loadu_pd(b), n67 = _mm512_loadu_pd(b + 8);
+    __m512d ends = _mm512_castpd256_pd512(_mm256_load_pd(half ? a + 16 : b + 16));
+    if (half) ends = _mm512_insertf64x4(ends, _mm256_load_pd(b + 16), 1);
+    __m512d xz0 = _mm512_unpacklo_pd(n01, n23), yw0 = _mm512_unpackhi_pd(n01, n23);
+    __m512d xz4 = _mm512_unpacklo_pd(n45, n67), yw4 = _mm512_unpackhi_pd(n45, n67);
+    left[0] = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0x88);
+    left[1] = (lar_lane)_mm512_shuffle_f64x2(yw0, yw4, 0x88);
+    left[2] = (lar_lane)_mm512_shuffle_f64x2(xz0, xz4, 0xdd);
+    for (int i = 0; i < 3; i++) {
+        const __m512i next = half ? _mm512_setr_epi64(2, 3, 1, 8 + i, 6, 7, 5, 12 + i)
+                                  : _mm512_setr_epi64(2, 3, 1, 4, 6, 7, 5, 8 + i);
+        right[i] = (lar_lane)_mm512_permutex2var_pd((__m512d)left[i], next, ends);
+    }
+}
+
+/* Adds z-completed pairs of nodes, (x, y, z, 0) twice, picked out of xy and z. */
+LAR_INLINE void lar_pair_add(int64_t *nodes, __m512i xy, __m512i pick, __m512i z) {
+    __m512i pair = _mm512_maskz_permutex2var_epi64(0x77, xy, pick, z);
+    _mm512_storeu_si512(nodes, _mm512_add_epi64(_mm512_loadu_si512(nodes), pair));
+}
+
+LAR_INLINE void lar_ilane_scatter_row(int64_t *nodes, const int32_t *left_offset,
+                                      const int32_t *right_offset, bool half,
+                                      const lar_ilane left[3], const lar_ilane right[3]) {
+    (void)right_offset;
+    const __m512i before = half ? _mm512_setr_epi64(0, 2, 0, 1, 0, 6, 4, 5)
+                                : _mm512_setr_epi64(0, 2, 0, 1, 3, 6, 4, 5);
+    __m512i sum[3];
+    for (int i = 0; i < 3; i++)
+        sum[i] = _mm512_add_epi64(
+            (__m512i)left[i],
+            _mm512_maskz_permutexvar_epi64(half ? 0xee : 0xfe, before, (__m512i)right[i]));
+    __m512i xy_even = _mm512_unpacklo_epi64(sum[0], sum[1]);
+    __m512i xy_odd = _mm512_unpackhi_epi64(sum[0], sum[1]);
+    int64_t *a = nodes + left_offset[0], *b = half ? nodes + left_offset[4] : a + 16;
+    lar_pair_add(a, xy_even, _mm512_setr_epi64(0, 1, 8, 0, 2, 3, 10, 0), sum[2]);
+    lar_pair_add(a + 8, xy_odd, _mm512_setr_epi64(0, 1, 9, 0, 2, 3, 11, 0), sum[2]);
+    lar_pair_add(b, xy_even, _mm512_setr_epi64(4, 5, 12, 0, 6, 7, 14, 0), sum[2]);
+    lar_pair_add(b + 8, xy_odd, _mm512_setr_epi64(4, 5, 13, 0, 6, 7, 15, 0), sum[2]);
+    __m512i end_xy = _mm512_unpackhi_epi64((__m512i)right[0], (__m512i)right[1]);
+    const __m512i pick37 = _mm512_setr_epi64(2, 3, 11, 0, 6, 7, 15, 0);
+    const __m512i pick7 = _mm512_setr_epi64(6, 7, 15, 0, 0, 0, 0, 0);
+    __m512i ends = _mm512_maskz_permutex2var_epi64(half ? 0x77 : 0x07, end_xy,
+                                                   half ? pick37 : pick7, (__m512i)right[2]);
+    __m256i *end = (__m256i *)(half ? a + 16 : b + 16);
+    _mm256_store_si256(end, _mm256_add_epi64(_mm256_load_si256(end), _mm512_castsi512_si256(ends)));
+    if (half) {
+        end = (__m256i *)(b + 16);
+        _mm256_store_si256(
+            end, _mm256_add_epi64(_mm256_load_si256(end), _mm512_extracti64x4_epi64(ends, 1)));
+    }
 }
 
 #elif LAR_SIMD == LAR_SIMD_AVX2
@@ -206,30 +270,29 @@ LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
     return (lar_lane)_mm256_loadu_pd(p);
 }
 
-LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
-                                lar_lane *y, lar_lane *z) {
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane out[3]) {
     __m256d n0 = _mm256_load_pd(nodes + offset[0]), n1 = _mm256_load_pd(nodes + offset[1]);
     __m256d n2 = _mm256_load_pd(nodes + offset[2]), n3 = _mm256_load_pd(nodes + offset[3]);
     __m256d xz0 = _mm256_unpacklo_pd(n0, n1), yw0 = _mm256_unpackhi_pd(n0, n1);
     __m256d xz2 = _mm256_unpacklo_pd(n2, n3), yw2 = _mm256_unpackhi_pd(n2, n3);
-    *x = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x20);
-    *z = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x31);
-    *y = (lar_lane)_mm256_permute2f128_pd(yw0, yw2, 0x20);
+    out[0] = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x20);
+    out[2] = (lar_lane)_mm256_permute2f128_pd(xz0, xz2, 0x31);
+    out[1] = (lar_lane)_mm256_permute2f128_pd(yw0, yw2, 0x20);
 }
 
-LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
-                                      lar_ilane y, lar_ilane z) {
-    __m256i xy_even = _mm256_unpacklo_epi64((__m256i)x, (__m256i)y);
-    __m256i xy_odd = _mm256_unpackhi_epi64((__m256i)x, (__m256i)y);
-    __m256i z0_even = _mm256_unpacklo_epi64((__m256i)z, _mm256_setzero_si256());
-    __m256i z0_odd = _mm256_unpackhi_epi64((__m256i)z, _mm256_setzero_si256());
-    __m256i add[4] = {_mm256_permute2x128_si256(xy_even, z0_even, 0x20),
-                      _mm256_permute2x128_si256(xy_odd, z0_odd, 0x20),
-                      _mm256_permute2x128_si256(xy_even, z0_even, 0x31),
-                      _mm256_permute2x128_si256(xy_odd, z0_odd, 0x31)};
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset,
+                                      const lar_ilane add[3]) {
+    __m256i x = (__m256i)add[0], y = (__m256i)add[1], z = (__m256i)add[2];
+    __m256i none = _mm256_setzero_si256();
+    __m256i xy_even = _mm256_unpacklo_epi64(x, y), xy_odd = _mm256_unpackhi_epi64(x, y);
+    __m256i z_even = _mm256_unpacklo_epi64(z, none), z_odd = _mm256_unpackhi_epi64(z, none);
+    __m256i value[4] = {_mm256_permute2x128_si256(xy_even, z_even, 0x20),
+                        _mm256_permute2x128_si256(xy_odd, z_odd, 0x20),
+                        _mm256_permute2x128_si256(xy_even, z_even, 0x31),
+                        _mm256_permute2x128_si256(xy_odd, z_odd, 0x31)};
     for (int i = 0; i < 4; i++) {
         __m256i *node = (__m256i *)(nodes + offset[i]);
-        _mm256_store_si256(node, _mm256_add_epi64(_mm256_load_si256(node), add[i]));
+        _mm256_store_si256(node, _mm256_add_epi64(_mm256_load_si256(node), value[i]));
     }
 }
 
@@ -287,17 +350,18 @@ LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
     return (lar_lane)vld1q_f64(p + k % 4);
 }
 
-LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
-                                lar_lane *y, lar_lane *z) {
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane out[3]) {
     float64x2_t a = vld1q_f64(nodes + offset[0]), b = vld1q_f64(nodes + offset[1]);
-    *x = (lar_lane)vzip1q_f64(a, b);
-    *y = (lar_lane)vzip2q_f64(a, b);
-    *z = (lar_lane)vzip1q_f64(vld1q_f64(nodes + offset[0] + 2), vld1q_f64(nodes + offset[1] + 2));
+    out[0] = (lar_lane)vzip1q_f64(a, b);
+    out[1] = (lar_lane)vzip2q_f64(a, b);
+    out[2] =
+        (lar_lane)vzip1q_f64(vld1q_f64(nodes + offset[0] + 2), vld1q_f64(nodes + offset[1] + 2));
 }
 
-LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
-                                      lar_ilane y, lar_ilane z) {
-    int64x2_t xx = (int64x2_t)x, yy = (int64x2_t)y, zz = (int64x2_t)z, none = vdupq_n_s64(0);
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset,
+                                      const lar_ilane add[3]) {
+    int64x2_t xx = (int64x2_t)add[0], yy = (int64x2_t)add[1], zz = (int64x2_t)add[2];
+    int64x2_t none = vdupq_n_s64(0);
     int64_t *n = nodes + offset[0];
     vst1q_s64(n, vaddq_s64(vld1q_s64(n), vzip1q_s64(xx, yy)));
     vst1q_s64(n + 2, vaddq_s64(vld1q_s64(n + 2), vzip1q_s64(zz, none)));
@@ -362,22 +426,50 @@ LAR_INLINE lar_lane lar_lane_repeat4(const double p[4], int64_t k) {
     return p[k % 4];
 }
 
-LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane *x,
-                                lar_lane *y, lar_lane *z) {
+LAR_INLINE void lar_lane_gather(const double *nodes, const int32_t *offset, lar_lane out[3]) {
     const double *n = nodes + offset[0];
-    *x = n[0];
-    *y = n[1];
-    *z = n[2];
+    out[0] = n[0];
+    out[1] = n[1];
+    out[2] = n[2];
 }
 
-LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset, lar_ilane x,
-                                      lar_ilane y, lar_ilane z) {
+LAR_INLINE void lar_ilane_scatter_add(int64_t *nodes, const int32_t *offset,
+                                      const lar_ilane add[3]) {
     int64_t *n = nodes + offset[0];
-    n[0] += x;
-    n[1] += y;
-    n[2] += z;
+    for (int i = 0; i < 3; i++) n[i] += add[i];
 }
 
 #endif
+
+#if LAR_SIMD != LAR_SIMD_AVX512
+/* Rows (see above) bring narrower sets too little to be worth shuffles. */
+LAR_INLINE void lar_lane_gather_row(const double *nodes, const int32_t *left_offset,
+                                    const int32_t *right_offset, bool half, lar_lane left[3],
+                                    lar_lane right[3]) {
+    (void)half;
+    lar_lane_gather(nodes, left_offset, left);
+    lar_lane_gather(nodes, right_offset, right);
+}
+
+LAR_INLINE void lar_ilane_scatter_row(int64_t *nodes, const int32_t *left_offset,
+                                      const int32_t *right_offset, bool half,
+                                      const lar_ilane left[3], const lar_ilane right[3]) {
+    (void)half;
+    lar_ilane_scatter_add(nodes, left_offset, left);
+    lar_ilane_scatter_add(nodes, right_offset, right);
+}
+#endif
+
+/* A load whose value stays in a register. Compilers like to fold a load into every instruction
+ * that uses it; with two loads a cycle, three uses of 30 numbers are what a kernel waits for. */
+LAR_INLINE lar_lane lar_lane_load_once(const double *p) {
+    lar_lane a = lar_lane_load(p);
+#if LAR_SIMD == LAR_SIMD_AVX512
+    __asm__("" : "+v"(a));
+#elif LAR_SIMD == LAR_SIMD_AVX2
+    __asm__("" : "+x"(a));
+#endif
+    return a;
+}
 
 #endif

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/order.h"
 #include "mechanics/hex8_full.h"
 
 static const lar_material *material_of(const lar_model *model, lar_gid e) {
@@ -68,93 +67,81 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     return LAR_OK;
 }
 
-/* Local nodes in the order in which the elements first use them. */
-static lar_status number_nodes(lar_domain *domain, lar_error *error) {
-    const lar_mesh *mesh = &domain->model->mesh;
-    size_t count = (size_t)mesh->node_count;
-    domain->global = lar_calloc(count, sizeof *domain->global);
-    domain->local = lar_calloc(count, sizeof *domain->local);
-    if (!domain->global || !domain->local)
-        return lar_fail_memory(error, 2 * count * sizeof *domain->local, "the node numbering");
-    for (int32_t n = 0; n < mesh->node_count; n++) domain->local[n] = -1;
-    for (int32_t i = 0; i < domain->block_count * LAR_BLOCK; i++) {
-        lar_gid e = domain->element[i];
-        for (int a = 0; e >= 0 && a < 8; a++) {
-            lar_gid node = mesh->element[e][a];
-            if (domain->local[node] >= 0) continue;
-            domain->local[node] = domain->node_count;
-            domain->global[domain->node_count++] = node;
-        }
-    }
-    domain->node_padded = (domain->node_count + 2) & ~1; /* one spare at least, even */
+static lar_status list_spares(lar_domain *domain, lar_error *error) {
+    const lar_layout *layout = &domain->layout;
+    domain->spare = lar_calloc((size_t)layout->node_padded, sizeof *domain->spare);
+    if (!domain->spare)
+        return lar_fail_memory(error, (size_t)layout->node_padded * 4, "the spare nodes");
+    for (lar_lid n = 0; n < layout->node_padded; n++)
+        if (layout->global[n] < 0) domain->spare[domain->spare_count++] = n;
     return LAR_OK;
 }
 
-/* Fills domain->element and the groups: every law begins a new block. */
-static lar_status order_elements(lar_domain *domain, lar_error *error) {
-    const lar_model *model = domain->model;
-    int32_t count = model->mesh.element_count;
-    int32_t lanes = (count / LAR_BLOCK + LAR_LAW_COUNT) * LAR_BLOCK;
-    lar_gid *order = lar_calloc((size_t)count, sizeof *order);
-    domain->element = lar_calloc((size_t)lanes, sizeof *domain->element);
-    lar_status status = order && domain->element
-                            ? lar_order_elements(model, order, error)
-                            : lar_fail_memory(error, (size_t)lanes * 8, "the element order");
-    int32_t lane = 0;
-    for (int32_t i = 0; !status && i < count; i++) {
-        lar_law law = material_of(model, order[i])->law;
-        lar_block_group *last =
-            domain->group_count ? &domain->group[domain->group_count - 1] : NULL;
-        if (!last || last->law != law) {
-            while (lane % LAR_BLOCK) domain->element[lane++] = -1;
-            last = &domain->group[domain->group_count++];
-            *last = (lar_block_group){law, lane / LAR_BLOCK, 0};
-        }
-        domain->element[lane++] = order[i];
-        last->count = (lane + LAR_BLOCK - 1) / LAR_BLOCK - last->first;
-    }
-    while (lane % LAR_BLOCK) domain->element[lane++] = -1;
-    domain->block_count = lane / LAR_BLOCK;
-    domain->element_count = count;
-    free(order);
-    return status;
-}
-
-static void fill_lane(const lar_domain *domain, lar_hex8_block *block, int lane, lar_gid e,
-                      double *steepest) {
+static void fill_lane(const lar_domain *domain, lar_block_shape shape, void *memory, int lane,
+                      lar_gid e, double *steepest) {
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_material *material = material_of(domain->model, e);
+    const lar_gid *node = domain->layout.corner[e];
+    lar_block_head *head = memory;
     double corner[8][3];
     lar_hex8 hex8;
-    lar_mesh_corners(mesh, e, corner);
-    lar_hex8_prepare(corner, material, &hex8);
+    for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
+    lar_hex8_prepare((const double(*)[3])corner, material, &hex8);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) {
-            block->gradient[m][i][lane] = hex8.gradient[m][i];
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
+            if (shape == LAR_SHAPE_GENERAL)
+                ((lar_hex8_block *)memory)->gradient[m][i][lane] = hex8.gradient[m][i];
+            else if (m == i)
+                ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
         }
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
-        for (int i = 0; i < 3; i++) block->shape[m][i][lane] = hex8.shape[m][i];
-        block->stiffness[m][lane] = hex8.stiffness[m] * domain->scale;
+        head->stiffness[m][lane] = hex8.stiffness[m] * domain->scale;
+        for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
+            ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        block->modulus[k][lane] = material->parameter[k] * hex8.volume * domain->scale;
-    for (int a = 0; a < 8; a++) block->node[a][lane] = 4 * domain->local[mesh->element[e][a]];
+        head->modulus[k][lane] = material->parameter[k] * hex8.volume * domain->scale;
+    for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
+}
+
+/* The runs of equal blocks, and the memory they need. */
+static void list_runs(lar_domain *domain) {
+    const lar_layout *layout = &domain->layout;
+    for (int32_t b = 0; b < layout->block_count; b++) {
+        const lar_lanes *lanes = &layout->block[b];
+        lar_block_run *run = domain->run_count ? &domain->run[domain->run_count - 1] : NULL;
+        if (!run || run->law != lanes->law || run->shape != lanes->shape ||
+            run->rows != lanes->rows) {
+            domain->run_first[domain->run_count] = b;
+            run = &domain->run[domain->run_count++];
+            *run = (lar_block_run){lanes->law, lanes->shape, lanes->rows, 0, NULL};
+        }
+        run->count++;
+        domain->block_bytes += lar_block_size(lanes->shape);
+    }
 }
 
 static lar_status build_blocks(lar_domain *domain, lar_error *error) {
-    domain->block = lar_calloc_aligned((size_t)domain->block_count, sizeof *domain->block);
-    if (!domain->block)
-        return lar_fail_memory(error, (size_t)domain->block_count * sizeof *domain->block,
-                               "the elements");
+    list_runs(domain);
+    domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
+    if (!domain->blocks) return lar_fail_memory(error, domain->block_bytes, "the elements");
     double steepest = 0;
-    for (int32_t i = 0; i < domain->block_count * LAR_BLOCK; i++) {
-        lar_hex8_block *block = &domain->block[i / LAR_BLOCK];
-        int lane = i % LAR_BLOCK;
-        if (domain->element[i] >= 0)
-            fill_lane(domain, block, lane, domain->element[i], &steepest);
-        else
-            for (int a = 0; a < 8; a++) block->node[a][lane] = 4 * domain->node_count;
+    char *memory = domain->blocks;
+    for (int r = 0; r < domain->run_count; r++) {
+        lar_block_run *run = &domain->run[r];
+        run->blocks = memory;
+        for (int32_t b = 0; b < run->count; b++) {
+            const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+            for (int lane = 0; lane < LAR_BLOCK; lane++)
+                if (lanes->element[lane] >= 0)
+                    fill_lane(domain, run->shape, memory, lane, lanes->element[lane], &steepest);
+                else
+                    for (int a = 0; a < 8; a++)
+                        ((lar_block_head *)(void *)memory)->node[a][lane] =
+                            4 * (domain->layout.node_padded - 1);
+            memory += lar_block_size(run->shape);
+        }
     }
     /* Modal forces S B stay below 2^54 units for |S| below this, hourglass forces below 2^54 too:
      * a node with hundreds of elements cannot overflow 63 bits. */
@@ -185,7 +172,7 @@ static void choose_scale(lar_domain *domain) {
 
 static lar_status spread_mass(lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
-    size_t nodes = (size_t)domain->node_padded;
+    size_t nodes = (size_t)domain->layout.node_padded;
     domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
     domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
     if (!domain->mass || !domain->push)
@@ -194,7 +181,8 @@ static lar_status spread_mass(lar_domain *domain, lar_error *error) {
         double corner[8][3];
         lar_mesh_corners(&model->mesh, e, corner);
         double share = material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
-        for (int a = 0; a < 8; a++) domain->mass[domain->local[model->mesh.element[e][a]]] += share;
+        for (int a = 0; a < 8; a++)
+            domain->mass[domain->layout.local[model->mesh.element[e][a]]] += share;
     }
     return LAR_OK;
 }
@@ -208,8 +196,9 @@ static void prepare_motion(lar_domain *domain) {
     lar_gravity_at(model, 0, gravity);
     domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt};
     for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
-    for (int32_t n = 0; n < domain->node_count; n++)
-        domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
+    for (int32_t n = 0; n < domain->layout.node_count; n++)
+        if (domain->mass[n] > 0)
+            domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3];
         lar_mesh_corners(&model->mesh, e, corner);
@@ -224,15 +213,16 @@ lar_status lar_domain_create(const lar_model *model, const lar_options *options,
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = choose_step(domain, options, error);
-    if (!status) status = order_elements(domain, error);
-    if (!status) status = number_nodes(domain, error);
+    if (!status) status = lar_layout_create(model, &domain->layout, error);
+    if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
     if (!status) {
         choose_scale(domain);
         prepare_motion(domain);
         if (domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     }
-    if (!status) status = lar_conditions_create(model, domain->local, &domain->conditions, error);
+    if (!status)
+        status = lar_conditions_create(model, domain->layout.local, &domain->conditions, error);
     double largest = status ? 0 : lar_conditions_largest(&domain->conditions);
     if (!status && largest * domain->scale > 0x1p58)
         status = lar_fail(error, LAR_ERROR_MODEL,
@@ -245,10 +235,9 @@ lar_status lar_domain_create(const lar_model *model, const lar_options *options,
 
 void lar_domain_destroy(lar_domain *domain) {
     lar_conditions_destroy(&domain->conditions);
-    free(domain->element);
-    free(domain->block);
-    free(domain->global);
-    free(domain->local);
+    lar_layout_destroy(&domain->layout);
+    free(domain->blocks);
+    free(domain->spare);
     free(domain->mass);
     free(domain->push);
     *domain = (lar_domain){0};
@@ -257,5 +246,5 @@ void lar_domain_destroy(lar_domain *domain) {
 void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]) {
     const lar_mesh *mesh = &domain->model->mesh;
     for (int a = 0; a < 8; a++)
-        memcpy(out[a], u + 4 * domain->local[mesh->element[e][a]], 3 * sizeof(double));
+        memcpy(out[a], u + 4 * domain->layout.local[mesh->element[e][a]], 3 * sizeof(double));
 }

@@ -1,10 +1,9 @@
 /* The compiled model: what one processor needs to step, in the order in which it reads it.
  *
- *     model (global, by file order)             domain (local, by use)
- *     elements 0..E-1                 ---->     groups of one law, blocks of eight, along a
- *                                               space-filling curve
- *     nodes 0..N-1                    ---->     local nodes in the order of first use, then spare
- *                                               nodes for empty lanes and even length
+ *     model (global, by file order)             domain (local, by use; engine/layout.h)
+ *     elements 0..E-1                 ---->     runs of blocks of one law, shape and kind of rows
+ *     nodes 0..N-1                    ---->     local nodes, those of a row one after the other,
+ *                                               and spare ones for even beginnings and empty lanes
  *
  * Constant once compiled; the state (engine/state.h) is separate. The element kinds that are not
  * hex8 keep their elements in the plain list `element` and go the slow way.
@@ -13,35 +12,27 @@
 #define LAR_ENGINE_DOMAIN_H
 
 #include "engine/conditions.h"
+#include "engine/layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
 
-typedef int32_t lar_lid; /* node of one domain */
-
-/* Consecutive blocks of one law. */
-typedef struct lar_block_group {
-    lar_law law;
-    int32_t first, count;
-} lar_block_group;
+enum { LAR_RUNS_MAX = LAR_LAW_COUNT * LAR_SHAPE_COUNT * LAR_ROWS_COUNT };
 
 typedef struct lar_domain {
     const lar_model *model;
     const lar_kernels *kernels;
     lar_element_kind kind;
 
-    int32_t element_count;
-    lar_gid *element; /* [block_count * 8] global element of each lane, -1: none */
-    int32_t block_count;
-    lar_hex8_block *block; /* hex8 only, else NULL */
-    int32_t group_count;
-    lar_block_group group[LAR_LAW_COUNT];
-
-    int32_t node_count;  /* real nodes */
-    int32_t node_padded; /* with spare nodes, even */
-    lar_gid *global;     /* [node_count] */
-    lar_lid *local;      /* [nodes of the model] */
-    double *mass;        /* [node_padded] kg; spare nodes 0 */
-    double *push;        /* [node_padded] see lar_node_update */
+    lar_layout layout;
+    int run_count;
+    lar_block_run run[LAR_RUNS_MAX]; /* hex8 only */
+    int32_t run_first[LAR_RUNS_MAX]; /* the run's first block in layout.block */
+    void *blocks;                    /* all blocks of all runs */
+    size_t block_bytes;
+    int32_t spare_count;
+    lar_lid *spare; /* nodes without mass */
+    double *mass;   /* [layout.node_padded] kg; spare nodes 0 */
+    double *push;   /* [layout.node_padded] see lar_node_update */
 
     double scale;       /* force units per newton, a power of two */
     double time_step;   /* [s] */

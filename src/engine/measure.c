@@ -53,7 +53,7 @@ static void add_constraint_work(const lar_domain *domain, const lar_state *state
 
 static double gravity_potential(const lar_domain *domain, const lar_state *state) {
     double work = 0;
-    for (int32_t n = 0; n < domain->node_count; n++)
+    for (int32_t n = 0; n < domain->layout.node_count; n++)
         for (int i = 0; i < 3; i++)
             work += domain->mass[n] * domain->model->gravity[i] * state->u[4 * n + i];
     return work;
@@ -62,9 +62,9 @@ static double gravity_potential(const lar_domain *domain, const lar_state *state
 /* Velocities half a step ahead, supports included; NULL without memory. */
 static double *velocities_ahead(const lar_domain *domain, const lar_state *state,
                                 const double gravity[3]) {
-    double *ahead = lar_calloc(4 * (size_t)domain->node_padded, sizeof *ahead);
+    double *ahead = lar_calloc(4 * (size_t)domain->layout.node_padded, sizeof *ahead);
     if (!ahead) return NULL;
-    for (int32_t n = 0; n < domain->node_count; n++)
+    for (int32_t n = 0; n < domain->layout.node_count; n++)
         for (int i = 0; i < 3; i++)
             ahead[4 * n + i] = next_velocity(domain, state, 4 * n + i, gravity);
     double time = lar_state_time(domain, state), dt = domain->time_step;
@@ -91,7 +91,7 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
     if (!domain->conditions.gravity_varies) energy->external += gravity_potential(domain, state);
     double *ahead = velocities_ahead(domain, state, gravity);
     if (ahead) {
-        for (int32_t n = 0; n < domain->node_count; n++)
+        for (int32_t n = 0; n < domain->layout.node_count; n++)
             for (int i = 0; i < 3; i++)
                 add_kinetic(domain, state, 4 * n + i, ahead[4 * n + i], energy);
         for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
@@ -101,7 +101,7 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
         }
     }
     free(ahead);
-    memset(state->force, 0, 4 * (size_t)domain->node_padded * sizeof *state->force);
+    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
 
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
         double hourglass;
@@ -134,12 +134,12 @@ void lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_l
     double gravity[3];
     lar_gravity_at(domain->model, lar_state_time(domain, state), gravity);
     memset(sum, 0, 3 * sizeof *sum);
-    unsigned char *wanted = lar_calloc((size_t)domain->node_padded, 1);
+    unsigned char *wanted = lar_calloc((size_t)domain->layout.node_padded, 1);
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);
     double *ahead = velocities_ahead(domain, state, gravity);
     if (wanted && ahead) {
-        for (int32_t i = 0; i < nodes->count; i++) wanted[domain->local[nodes->node[i]]] = 1;
+        for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = 1;
         for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
             int32_t value = domain->conditions.constraint[i].value;
             if (!wanted[value / 4]) continue;
@@ -150,7 +150,7 @@ void lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_l
                               (double)state->force[value] / domain->scale;
         }
     }
-    memset(state->force, 0, 4 * (size_t)domain->node_padded * sizeof *state->force);
+    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
     free(wanted);
     free(ahead);
 }

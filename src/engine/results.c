@@ -146,14 +146,16 @@ static void measure_cells(lar_results *results, const lar_simulation *simulation
 
 static lar_status check_finite(const lar_simulation *simulation, lar_error *error) {
     const lar_domain *domain = &simulation->domain;
-    for (int32_t n = 0; n < domain->node_count; n++)
-        for (int i = 0; i < 3; i++)
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            lar_lid n = domain->layout.local[g];
             if (!isfinite(simulation->state.u[4 * n + i]) ||
                 !isfinite(simulation->state.v[4 * n + i]))
                 return lar_fail(error, LAR_ERROR_UNSTABLE,
                                 "node %lld has left the range of numbers; this state is not "
                                 "written, the frames before it are good",
-                                (long long)domain->model->mesh.node_id[domain->global[n]]);
+                                (long long)domain->model->mesh.node_id[g]);
+        }
     return LAR_OK;
 }
 

@@ -16,8 +16,8 @@ static void set_initial_velocities(lar_simulation *simulation) {
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
-            memcpy(v + 4 * simulation->domain.local[initial->nodes.node[k]], initial->velocity,
-                   sizeof initial->velocity);
+            memcpy(v + 4 * simulation->domain.layout.local[initial->nodes.node[k]],
+                   initial->velocity, sizeof initial->velocity);
     }
     for (int32_t i = 0; i < simulation->domain.conditions.constraint_count; i++)
         v[simulation->domain.conditions.constraint[i].value] = 0;
@@ -33,7 +33,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
     lar_simulation *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
     lar_status status = lar_domain_create(model, &chosen, &made->domain, error);
-    if (!status) status = lar_state_create(&made->state, made->domain.node_padded, error);
+    if (!status) status = lar_state_create(&made->state, made->domain.layout.node_padded, error);
     if (status) {
         lar_simulation_destroy(made);
         return status;
@@ -74,8 +74,8 @@ const char *lar_simulation_isa(const lar_simulation *simulation) {
 }
 
 static void copy_nodes(const lar_domain *domain, const double *values, double (*out)[3]) {
-    for (int32_t n = 0; n < domain->node_count; n++)
-        memcpy(out[domain->global[n]], values + 4 * n, sizeof out[0]);
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        memcpy(out[g], values + 4 * domain->layout.local[g], sizeof out[0]);
 }
 
 void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {
@@ -91,7 +91,8 @@ uint64_t lar_simulation_hash(const lar_simulation *simulation) {
     const lar_state *state = &simulation->state;
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
-        const double *u = state->u + 4 * domain->local[g], *v = state->v + 4 * domain->local[g];
+        const double *u = state->u + 4 * domain->layout.local[g],
+                     *v = state->v + 4 * domain->layout.local[g];
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[i]);
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[i]);
     }
@@ -107,12 +108,13 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
 size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     const lar_conditions *conditions = &domain->conditions;
-    size_t lanes = (size_t)domain->block_count * LAR_BLOCK, nodes = (size_t)domain->node_padded;
-    size_t bytes = lanes * sizeof *domain->element +
-                   (size_t)domain->node_count * sizeof *domain->global +
-                   (size_t)domain->model->mesh.node_count * sizeof *domain->local +
-                   nodes * (sizeof *domain->mass + sizeof *domain->push);
-    if (domain->block) bytes += (size_t)domain->block_count * sizeof *domain->block;
+    const lar_layout *layout = &domain->layout;
+    size_t nodes = (size_t)layout->node_padded;
+    size_t elements = (size_t)domain->model->mesh.element_count;
+    size_t bytes = domain->block_bytes + elements * sizeof *layout->corner +
+                   (size_t)layout->block_count * sizeof *layout->block +
+                   (size_t)domain->model->mesh.node_count * sizeof *layout->local +
+                   nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);
     bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
              (size_t)conditions->force_count * sizeof *conditions->force +
              (size_t)conditions->pressure_count * sizeof *conditions->pressure;

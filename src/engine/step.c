@@ -2,35 +2,30 @@
 
 #include <math.h>
 #include <string.h>
+#include <string.h>
 
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
 
-static void trip_element(lar_trip *trip, const lar_domain *domain, const lar_state *state,
-                         int64_t lane) {
-    if (lane < 0 || trip->kind) return;
-    *trip = (lar_trip){LAR_TRIP_ELEMENT, domain->element[lane], state->step};
+static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
+    if (!trip->kind) *trip = (lar_trip){LAR_TRIP_ELEMENT, e, state->step};
 }
 
 static void recover_blocks(const lar_domain *domain, lar_state *state, lar_trip *trip) {
-    const lar_kernels *kernels = domain->kernels;
     bool watch = state->step % LAR_WATCH_INTERVAL == 0;
-    for (int32_t g = 0; g < domain->group_count; g++) {
-        const lar_block_group *group = &domain->group[g];
-        lar_hex8_recover recover =
-            watch ? kernels->watch[group->law] : kernels->recover[group->law];
-        int64_t lane = recover(domain->block + group->first, group->count, state->u, state->force,
-                               &domain->limits);
-        if (lane >= 0) trip_element(trip, domain, state, lane + (int64_t)group->first * LAR_BLOCK);
+    for (int r = 0; r < domain->run_count; r++) {
+        int64_t lane = domain->kernels->recover(&domain->run[r], state->u, state->force,
+                                                &domain->limits, watch);
+        if (lane < 0) continue;
+        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + lane / LAR_BLOCK];
+        trip_element(trip, state, lanes->element[lane % LAR_BLOCK]);
     }
 }
 
 /* The oracle elements, one at a time: slow is fine. */
 static void recover_slowly(const lar_domain *domain, lar_state *state, lar_trip *trip) {
     const lar_model *model = domain->model;
-    for (int32_t i = 0; i < domain->block_count * LAR_BLOCK; i++) {
-        lar_gid e = domain->element[i];
-        if (e < 0) continue;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3], u[8][3], f[8][3];
         const lar_material *material = &model->material[model->element_material[e]];
         lar_mesh_corners(&model->mesh, e, corner);
@@ -41,12 +36,12 @@ static void recover_slowly(const lar_domain *domain, lar_state *state, lar_trip 
         bool fits = J > domain->limits.least_volume;
         for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
         if (!fits) {
-            trip_element(trip, domain, state, i);
+            trip_element(trip, state, e);
             continue;
         }
         for (int a = 0; a < 8; a++)
             for (int k = 0; k < 3; k++)
-                state->force[4 * domain->local[model->mesh.element[e][a]] + k] +=
+                state->force[4 * domain->layout.local[model->mesh.element[e][a]] + k] +=
                     llrint(f[a][k] * domain->scale);
     }
 }
@@ -58,6 +53,14 @@ static void recover_elements(const lar_domain *domain, lar_state *state, lar_tri
         recover_slowly(domain, state, trip);
 }
 
+/* Spare nodes fall with gravity like any other; now and then they are put back. */
+static void park_spares(const lar_domain *domain, lar_state *state) {
+    for (int32_t i = 0; i < domain->spare_count; i++) {
+        memset(state->u + 4 * domain->spare[i], 0, 4 * sizeof *state->u);
+        memset(state->v + 4 * domain->spare[i], 0, 4 * sizeof *state->v);
+    }
+}
+
 static void move_nodes(const lar_domain *domain, double time, lar_state *state, lar_trip *trip) {
     const lar_model *model = domain->model;
     lar_motion motion = domain->motion;
@@ -67,13 +70,15 @@ static void move_nodes(const lar_domain *domain, double time, lar_state *state, 
         for (int i = 0; i < 3; i++)
             motion.drift[i] = gravity[i] * motion.dt / (1 + 0.5 * model->damping * motion.dt);
     }
+    if (state->step % LAR_WATCH_INTERVAL == 0) park_spares(domain, state);
     const double *mass = model->damping > 0 ? domain->mass : NULL;
-    if (!domain->kernels->update(&motion, 0, domain->node_padded, state->u, state->v, state->force,
-                                 domain->push, mass, &state->damped) &&
+    if (!domain->kernels->update(&motion, 0, domain->layout.node_padded, state->u, state->v,
+                                 state->force, domain->push, mass, &state->damped) &&
         !trip->kind)
         *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
     /* The spare nodes have no mass, but gravity moved them like all others: they must not fall. */
-    size_t first = 4 * (size_t)domain->node_count, end = 4 * (size_t)domain->node_padded;
+    size_t first = 4 * (size_t)domain->layout.node_count,
+           end = 4 * (size_t)domain->layout.node_padded;
     memset(state->u + first, 0, (end - first) * sizeof *state->u);
     memset(state->v + first, 0, (end - first) * sizeof *state->v);
 }

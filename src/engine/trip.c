@@ -26,7 +26,8 @@ static lar_status report_element(const lar_domain *domain, const lar_state *stat
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
             lar_gid node = mesh->element[trip->element][a];
-            center[i] += (mesh->position[node][i] + state->u[4 * domain->local[node] + i]) / 8;
+            center[i] +=
+                (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
         }
     examine_element(domain, state, trip->element, &volume_ratio, &growth);
     const char *cause, *remedy;
@@ -51,15 +52,15 @@ static lar_status report_element(const lar_domain *domain, const lar_state *stat
 static lar_status report_speed(const lar_domain *domain, const lar_state *state,
                                const lar_trip *trip, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    int32_t fastest = 0;
+    lar_lid fastest = domain->layout.local[0];
     double highest = -1;
-    for (int32_t n = 0; n < domain->node_count; n++)
-        for (int i = 0; i < 3; i++)
+    for (lar_lid n = 0; n < domain->layout.node_count; n++)
+        for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++)
             if (!(fabs(state->v[4 * n + i]) <= highest)) {
                 highest = fabs(state->v[4 * n + i]);
                 fastest = n;
             }
-    lar_gid node = domain->global[fastest];
+    lar_gid node = domain->layout.global[fastest];
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
                     "%.3g m/s, more than an element per time step (%.3g m/s); use a smaller time "

@@ -12,13 +12,22 @@ static void modal_signs(int a, double sign[7]) {
     memcpy(sign, h, sizeof h);
 }
 
+/* By differences first, so that the modes a box does not have are zero to the last bit. */
 static void to_modes(const double nodal[8][3], double modal[7][3]) {
-    memset(modal, 0, 7 * sizeof modal[0]);
-    for (int a = 0; a < 8; a++) {
-        double h[7];
-        modal_signs(a, h);
-        for (int m = 0; m < 7; m++)
-            for (int i = 0; i < 3; i++) modal[m][i] += h[m] * nodal[a][i];
+    for (int i = 0; i < 3; i++) {
+        double sum[4], difference[4]; /* along xi, for (eta, zeta) = --, +-, -+, ++ */
+        static const int left[4] = {0, 3, 4, 7}, right[4] = {1, 2, 5, 6};
+        for (int k = 0; k < 4; k++) {
+            sum[k] = nodal[right[k]][i] + nodal[left[k]][i];
+            difference[k] = nodal[right[k]][i] - nodal[left[k]][i];
+        }
+        modal[0][i] = (difference[3] + difference[2]) + (difference[1] + difference[0]);
+        modal[1][i] = (sum[3] - sum[2]) + (sum[1] - sum[0]);
+        modal[2][i] = (sum[3] + sum[2]) - (sum[1] + sum[0]);
+        modal[3][i] = (sum[3] - sum[2]) - (sum[1] - sum[0]);
+        modal[4][i] = (difference[3] + difference[2]) - (difference[1] + difference[0]);
+        modal[5][i] = (difference[3] - difference[2]) + (difference[1] - difference[0]);
+        modal[6][i] = (difference[3] - difference[2]) - (difference[1] - difference[0]);
     }
 }
 

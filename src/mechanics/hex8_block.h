@@ -1,16 +1,26 @@
 /* Blocks of eight hex8 elements, one per lane, and the kernels that recover them.
  *
  * A block holds everything a step reads of eight elements, number by number and lane by lane, so
- * that one aligned load brings the same number of all eight (328 bytes per element). Narrower
- * instruction sets take a block in halves or quarters; the layout does not depend on them. All
- * elements of one call follow the same law. A lane without an element has zeros throughout and
- * points to a spare node: it produces exactly no force.
+ * that one aligned load brings the same number of all eight. Narrower instruction sets take a
+ * block in halves or quarters; the layout does not depend on them. A lane without an element has
+ * zeros throughout and points to a spare node: it produces exactly no force.
+ *
+ * Two things make elements cheaper, without changing a bit of the result:
+ *
+ *   rows     +---+---+---+---+   Lane k+1 continues lane k in the xi direction: its left nodes are
+ *            | 0 | 1 | 2 | 3 |   lane k's right nodes. Four lines of nine nodes are loaded and
+ *            +---+---+---+---+   stored instead of 64 nodes, whole vectors at a time because the
+ *                                nodes of a line are consecutive, and neighbours' forces are added
+ *                                in registers. Elements 1 and 2, 5 and 6 change lanes
+ *                                (LAR_ROW_LANES in base/simd.h).
+ *   boxes    edges along the axes: of the 18 modal gradients three are not zero, and the hourglass
+ *            shapes vanish (112 bytes per element instead of 328).
  *
  * Forces are 64-bit integers in units of 2^-scale newton (DESIGN 5). The modal forces are rounded,
  * once each, and the transform back to the nodes is integer arithmetic: the forces of an element
  * add up to exactly zero, whatever the rounding.
  *
- * lar_hex8_kernel() is the same source, hex8_kernel.c, compiled once per instruction set.
+ * The kernels are the same source, hex8_kernel.c, compiled once per instruction set.
  */
 #ifndef LAR_MECHANICS_HEX8_BLOCK_H
 #define LAR_MECHANICS_HEX8_BLOCK_H
@@ -19,26 +29,59 @@
 
 enum { LAR_BLOCK = 8 };
 
-typedef struct lar_hex8_block {
+/* How the lanes of a block hang together. */
+typedef enum lar_block_rows {
+    LAR_ROWS_NONE,  /* not at all */
+    LAR_ROWS_FOUR,  /* two rows of four */
+    LAR_ROWS_EIGHT, /* one row of eight */
+    LAR_ROWS_COUNT
+} lar_block_rows;
+
+typedef enum lar_block_shape { LAR_SHAPE_GENERAL, LAR_SHAPE_BOX, LAR_SHAPE_COUNT } lar_block_shape;
+
+/* What every block begins with. */
+typedef struct lar_block_head {
+    double modulus[LAR_LAW_PARAMETERS][LAR_BLOCK];   /* law parameters times volume and scale */
+    double stiffness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* c_m times scale */
+    int32_t node[8][LAR_BLOCK];                      /* 4 times the local node's index */
+} __attribute__((aligned(64))) lar_block_head;
+
+typedef struct lar_hex8_block { /* LAR_SHAPE_GENERAL */
+    lar_block_head head;
     double gradient[LAR_HEX8_GRADIENTS][3][LAR_BLOCK];
     double shape[LAR_HEX8_HOURGLASS][3][LAR_BLOCK];
-    double stiffness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* times the force scale */
-    double modulus[LAR_LAW_PARAMETERS][LAR_BLOCK];   /* law parameters times volume and scale */
-    int32_t node[8][LAR_BLOCK];                      /* offset of local node a: 4 times its index */
-} __attribute__((aligned(64))) lar_hex8_block;
+} lar_hex8_block;
+
+typedef struct lar_box_block { /* LAR_SHAPE_BOX */
+    lar_block_head head;
+    double gradient[3][LAR_BLOCK]; /* B_m along its own axis, m = 0..2 */
+} lar_box_block;
+
+static inline size_t lar_block_size(lar_block_shape shape) {
+    return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
+}
+
+/* Consecutive blocks of one law, one shape and one kind of rows. */
+typedef struct lar_block_run {
+    lar_law law;
+    lar_block_shape shape;
+    lar_block_rows rows;
+    int32_t count;
+    const void *blocks; /* lar_hex8_block or lar_box_block [count] */
+} lar_block_run;
 
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
-    double least_volume;  /* det F must stay above this */
-    double stress_square; /* the stress sum of law.h, scaled as `modulus`, must stay below this */
-    double hourglass_square; /* the same for sum |c q|^2, looked at by a watching call only */
+    double least_volume;     /* det F must stay above this */
+    double stress_square;    /* the stress sum of law.h, scaled as `modulus`, must stay below */
+    double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 
-/* Recovers blocks[0..count): adds the internal forces for the displacements `u` [nodes][4] to
- * `force` [nodes][4]. Returns the first element (block * 8 + lane) beyond the limits, or -1; all
- * forces are added in any case. */
-typedef int64_t (*lar_hex8_recover)(const lar_hex8_block *blocks, int32_t count, const double *u,
-                                    int64_t *force, const lar_hex8_limits *limits);
+/* Recovers a run: adds the internal forces for the displacements `u` [nodes][4] to `force`
+ * [nodes][4]. Returns the first element (block * 8 + lane) beyond the limits, or -1; all forces
+ * are added in any case. */
+typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
+                                    const lar_hex8_limits *limits, bool watch);
 
 /* How nodes move in one leapfrog step of length dt with mass-proportional damping. */
 typedef struct lar_motion {
@@ -62,8 +105,7 @@ typedef struct lar_kernels {
     lar_isa isa;
     const char *name; /* as in LARIAT_ISA */
     bool (*available)(void);
-    lar_hex8_recover recover[LAR_LAW_COUNT];
-    lar_hex8_recover watch[LAR_LAW_COUNT]; /* the same, and also looks at the hourglass modes */
+    lar_hex8_recover recover;
     lar_node_update update;
 } lar_kernels;
 

@@ -1,188 +1,310 @@
 /* The hex8 kernels of one instruction set: compiled once per LAR_SIMD (src/CMakeLists.txt).
  *
- * The formulas are those of hex8.h, in the same order as hex8.c, a lane per element. The order of
- * the statements follows the life of the values: 21 modal displacements and 9 gradients fill the
- * 32 registers of AVX-512, the hourglass forces wait in the stack's cache line until the stress is
- * known. Compilers keep this order, so mind it.
+ * The formulas are those of hex8.h, in the same order as hex8.c, a lane per element, in three
+ * phases:
+ *
+ *     strain   gather nodes, transform, deformation gradient, hourglass forces    by shape, rows
+ *     stress   the material law                                                   by law
+ *     force    modal forces, rounding, transform back, scatter to nodes           by shape, rows
+ *
+ * The order of the statements follows the life of the values: 21 modal displacements and 9
+ * gradients fill the 32 registers of AVX-512. Compilers keep this order, so mind it.
  */
 #include "mechanics/hex8_block.h"
+
+#include "base/simd.h"
 
 #define UNROLL3 _Pragma("GCC unroll 3")
 #define UNROLL4 _Pragma("GCC unroll 4")
 #define UNROLL6 _Pragma("GCC unroll 6")
+#define UNROLL9 _Pragma("GCC unroll 9")
 
-typedef struct lane_modes {
-    lar_lane m[7][3]; /* xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta */
-} lane_modes;
+/* What waits between the phases. */
+typedef struct lane_record {
+    lar_lane F[9];                      /* deformation gradient, then V times the stress P */
+    lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
+} lane_record;
+
+/* The local nodes at xi = -1 and xi = +1 of the four edges along xi: (eta, zeta) = --, +-, -+,
+ * ++. */
+static const int left_node[4] = {0, 3, 4, 7}, right_node[4] = {1, 2, 5, 6};
+
+LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
+                            const double *u, lar_lane sum[3], lar_lane difference[3]) {
+    lar_lane left[3], right[3];
+    const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
+    if (rows == LAR_ROWS_NONE) {
+        lar_lane_gather(u, a, left);
+        lar_lane_gather(u, b, right);
+    } else {
+        lar_lane_gather_row(u, a, b, rows == LAR_ROWS_FOUR, left, right);
+    }
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        sum[i] = right[i] + left[i];
+        difference[i] = right[i] - left[i];
+    }
+}
 
 /* Sums and differences along xi and eta of the four nodes with one sign of zeta:
  * index 0: ++, 1: +-, 2: -+, 3: -- (xi first). */
-LAR_INLINE void gather_layer(const double *u, const int32_t (*node)[LAR_BLOCK], int lane,
-                             lar_lane layer[4][3]) {
-    lar_lane s0[3], d0[3];
-    UNROLL3 for (int half = 0; half < 2; half++) {
-        lar_lane left[3], right[3];
-        const int32_t *a = node[half ? 3 : 0] + lane, *b = node[half ? 2 : 1] + lane;
-        lar_lane_gather(u, a, &left[0], &left[1], &left[2]);
-        lar_lane_gather(u, b, &right[0], &right[1], &right[2]);
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            lar_lane s = right[i] + left[i], d = right[i] - left[i];
-            if (half == 0) {
-                s0[i] = s;
-                d0[i] = d;
-            } else {
-                layer[0][i] = s + s0[i];
-                layer[1][i] = s - s0[i];
-                layer[2][i] = d + d0[i];
-                layer[3][i] = d - d0[i];
-            }
-        }
+LAR_INLINE void gather_layer(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
+                             const double *u, lar_lane layer[4][3]) {
+    lar_lane s0[3], d0[3], s1[3], d1[3];
+    gather_edge(head, lane, rows, edge, u, s0, d0);
+    gather_edge(head, lane, rows, edge + 1, u, s1, d1);
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        layer[0][i] = s1[i] + s0[i];
+        layer[1][i] = s1[i] - s0[i];
+        layer[2][i] = d1[i] + d0[i];
+        layer[3][i] = d1[i] - d0[i];
     }
 }
 
-LAR_INLINE lane_modes gather_modes(const double *u, const lar_hex8_block *block, int lane) {
+/* Modal displacements: xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
+LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_rows rows,
+                             const double *u, lar_lane U[7][3]) {
     lar_lane lower[4][3], upper[4][3];
-    lane_modes U;
-    gather_layer(u, block->node, lane, lower);
-    gather_layer(u, block->node + 4, lane, upper);
+    gather_layer(head, lane, rows, 0, u, lower);
+    gather_layer(head, lane, rows, 2, u, upper);
     UNROLL3 for (int i = 0; i < 3; i++) {
-        U.m[0][i] = upper[2][i] + lower[2][i];
-        U.m[1][i] = upper[1][i] + lower[1][i];
-        U.m[2][i] = upper[0][i] - lower[0][i];
-        U.m[3][i] = upper[1][i] - lower[1][i];
-        U.m[4][i] = upper[2][i] - lower[2][i];
-        U.m[5][i] = upper[3][i] + lower[3][i];
-        U.m[6][i] = upper[3][i] - lower[3][i];
-    }
-    return U;
-}
-
-/* The four nodes of one layer from the sums over zeta: along eta, then along xi. */
-LAR_INLINE void scatter_layer(int64_t *force, const int32_t (*node)[LAR_BLOCK], int lane,
-                              const lar_ilane eta[3], const lar_ilane zeta[3],
-                              const lar_ilane xi[3], const lar_ilane xieta[3]) {
-    UNROLL3 for (int half = 0; half < 2; half++) {
-        lar_ilane left[3], right[3];
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            lar_ilane s = half ? zeta[i] + eta[i] : zeta[i] - eta[i];
-            lar_ilane d = half ? xi[i] + xieta[i] : xi[i] - xieta[i];
-            left[i] = s - d;
-            right[i] = s + d;
-        }
-        lar_ilane_scatter_add(force, node[half ? 3 : 0] + lane, left[0], left[1], left[2]);
-        lar_ilane_scatter_add(force, node[half ? 2 : 1] + lane, right[0], right[1], right[2]);
+        U[0][i] = upper[2][i] + lower[2][i];
+        U[1][i] = upper[1][i] + lower[1][i];
+        U[2][i] = upper[0][i] - lower[0][i];
+        U[3][i] = upper[1][i] - lower[1][i];
+        U[4][i] = upper[2][i] - lower[2][i];
+        U[5][i] = upper[3][i] + lower[3][i];
+        U[6][i] = upper[3][i] - lower[3][i];
     }
 }
 
-LAR_INLINE void scatter_modes(int64_t *force, const lar_hex8_block *block, int lane,
-                              lar_ilane n[7][3]) {
-    lar_ilane eta[3], zeta[3], xi[3], xieta[3];
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        zeta[i] = -n[2][i];
-        eta[i] = n[1][i] - n[3][i];
-        xi[i] = n[0][i] - n[4][i];
-        xieta[i] = n[5][i] - n[6][i];
+LAR_INLINE void strain_general(const lar_hex8_block *block, int lane, lar_lane U[7][3],
+                               lar_lane H[9]) {
+    UNROLL3 for (int j = 0; j < 3; j++) {
+        lar_lane B = lar_lane_load_once(&block->gradient[0][j][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = U[0][i] * B;
     }
-    scatter_layer(force, block->node, lane, eta, zeta, xi, xieta);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        eta[i] = n[1][i] + n[3][i];
-        xi[i] = n[0][i] + n[4][i];
-        xieta[i] = n[5][i] + n[6][i];
+    UNROLL6 for (int m = 1; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
+        lar_lane B = lar_lane_load_once(&block->gradient[m][j][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = lar_lane_fma(U[m][i], B, H[3 * i + j]);
     }
-    scatter_layer(force, block->node + 4, lane, eta, n[2], xi, xieta);
+    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) /* q_m = U_m - H X_m */
+        UNROLL3 for (int j = 0; j < 3; j++) {
+        lar_lane X = lar_lane_load_once(&block->shape[m][j][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) U[3 + m][i] =
+            lar_lane_fnma(H[3 * i + j], X, U[3 + m][i]);
+    }
+}
+
+LAR_INLINE void strain_box(const lar_box_block *block, int lane, lar_lane U[7][3], lar_lane H[9]) {
+    UNROLL3 for (int j = 0; j < 3; j++) {
+        lar_lane B = lar_lane_load_once(&block->gradient[j][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = U[j][i] * B;
+    }
+}
+
+/* Phase 1: displacements to deformation gradient and hourglass forces. */
+LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
+                             lar_block_rows rows, const double *u, lane_record *record) {
+    const lar_block_head *head = block;
+    lar_lane U[7][3], H[9];
+    gather_modes(head, lane, rows, u, U);
+    if (shape == LAR_SHAPE_BOX)
+        strain_box(block, lane, U, H);
+    else
+        strain_general(block, lane, U, H);
+    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
+        lar_lane c = lar_lane_load_once(&head->stiffness[m][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) record->cq[m][i] = U[3 + m][i] * c;
+    }
+    UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = k % 4 == 0 ? H[k] + lar_lane_set(1) : H[k];
 }
 
 typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar_lane I1,
                              const lar_lane p[3]);
 
-/* Recovers the lanes [lane, lane + LAR_LANES) of a block; returns the lanes beyond the limits. */
-LAR_INLINE unsigned recover_lanes(const lar_hex8_block *block, int lane, const double *u,
-                                  int64_t *force, const lar_hex8_limits *limits, lane_law law,
-                                  bool watch) {
-    lane_modes U = gather_modes(u, block, lane);
-
-    lar_lane F[9]; /* H at first */
-    UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane B = lar_lane_load(&block->gradient[0][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) F[3 * i + j] = U.m[0][i] * B;
-    }
-    UNROLL6 for (int m = 1; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane B = lar_lane_load(&block->gradient[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) F[3 * i + j] = lar_lane_fma(U.m[m][i], B, F[3 * i + j]);
-    }
-
-    lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
-    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
-        UNROLL3 for (int i = 0; i < 3; i++) cq[m][i] = U.m[3 + m][i];
-        UNROLL3 for (int j = 0; j < 3; j++) {
-            lar_lane X = lar_lane_load(&block->shape[m][j][lane]);
-            UNROLL3 for (int i = 0; i < 3; i++) cq[m][i] = lar_lane_fnma(F[3 * i + j], X, cq[m][i]);
-        }
-        lar_lane c = lar_lane_load(&block->stiffness[m][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) cq[m][i] *= c;
-    }
-    UNROLL3 for (int i = 0; i < 3; i++) F[4 * i] += lar_lane_set(1);
-
-    lar_lane S[9], p[LAR_LAW_PARAMETERS];
+/* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. */
+LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
+                                 const lar_hex8_limits *limits, lane_law law, bool watch) {
+    lar_lane P[9], p[LAR_LAW_PARAMETERS];
     UNROLL3 for (int k = 0; k < LAR_LAW_PARAMETERS; k++) p[k] =
-        lar_lane_load(&block->modulus[k][lane]);
-    lar_lane J = lar_lane_cofactor(F, S);
-    lar_lane stress = law(F, S, J, lar_lane_square_sum(F), p);
+        lar_lane_load(&head->modulus[k][lane]);
+    lar_lane J = lar_lane_cofactor(record->F, P);
+    lar_lane stress = law(record->F, P, J, lar_lane_square_sum(record->F), p);
+    UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
     unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->least_volume)) |
                       lar_lane_not_greater(lar_lane_set(limits->stress_square), stress);
     if (watch) {
         lar_lane sum = lar_lane_set(0);
         UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
-            sum = lar_lane_fma(cq[m][i], cq[m][i], sum);
+            sum = lar_lane_fma(record->cq[m][i], record->cq[m][i], sum);
         beyond |= lar_lane_not_greater(lar_lane_set(limits->hourglass_square), sum);
     }
+    return beyond;
+}
 
+LAR_INLINE void force_general(const lar_hex8_block *block, int lane, const lane_record *record,
+                              lar_ilane n[7][3]) {
+    lar_lane S[9];
+    UNROLL9 for (int k = 0; k < 9; k++) S[k] = record->F[k];
     UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane X = lar_lane_load(&block->shape[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) S[3 * i + j] = lar_lane_fnma(cq[m][i], X, S[3 * i + j]);
+        lar_lane X = lar_lane_load_once(&block->shape[m][j][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) S[3 * i + j] =
+            lar_lane_fnma(record->cq[m][i], X, S[3 * i + j]);
     }
-
-    lar_ilane n[7][3];
     UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) {
         lar_lane B[3];
-        UNROLL3 for (int j = 0; j < 3; j++) B[j] = lar_lane_load(&block->gradient[m][j][lane]);
+        UNROLL3 for (int j = 0; j < 3; j++) B[j] = lar_lane_load_once(&block->gradient[m][j][lane]);
         UNROLL3 for (int i = 0; i < 3; i++) {
-            lar_lane G = m < 3 ? S[3 * i] * B[0] : lar_lane_fma(S[3 * i], B[0], cq[m - 3][i]);
+            lar_lane G =
+                m < 3 ? S[3 * i] * B[0] : lar_lane_fma(S[3 * i], B[0], record->cq[m - 3][i]);
             G = lar_lane_fma(S[3 * i + 1], B[1], G);
             n[m][i] = lar_lane_round(lar_lane_fma(S[3 * i + 2], B[2], G));
         }
     }
-    UNROLL3 for (int i = 0; i < 3; i++) n[6][i] = lar_lane_round(cq[3][i]);
-    scatter_modes(force, block, lane, n);
-    return beyond;
 }
 
-LAR_INLINE int64_t recover_blocks(const lar_hex8_block *blocks, int32_t count, const double *u,
-                                  int64_t *force, const lar_hex8_limits *limits, lane_law law,
-                                  bool watch) {
-    int64_t first = -1;
-    for (int32_t b = 0; b < count; b++)
-        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
-            unsigned beyond = recover_lanes(&blocks[b], lane, u, force, limits, law, watch);
-            if (__builtin_expect(beyond != 0 && first < 0, 0))
-                first = (int64_t)b * LAR_BLOCK + lane + __builtin_ctz(beyond);
+LAR_INLINE void force_box(const lar_box_block *block, int lane, const lane_record *record,
+                          lar_ilane n[7][3]) {
+    UNROLL3 for (int m = 0; m < 3; m++) {
+        lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++) {
+            n[m][i] = lar_lane_round(record->F[3 * i + m] * B);
+            n[3 + m][i] = lar_lane_round(record->cq[m][i]);
         }
+    }
+}
+
+LAR_INLINE void scatter_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
+                             const lar_ilane sum[3], const lar_ilane difference[3],
+                             int64_t *force) {
+    lar_ilane left[3], right[3];
+    const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        left[i] = sum[i] - difference[i];
+        right[i] = sum[i] + difference[i];
+    }
+    if (rows == LAR_ROWS_NONE) {
+        lar_ilane_scatter_add(force, a, left);
+        lar_ilane_scatter_add(force, b, right);
+    } else {
+        lar_ilane_scatter_row(force, a, b, rows == LAR_ROWS_FOUR, left, right);
+    }
+}
+
+/* The transform back, from the modes n: along zeta, eta, xi. */
+LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_rows rows,
+                              lar_ilane n[7][3], int64_t *force) {
+    UNROLL3 for (int top = 0; top < 2; top++) {
+        lar_ilane s0[3], s1[3], d0[3], d1[3];
+        UNROLL3 for (int i = 0; i < 3; i++) {
+            lar_ilane zeta = top ? n[2][i] : -n[2][i];
+            lar_ilane eta = top ? n[1][i] + n[3][i] : n[1][i] - n[3][i];
+            lar_ilane xi = top ? n[0][i] + n[4][i] : n[0][i] - n[4][i];
+            lar_ilane xieta = top ? n[5][i] + n[6][i] : n[5][i] - n[6][i];
+            s0[i] = zeta - eta;
+            s1[i] = zeta + eta;
+            d0[i] = xi - xieta;
+            d1[i] = xi + xieta;
+        }
+        scatter_edge(head, lane, rows, 2 * top, s0, d0, force);
+        scatter_edge(head, lane, rows, 2 * top + 1, s1, d1, force);
+    }
+}
+
+/* Phase 3: stress and hourglass forces to the nodes. */
+LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, lar_block_rows rows,
+                            const lane_record *record, int64_t *force) {
+    lar_ilane n[7][3];
+    if (shape == LAR_SHAPE_BOX)
+        force_box(block, lane, record, n);
+    else
+        force_general(block, lane, record, n);
+    UNROLL3 for (int i = 0; i < 3; i++) n[6][i] = lar_lane_round(record->cq[3][i]);
+    scatter_modes(block, lane, rows, n, force);
+}
+
+/* The phases work on a few blocks at a time. The law of one block is a long chain of dependent
+ * operations, which a processor can hide only behind other blocks; in short loops their turns
+ * overlap in its window. Few enough that the records stay in the first-level cache. */
+enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
+
+#define FOR_PARTS(blocks, count, size)                                                             \
+    for (const char *block = (blocks), *end = block + (count) * (size); block < end;               \
+         block += (size))                                                                          \
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, record++)
+
+typedef void (*strain_phase)(const char *blocks, size_t count, const double *u,
+                             lane_record *record);
+typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
+                                 const lar_hex8_limits *limits, bool watch);
+typedef void (*force_phase)(const char *blocks, size_t count, const lane_record *record,
+                            int64_t *force);
+
+#define DEFINE_PHASES(name, shape, rows)                                                           \
+    static void strain_##name(const char *blocks, size_t count, const double *u,                   \
+                              lane_record *record) {                                               \
+        FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
+        strain_lanes(block, lane, shape, rows, u, record);                                         \
+    }                                                                                              \
+    static void force_##name(const char *blocks, size_t count, const lane_record *record,          \
+                             int64_t *force) {                                                     \
+        FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
+        force_lanes(block, lane, shape, rows, record, force);                                      \
+    }
+DEFINE_PHASES(general_none, LAR_SHAPE_GENERAL, LAR_ROWS_NONE)
+DEFINE_PHASES(general_four, LAR_SHAPE_GENERAL, LAR_ROWS_FOUR)
+DEFINE_PHASES(general_eight, LAR_SHAPE_GENERAL, LAR_ROWS_EIGHT)
+DEFINE_PHASES(box_none, LAR_SHAPE_BOX, LAR_ROWS_NONE)
+DEFINE_PHASES(box_four, LAR_SHAPE_BOX, LAR_ROWS_FOUR)
+DEFINE_PHASES(box_eight, LAR_SHAPE_BOX, LAR_ROWS_EIGHT)
+
+static const strain_phase strain_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
+    {strain_general_none, strain_general_four, strain_general_eight},
+    {strain_box_none, strain_box_four, strain_box_eight}};
+static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
+    {force_general_none, force_general_four, force_general_eight},
+    {force_box_none, force_box_four, force_box_eight}};
+
+/* Returns a bit per element of the chunk that is beyond the limits. */
+#define DEFINE_LAW(identifier, name)                                                               \
+    static unsigned stress_##identifier(const char *blocks, size_t count, size_t size,             \
+                                        lane_record *record, const lar_hex8_limits *limits,        \
+                                        bool watch) {                                              \
+        unsigned beyond = 0;                                                                       \
+        int shift = 0;                                                                             \
+        FOR_PARTS(blocks, count, size) {                                                           \
+            beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
+                                   limits, lar_##identifier##_stress, watch)                       \
+                      << shift;                                                                    \
+            shift += LAR_LANES;                                                                    \
+        }                                                                                          \
+        return beyond;                                                                             \
+    }
+LAR_LAWS(DEFINE_LAW)
+#define LAW_ROW(identifier, name) [LAR_LAW_##identifier] = stress_##identifier,
+static const stress_phase stress_table[LAR_LAW_COUNT] = {LAR_LAWS(LAW_ROW)};
+
+_Static_assert(CHUNK *LAR_BLOCK <= 32, "one bit per element of a chunk");
+
+static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
+                       const lar_hex8_limits *limits, bool watch) {
+    lane_record record[CHUNK * PARTS];
+    strain_phase strain = strain_table[run->shape][run->rows];
+    stress_phase stress = stress_table[run->law];
+    force_phase forces = force_table[run->shape][run->rows];
+    size_t size = lar_block_size(run->shape);
+    int64_t first = -1;
+    for (int32_t b = 0; b < run->count; b += CHUNK) {
+        size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
+        const char *blocks = (const char *)run->blocks + (size_t)b * size;
+        strain(blocks, count, u, record);
+        unsigned beyond = stress(blocks, count, size, record, limits, watch);
+        forces(blocks, count, record, force);
+        if (__builtin_expect(beyond != 0 && first < 0, 0))
+            first = (int64_t)b * LAR_BLOCK + __builtin_ctz(beyond);
+    }
     return first;
 }
-
-#define LAR_DEFINE_LAW(identifier, name)                                                           \
-    static int64_t recover_##identifier(const lar_hex8_block *blocks, int32_t count,               \
-                                        const double *u, int64_t *force,                           \
-                                        const lar_hex8_limits *limits) {                           \
-        return recover_blocks(blocks, count, u, force, limits, lar_##identifier##_stress, false);  \
-    }                                                                                              \
-    static int64_t watch_##identifier(const lar_hex8_block *blocks, int32_t count,                 \
-                                      const double *u, int64_t *force,                             \
-                                      const lar_hex8_limits *limits) {                             \
-        return recover_blocks(blocks, count, u, force, limits, lar_##identifier##_stress, true);   \
-    }
-LAR_LAWS(LAR_DEFINE_LAW)
-#undef LAR_DEFINE_LAW
 
 /* Nodes are runs of four values (the last always 0), so every value is treated alike. */
 LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t end, double *u,
@@ -251,11 +373,6 @@ const lar_kernels LAR_KERNELS_NAME = {
     .isa = LAR_KERNELS_ISA,
     .name = LAR_KERNELS_TEXT,
     .available = available,
-#define LAR_ROW(identifier, name) [LAR_LAW_##identifier] = recover_##identifier,
-    .recover = {LAR_LAWS(LAR_ROW)},
-#undef LAR_ROW
-#define LAR_ROW(identifier, name) [LAR_LAW_##identifier] = watch_##identifier,
-    .watch = {LAR_LAWS(LAR_ROW)},
-#undef LAR_ROW
+    .recover = recover,
     .update = update,
 };

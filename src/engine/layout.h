@@ -1,0 +1,48 @@
+/* The order of elements and nodes in memory: what decides how fast a step can be.
+ *
+ * Elements are threaded into ROWS through opposite faces, as in a brick of cells:
+ *
+ *       n0---n1---n2---n3---n4---n5---n6---n7---n8      one of the four lines of nodes
+ *       |  0 |  1 |  2 |  3 |  4 |  5 |  6 |  7 |       eight elements, xi to the right
+ *       +----+----+----+----+----+----+----+----+
+ *
+ * and the nodes of a row's four lines get consecutive numbers, beginning with an even one. A block
+ * of such a row then reads and writes 36 nodes as a few whole vectors where loose elements touch
+ * 64 nodes one by one (mechanics/hex8_block.h). Rows are looked for along all three directions of
+ * every element, longest first, starting along a Z curve (Morton 1966) so that neighbours in space
+ * stay neighbours in memory; what is left over goes into loose blocks. Any hexahedral mesh has such
+ * rows; meshes swept or voxelised from organs consist of little else.
+ *
+ * An element in a row is turned so that its xi runs along the row. The turn is decided from the
+ * whole model, not from one domain, because the last bits of an element's forces depend on it.
+ */
+#ifndef LAR_ENGINE_LAYOUT_H
+#define LAR_ENGINE_LAYOUT_H
+
+#include "mechanics/hex8_block.h"
+#include "model/model.h"
+
+typedef int32_t lar_lid; /* node of one domain */
+
+/* Eight lanes that one block will hold. */
+typedef struct lar_lanes {
+    lar_law law;
+    lar_block_shape shape;
+    lar_block_rows rows;
+    lar_gid element[LAR_BLOCK]; /* by lane; -1: none */
+} lar_lanes;
+
+typedef struct lar_layout {
+    lar_gid (*corner)[8]; /* [elements of the model] nodes, turned along the row */
+    int32_t block_count;
+    lar_lanes *block;    /* sorted: equal law, shape and rows stand together */
+    int32_t node_count;  /* local nodes, spare ones among them, without the padding at the end */
+    int32_t node_padded; /* even, with at least one spare node at the end */
+    lar_gid *global;     /* [node_padded] node of the model, -1: spare */
+    lar_lid *local;      /* [nodes of the model] */
+} lar_layout;
+
+lar_status lar_layout_create(const lar_model *model, lar_layout *layout, lar_error *error);
+void lar_layout_destroy(lar_layout *layout); /* idempotent */
+
+#endif

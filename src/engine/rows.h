@@ -1,0 +1,18 @@
+/* Threading elements into rows through opposite faces. See layout.h. */
+#ifndef LAR_ENGINE_ROWS_H
+#define LAR_ENGINE_ROWS_H
+
+#include "model/mesh.h"
+
+/* neighbour[6 e + f]: the face (element * 6 + face) on the other side of face f of element e, or
+ * -1. The caller frees *neighbour. */
+lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_error *error);
+
+/* The run of elements through e along its axis (0 xi, 1 eta, 2 zeta): elements for which
+ * usable[element] is true, at most `most`, in run[], front to back; corner[k] gets the nodes of
+ * run[k] turned so that the row is its xi direction. When e's own axis leads to the front, its
+ * nodes keep their order for axis 0. Returns the length. */
+int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
+                   int axis, int most, int32_t *run, int32_t (*corner)[8]);
+
+#endif
