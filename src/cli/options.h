@@ -32,6 +32,7 @@ typedef struct cli_option {
     const char *const *choices; /* NULL ends the list */
 } cli_option;
 
+/* Rows of the table: name, placeholder of the value, help, where the value goes, limits. */
 #define CLI_FLAG(n, h, v)                                                                          \
     { .name = n, .kind = OPTION_FLAG, .help = h, .value = v }
 #define CLI_VALUE(k, n, p, h, v) .name = n, .kind = k, .placeholder = p, .help = h, .value = v

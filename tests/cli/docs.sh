@@ -30,5 +30,8 @@ for key in $(keys "$LARIAT" info demo/uterus.yaml --json) \
     $(keys "$LARIAT" bench kernel --elements 8 --repeat 1 --json); do
     grep -q "\`$key\`" "$page" || echo "key $key"
 done >>"$SCRATCH/undocumented"
-[ ! -s "$SCRATCH/undocumented" ] || fail "not in docs/cli.md: $(tr '\n' ' ' <"$SCRATCH/undocumented")"
+[ ! -s "$SCRATCH/undocumented" ] || {
+    fail "not in docs/cli.md:"
+    cat "$SCRATCH/undocumented" >&2
+}
 finish "docs/cli.md: examples run, options and keys are all there"

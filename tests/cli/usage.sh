@@ -46,8 +46,8 @@ expect 2 "$LARIAT" run "$beam" --time
 complains '--time needs a value'
 expect 2 "$LARIAT" run "$beam" --json=yes
 complains '--json takes no value'
-for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--steps 0' '--steps 1.5' \
-    '--steps 99999999999999999999' '--time-step 0' '--element tet' '--isa sse' '--out=' \
+for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--steps 0' \
+    '--steps 1.5' '--steps 99999999999999999999' '--time-step 0' '--element tet' '--isa sse' '--out=' \
     '--time 1 --steps 1'; do
     # shellcheck disable=SC2086
     expect 2 "$LARIAT" run "$beam" $wrong
