@@ -120,8 +120,9 @@ static void set_in_motion(lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     const lar_mesh *mesh = &domain->model->mesh;
     const double *end = mesh->position[mesh->node_count - 1];
-    for (int32_t n = 0; n < domain->node_count; n++) {
-        const double *place = mesh->position[domain->global[n]];
+    for (lar_gid g = 0; g < mesh->node_count; g++) {
+        const double *place = mesh->position[g];
+        lar_lid n = domain->layout.local[g];
         for (int i = 0; i < 3; i++) {
             double phase = acos(-1) * place[(i + 1) % 3] / (end[(i + 1) % 3] + SIDE);
             simulation->state.u[4 * n + i] = 0.01 * SIDE * cos(phase);

@@ -49,11 +49,11 @@ static void fill_lane(load *l, int n) {
         for (int j = 0; j < 3; j++) block->gradient[m][j][lane] = element->gradient[m][j];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         for (int j = 0; j < 3; j++) block->shape[m][j][lane] = element->shape[m][j];
-        block->stiffness[m][lane] = l->scale * element->stiffness[m];
+        block->head.stiffness[m][lane] = l->scale * element->stiffness[m];
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        block->modulus[k][lane] = l->scale * element->volume * l->material[n].parameter[k];
-    for (int a = 0; a < 8; a++) block->node[a][lane] = 4 * l->node[n][a];
+        block->head.modulus[k][lane] = l->scale * element->volume * l->material[n].parameter[k];
+    for (int a = 0; a < 8; a++) block->head.node[a][lane] = 4 * l->node[n][a];
 }
 
 static void lane_displacements(const load *l, int n, double u[8][3]) {
@@ -93,11 +93,17 @@ static void empty_lane(load *l, int n) {
     fill_lane(l, n);
 }
 
+/* Loose blocks of general elements. */
+static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
+                    int64_t *force, const lar_hex8_limits *limits, bool watch) {
+    lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, count, blocks};
+    return kernels[k]->recover(&run, u, force, limits, watch);
+}
+
 static int64_t recover(const load *l, int k, bool watch, const lar_hex8_limits *limits, forces *f) {
     lar_law law = l->material[0].law;
-    lar_hex8_recover call = watch ? kernels[k]->watch[law] : kernels[k]->recover[law];
     memset(f, 0, sizeof *f);
-    return call(l->block, BLOCKS, &l->u[0][0], &f->at[0][0], limits);
+    return call(k, law, l->block, BLOCKS, &l->u[0][0], &f->at[0][0], limits, watch);
 }
 
 /* Each element within the rounding of its seven modal forces (half a unit each); the scale is
@@ -198,7 +204,7 @@ static void integers_balance(void **state) {
             make_load(&l, &seed, law, 0x1p38);
             recover(&l, k, false, &no_limits, &once);
             f = once;
-            kernels[k]->recover[law](l.block, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits);
+            call(k, (lar_law)law, l.block, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits, false);
             int64_t sum[4] = {0}, most = 0;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) {
@@ -221,12 +227,13 @@ static void any_count_of_blocks(void **state) {
         make_load(&l, &seed, law, 0x1p38);
         for (int k = 0; k < kernel_count; k++)
             for (int count = 0; count <= BLOCKS; count++) {
-                lar_hex8_recover call = kernels[k]->recover[law];
                 memset(&together, 0, sizeof together);
                 memset(&single, 0, sizeof single);
-                assert_true(call(l.block, count, &l.u[0][0], &together.at[0][0], &no_limits) == -1);
+                assert_true(call(k, (lar_law)law, l.block, count, &l.u[0][0], &together.at[0][0],
+                                 &no_limits, false) == -1);
                 for (int b = 0; b < count; b++)
-                    call(&l.block[b], 1, &l.u[0][0], &single.at[0][0], &no_limits);
+                    call(k, (lar_law)law, &l.block[b], 1, &l.u[0][0], &single.at[0][0], &no_limits,
+                         false);
                 assert_memory_equal(&together, &single, sizeof single);
             }
     }
@@ -380,20 +387,20 @@ static void rounds_to_nearest_even(void **state) {
     uint64_t seed = 57;
     memset(&l, 0, sizeof l);
     empty_lane(&l, 0);
-    for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].stiffness[3][lane] = 1;
+    for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].head.stiffness[3][lane] = 1;
     for (int a = 0; a < 8; a++)
-        for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].node[a][lane] = 4 * SPARE;
+        for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].head.node[a][lane] = 4 * SPARE;
     for (int round = 0; round < 500 * LAR_BLOCK; round++) {
         int lane = round % LAR_BLOCK, pick = round / LAR_BLOCK / 2;
         double x = pick < SPECIAL ? special[pick] : exp2(30 + 31.9 * random_value(&seed));
         if (round / LAR_BLOCK % 2) x = -x;
         lar_hex8_block block = l.block[0];
-        for (int a = 0; a < 8; a++) block.node[a][lane] = 4 * a;
+        for (int a = 0; a < 8; a++) block.head.node[a][lane] = 4 * a;
         l.u[0][0] = x;
         l.u[0][2] = -x;
         for (int k = 0; k < kernel_count; k++) {
             memset(&f, 0, sizeof f);
-            kernels[k]->recover[0](&block, 1, &l.u[0][0], &f.at[0][0], &no_limits);
+            call(k, (lar_law)0, &block, 1, &l.u[0][0], &f.at[0][0], &no_limits, false);
             for (int a = 0; a < 8; a++) {
                 int sign = -lar_node_sign[a][0] * lar_node_sign[a][1] * lar_node_sign[a][2];
                 assert_true(f.at[a][0] == sign * llrint(x));

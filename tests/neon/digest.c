@@ -65,7 +65,7 @@ static void pack_element(world *w, int e, const lar_material *material) {
     for (int a = 0; a < 8; a++) {
         int n = node_at(at[0] + offset[a][0], at[1] + offset[a][1], at[2] + offset[a][2]);
         memcpy(corner[a], w->position[n], sizeof corner[a]);
-        block->node[a][lane] = 4 * n;
+        block->head.node[a][lane] = 4 * n;
         w->mass[n] += DENSITY * SIDE * SIDE * SIDE / 8;
     }
     lar_hex8 hex8;
@@ -74,10 +74,10 @@ static void pack_element(world *w, int e, const lar_material *material) {
         for (int i = 0; i < 3; i++) block->gradient[m][i][lane] = hex8.gradient[m][i];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         for (int i = 0; i < 3; i++) block->shape[m][i][lane] = hex8.shape[m][i];
-        block->stiffness[m][lane] = hex8.stiffness[m] * SCALE;
+        block->head.stiffness[m][lane] = hex8.stiffness[m] * SCALE;
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        block->modulus[k][lane] = material->parameter[k] * hex8.volume * SCALE;
+        block->head.modulus[k][lane] = material->parameter[k] * hex8.volume * SCALE;
 }
 
 static uint64_t digest(uint64_t hash, const void *data, size_t size) {
@@ -99,11 +99,11 @@ static bool shake(const lar_kernels *kernels, lar_law law, uint64_t *hash) {
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
     const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}};
+    const lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, BLOCKS, w->blocks};
     bool good = true;
     double damped = 0;
     for (int step = 0; step < STEPS && good; step++) {
-        lar_hex8_recover recover = step % 10 ? kernels->recover[law] : kernels->watch[law];
-        good = recover(w->blocks, BLOCKS, &w->u[0][0], &w->force[0][0], &limits) < 0 &&
+        good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, step % 10 == 0) < 0 &&
                kernels->update(&motion, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
                                w->push, step % 10 ? NULL : w->mass, &damped);
     }
