@@ -76,11 +76,6 @@ static void move_nodes(const lar_domain *domain, double time, lar_state *state, 
                                  state->force, domain->push, mass, &state->damped) &&
         !trip->kind)
         *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
-    /* The spare nodes have no mass, but gravity moved them like all others: they must not fall. */
-    size_t first = 4 * (size_t)domain->layout.node_count,
-           end = 4 * (size_t)domain->layout.node_padded;
-    memset(state->u + first, 0, (end - first) * sizeof *state->u);
-    memset(state->v + first, 0, (end - first) * sizeof *state->v);
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {

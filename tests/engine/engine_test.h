@@ -202,18 +202,18 @@ TEST_UNUSED static void finish(lar_simulation *simulation, lar_model *model) {
 
 /* Displacement of a global node. */
 TEST_UNUSED static const double *node_u(const lar_simulation *simulation, int32_t node) {
-    return simulation->state.u + 4 * simulation->domain.local[node];
+    return simulation->state.u + 4 * simulation->domain.layout.local[node];
 }
 
 TEST_UNUSED static const double *node_v(const lar_simulation *simulation, int32_t node) {
-    return simulation->state.v + 4 * simulation->domain.local[node];
+    return simulation->state.v + 4 * simulation->domain.layout.local[node];
 }
 
 /* Loads and internal forces at the present state, [local nodes][4] in newtons: internal minus
  * external. The caller frees. */
 TEST_UNUSED static double *residual_forces(lar_simulation *simulation) {
     lar_state *state = &simulation->state;
-    size_t values = 4 * (size_t)simulation->domain.node_padded;
+    size_t values = 4 * (size_t)simulation->domain.layout.node_padded;
     double *force = lar_calloc(values, sizeof *force);
     lar_trip trip = {0};
     lar_step_forces(&simulation->domain, state, &trip);

@@ -10,9 +10,10 @@ typedef struct momentum {
 static momentum measure_momentum(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     momentum sum = {0};
-    for (int32_t n = 0; n < domain->node_count; n++) {
-        const double *v = simulation->state.v + 4 * n, *u = simulation->state.u + 4 * n;
-        const double *X = domain->model->mesh.position[domain->global[n]];
+    for (int32_t g = 0; g < domain->model->mesh.node_count; g++) {
+        int32_t n = domain->layout.local[g];
+        const double *v = node_v(simulation, g), *u = node_u(simulation, g);
+        const double *X = domain->model->mesh.position[g];
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
             double left = domain->mass[n] * (X[j] + u[j]) * v[k];
@@ -83,12 +84,12 @@ static void a_closed_path_leaves_no_force(void **unused) {
         while (lar_simulation_time(simulation) < 2.5) {
             advance(simulation, 100);
             double *force = residual_forces(simulation);
-            for (int32_t i = 0; i < 4 * simulation->domain.node_count; i++)
+            for (int32_t i = 0; i < 4 * simulation->domain.layout.node_count; i++)
                 if (lar_simulation_time(simulation) < 0.6) highest = fmax(highest, fabs(force[i]));
             free(force);
         }
         double *force = residual_forces(simulation);
-        for (int32_t i = 0; i < 4 * simulation->domain.node_count; i++)
+        for (int32_t i = 0; i < 4 * simulation->domain.layout.node_count; i++)
             assert_below(fabs(force[i]), 1e-12 * characteristic_force(&b));
         assert_true(highest > 0.01 * characteristic_force(&b));
         free(force);

@@ -41,11 +41,9 @@ static lar_model *open_deck(const char *deck) {
 static double free_norm(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     double square = 0;
-    for (int32_t n = 0; n < domain->node_count; n++)
-        for (int i = 0; i < 3; i++) {
-            double u = simulation->state.u[4 * n + i];
-            square += u * u;
-        }
+    for (int32_t g = 0; g < domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++)
+            square += displacement(simulation, g, i) * displacement(simulation, g, i);
     for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
         double u = simulation->state.u[domain->conditions.constraint[i].value];
         square -= u * u;

@@ -23,9 +23,10 @@ static void static_shape(const beam_mesh *mesh, double (*shape)[3]) {
 static double modal_share(const lar_simulation *simulation, double (*shape)[3]) {
     double sum = 0;
     const lar_domain *domain = &simulation->domain;
-    for (int32_t n = 0; n < domain->node_count; n++)
+    for (int32_t g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++)
-            sum += domain->mass[n] * simulation->state.u[4 * n + i] * shape[domain->global[n]][i];
+            sum += domain->mass[domain->layout.local[g]] * displacement(simulation, g, i) *
+                   shape[g][i];
     return sum;
 }
 
