@@ -77,8 +77,9 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
-static void fill_lane(const lar_domain *domain, lar_block_shape shape, void *memory, int lane,
+static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
                       lar_gid e, double *steepest) {
+    lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_material *material = material_of(domain->model, e);
     const lar_gid *node = domain->layout.corner[e];
@@ -92,7 +93,7 @@ static void fill_lane(const lar_domain *domain, lar_block_shape shape, void *mem
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
             if (shape == LAR_SHAPE_GENERAL)
                 ((lar_hex8_block *)memory)->gradient[m][i][lane] = hex8.gradient[m][i];
-            else if (m == i)
+            else if (m < 3 && i == (m + run->turn) % 3)
                 ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
         }
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
@@ -112,10 +113,10 @@ static void list_runs(lar_domain *domain) {
         const lar_lanes *lanes = &layout->block[b];
         lar_block_run *run = domain->run_count ? &domain->run[domain->run_count - 1] : NULL;
         if (!run || run->law != lanes->law || run->shape != lanes->shape ||
-            run->rows != lanes->rows) {
+            run->turn != lanes->turn || run->rows != lanes->rows) {
             domain->run_first[domain->run_count] = b;
             run = &domain->run[domain->run_count++];
-            *run = (lar_block_run){lanes->law, lanes->shape, lanes->rows, 0, NULL};
+            *run = (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, 0, NULL};
         }
         run->count++;
         domain->block_bytes += lar_block_size(lanes->shape);
@@ -135,7 +136,7 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
             const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
             for (int lane = 0; lane < LAR_BLOCK; lane++)
                 if (lanes->element[lane] >= 0)
-                    fill_lane(domain, run->shape, memory, lane, lanes->element[lane], &steepest);
+                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest);
                 else
                     for (int a = 0; a < 8; a++)
                         ((lar_block_head *)(void *)memory)->node[a][lane] =
@@ -204,8 +205,8 @@ static void prepare_motion(lar_domain *domain) {
         lar_mesh_corners(&model->mesh, e, corner);
         shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
     }
-    /* A node that crosses its element in one step is no motion the scheme can follow. */
-    domain->motion.speed = shortest / dt;
+    /* Two watches (LAR_WATCH_INTERVAL) apart, no hourglass mode can grow beyond the integers. */
+    domain->motion.speed = 256 * shortest / dt;
 }
 
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,

@@ -16,7 +16,7 @@
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
 
-enum { LAR_RUNS_MAX = LAR_LAW_COUNT * LAR_SHAPE_COUNT * LAR_ROWS_COUNT };
+enum { LAR_RUNS_MAX = LAR_LAW_COUNT * 4 * LAR_ROWS_COUNT }; /* general, boxes in 3 turns */
 
 typedef struct lar_domain {
     const lar_model *model;

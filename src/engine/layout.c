@@ -25,31 +25,61 @@ typedef struct planner {
     int32_t node_room;
     int32_t *stamp; /* [nodes] the last check that met the node */
     int32_t stamp_now;
-    /* For every law and shape: a row of four that waits for a second one. */
-    int32_t waiting[LAR_LAW_COUNT][LAR_SHAPE_COUNT]; /* block, -1: none */
+    int32_t waiting[LAR_LAW_COUNT * 4]; /* by kind: block with one row of four, -1: none */
 } planner;
 
 static lar_law law_of(const lar_model *model, lar_gid e) {
     return model->material[model->element_material[e]].law;
 }
 
-/* Edges along the axes, to the bit. */
-static bool is_box(const lar_mesh *mesh, const lar_gid corner[8]) {
-    for (int a = 1; a < 8; a++)
-        for (int i = 0; i < 3; i++) {
-            int representative = lar_node_sign[a][i] < 0 ? 0 : 6;
-            if (mesh->position[corner[a]][i] != mesh->position[corner[representative]][i])
-                return false;
-        }
-    return true;
+/* The turn of a box whose edges follow the axes to the bit, -1 for any other element. */
+static int box_turn(const lar_mesh *mesh, const lar_gid corner[8]) {
+    for (int turn = 0; turn < 3; turn++) {
+        bool box = true;
+        for (int a = 0; box && a < 8; a++)
+            for (int i = 0; i < 3; i++) {
+                int axis = (i + turn) % 3, representative = lar_node_sign[a][i] < 0 ? 0 : 6;
+                box = box && mesh->position[corner[a]][axis] ==
+                                 mesh->position[corner[representative]][axis];
+            }
+        for (int i = 0; i < 3; i++)
+            box = box && mesh->position[corner[0]][i] < mesh->position[corner[6]][i];
+        if (box) return turn;
+    }
+    return -1;
 }
 
-static lar_lanes *new_block(planner *plan, lar_law law, lar_block_shape shape,
-                            lar_block_rows rows) {
+/* What a block is made of: the same for all its elements. */
+typedef struct kind {
+    lar_law law;
+    lar_block_shape shape;
+    int turn;
+} kind;
+
+enum { KINDS = LAR_LAW_COUNT * 4 };
+
+static int kind_index(kind k) {
+    return (int)k.law * 4 + (k.shape == LAR_SHAPE_BOX ? 1 + k.turn : 0);
+}
+
+/* The kind of `count` elements that will share a row. */
+static kind common_kind(const lar_model *model, const lar_gid *element, const int32_t (*corner)[8],
+                        int count) {
+    kind common = {law_of(model, element[0]), LAR_SHAPE_BOX, 0};
+    for (int k = 0; k < count; k++) {
+        int turn = box_turn(&model->mesh, corner[k]);
+        if (turn < 0 || (k > 0 && turn != common.turn))
+            return (kind){common.law, LAR_SHAPE_GENERAL, 0};
+        common.turn = turn;
+    }
+    return common;
+}
+
+static lar_lanes *new_block(planner *plan, kind k, lar_block_rows rows) {
     lar_layout *layout = plan->layout;
     if (!LAR_GROW(layout->block, plan->block_room, layout->block_count)) return NULL;
     lar_lanes *block = &layout->block[layout->block_count++];
-    *block = (lar_lanes){.law = law, .shape = shape, .rows = rows};
+    *block = (lar_lanes){.law = k.law, .shape = k.shape, .turn = k.turn, .rows = rows};
     for (int i = 0; i < LAR_BLOCK; i++) block->element[i] = -1;
     return block;
 }
@@ -114,27 +144,22 @@ static int feasible_length(planner *plan, int from, int length) {
     return 0;
 }
 
-static lar_block_shape shape_of(const planner *plan, int from, int count) {
-    for (int k = from; k < from + count; k++)
-        if (!is_box(&plan->model->mesh, plan->run_corner[k])) return LAR_SHAPE_GENERAL;
-    return LAR_SHAPE_BOX;
-}
-
 /* Puts run[from..from+count) into a block: eight into a new one, four beside four others. */
 static bool place_row(planner *plan, int from, int count) {
-    lar_law law = law_of(plan->model, plan->run[from]);
-    lar_block_shape shape = shape_of(plan, from, count);
+    kind own = common_kind(plan->model, plan->run + from,
+                           (const int32_t(*)[8])plan->run_corner + from, count);
+    int32_t *waiting = &plan->waiting[kind_index(own)];
     lar_lanes *block;
     int offset = 0;
     if (count == ROW) {
-        block = new_block(plan, law, shape, LAR_ROWS_EIGHT);
-    } else if (plan->waiting[law][shape] >= 0) {
-        block = &plan->layout->block[plan->waiting[law][shape]];
-        plan->waiting[law][shape] = -1;
+        block = new_block(plan, own, LAR_ROWS_EIGHT);
+    } else if (*waiting >= 0) {
+        block = &plan->layout->block[*waiting];
+        *waiting = -1;
         offset = HALF_ROW;
     } else {
-        block = new_block(plan, law, shape, LAR_ROWS_FOUR);
-        plan->waiting[law][shape] = plan->layout->block_count - 1;
+        block = new_block(plan, own, LAR_ROWS_FOUR);
+        *waiting = plan->layout->block_count - 1;
     }
     if (!block) return false;
     for (int k = 0; k < count; k++) {
@@ -190,16 +215,34 @@ static int keep_law(planner *plan, lar_gid e, int length) {
     return end - begin;
 }
 
+/* How good it is to cut the traced run into rows: the share of its elements that rows would hold,
+ * rows of four counting a little less, and a bonus for lines that neighbouring rows have numbered
+ * already, so that a region keeps to one direction; the longer of two equal runs. */
+static double run_score(planner *plan, int length) {
+    double held = 0;
+    int shared = 0, lines = 0;
+    for (int from = 0; from + HALF_ROW <= length;) {
+        int part = feasible_length(plan, from, length);
+        const int32_t(*corner)[8] = (const int32_t(*)[8])plan->run_corner + from;
+        for (int line = 0; part > 0 && line < 4; line++, lines++)
+            shared += examine_line(plan, corner, part, line) == LINE_NUMBERED;
+        held += part / ROW * ROW + 0.9 * (part % ROW);
+        from += part > 0 ? part : 1;
+    }
+    return held > 0 ? held / length + 0.2 * shared / lines + 1e-6 * length : 0;
+}
+
 static bool place_rows(planner *plan, const lar_gid *order) {
     int32_t count = plan->model->mesh.element_count;
     for (int32_t i = 0; i < count; i++) {
         lar_gid e = order[i];
         if (!plan->open[e]) continue;
-        int best = 0, best_axis = -1;
+        double best = 0;
+        int best_axis = -1;
         for (int axis = 0; axis < 3; axis++) {
-            int rows = keep_law(plan, e, trace(plan, e, axis)) / HALF_ROW;
-            if (rows > best) {
-                best = rows;
+            double score = run_score(plan, keep_law(plan, e, trace(plan, e, axis)));
+            if (score > best) {
+                best = score;
                 best_axis = axis;
             }
         }
@@ -209,37 +252,34 @@ static bool place_rows(planner *plan, const lar_gid *order) {
     return true;
 }
 
-/* What no row took: elements of equal law and shape, eight by eight. */
+/* What no row took: elements of one kind, eight by eight. */
 static bool place_loose(planner *plan, const lar_gid *order) {
-    int32_t filling[LAR_LAW_COUNT][LAR_SHAPE_COUNT], used[LAR_LAW_COUNT][LAR_SHAPE_COUNT];
+    int32_t filling[KINDS], used[KINDS];
     memset(filling, -1, sizeof filling);
     memset(used, 0, sizeof used);
     for (int32_t i = 0; i < plan->model->mesh.element_count; i++) {
         lar_gid e = order[i];
         if (!plan->open[e]) continue;
-        lar_law law = law_of(plan->model, e);
-        lar_block_shape shape =
-            is_box(&plan->model->mesh, plan->layout->corner[e]) ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL;
-        if (filling[law][shape] < 0 || used[law][shape] == LAR_BLOCK) {
-            if (!new_block(plan, law, shape, LAR_ROWS_NONE)) return false;
-            filling[law][shape] = plan->layout->block_count - 1;
-            used[law][shape] = 0;
+        kind own = common_kind(plan->model, &e, (const int32_t(*)[8])plan->layout->corner + e, 1);
+        int at = kind_index(own);
+        if (filling[at] < 0 || used[at] == LAR_BLOCK) {
+            if (!new_block(plan, own, LAR_ROWS_NONE)) return false;
+            filling[at] = plan->layout->block_count - 1;
+            used[at] = 0;
         }
-        plan->layout->block[filling[law][shape]].element[used[law][shape]++] = e;
+        plan->layout->block[filling[at]].element[used[at]++] = e;
     }
     return true;
 }
 
 /* A row of four that stayed alone becomes a loose block. */
 static void release_waiting(planner *plan) {
-    for (int law = 0; law < LAR_LAW_COUNT; law++)
-        for (int shape = 0; shape < LAR_SHAPE_COUNT; shape++)
-            if (plan->waiting[law][shape] >= 0)
-                plan->layout->block[plan->waiting[law][shape]].rows = LAR_ROWS_NONE;
+    for (int k = 0; k < KINDS; k++)
+        if (plan->waiting[k] >= 0) plan->layout->block[plan->waiting[k]].rows = LAR_ROWS_NONE;
 }
 
 static int block_rank(const lar_lanes *block) {
-    return ((int)block->law * LAR_SHAPE_COUNT + (int)block->shape) * LAR_ROWS_COUNT +
+    return kind_index((kind){block->law, block->shape, block->turn}) * LAR_ROWS_COUNT +
            (int)block->rows;
 }
 
@@ -248,7 +288,7 @@ static bool sort_blocks(lar_layout *layout) {
     lar_lanes *sorted = lar_calloc((size_t)layout->block_count, sizeof *sorted);
     if (!sorted) return false;
     int32_t count = 0;
-    for (int rank = 0; rank < LAR_LAW_COUNT * LAR_SHAPE_COUNT * LAR_ROWS_COUNT; rank++)
+    for (int rank = 0; rank < KINDS * LAR_ROWS_COUNT; rank++)
         for (int32_t b = 0; b < layout->block_count; b++)
             if (block_rank(&layout->block[b]) == rank) sorted[count++] = layout->block[b];
     free(layout->block);

@@ -29,13 +29,14 @@ typedef struct lar_lanes {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
+    int turn;                   /* of boxes (mechanics/hex8_block.h) */
     lar_gid element[LAR_BLOCK]; /* by lane; -1: none */
 } lar_lanes;
 
 typedef struct lar_layout {
     lar_gid (*corner)[8]; /* [elements of the model] nodes, turned along the row */
     int32_t block_count;
-    lar_lanes *block;    /* sorted: equal law, shape and rows stand together */
+    lar_lanes *block;    /* sorted: equal law, shape, turn and rows stand together */
     int32_t node_count;  /* local nodes, spare ones among them, without the padding at the end */
     int32_t node_padded; /* even, with at least one spare node at the end */
     lar_gid *global;     /* [node_padded] node of the model, -1: spare */

@@ -57,6 +57,8 @@ typedef struct lar_box_block { /* LAR_SHAPE_BOX */
     double gradient[3][LAR_BLOCK]; /* B_m along its own axis, m = 0..2 */
 } lar_box_block;
 
+/* A box may be turned: its xi, eta, zeta run along the axes turn, turn + 1, turn + 2 (mod 3). */
+
 static inline size_t lar_block_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
 }
@@ -66,6 +68,7 @@ typedef struct lar_block_run {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
+    int turn; /* of boxes, 0..2; else 0 */
     int32_t count;
     const void *blocks; /* lar_hex8_block or lar_box_block [count] */
 } lar_block_run;

@@ -95,28 +95,35 @@ LAR_INLINE void strain_general(const lar_hex8_block *block, int lane, lar_lane U
     }
 }
 
-LAR_INLINE void strain_box(const lar_box_block *block, int lane, lar_lane U[7][3], lar_lane H[9]) {
-    UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane B = lar_lane_load_once(&block->gradient[j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = U[j][i] * B;
+/* Straight into the record: column turn + m of F is U_m B_m, plus 1 on the diagonal. */
+LAR_INLINE void strain_box(const lar_box_block *block, int lane, int turn, lar_lane U[7][3],
+                           lar_lane F[9]) {
+    UNROLL3 for (int m = 0; m < 3; m++) {
+        int axis = turn + m < 3 ? turn + m : turn + m - 3;
+        lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
+        UNROLL3 for (int i = 0; i < 3; i++)
+            F[3 * i + axis] = U[m][i] * B + lar_lane_set(i == axis ? 1 : 0);
     }
 }
 
 /* Phase 1: displacements to deformation gradient and hourglass forces. */
 LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
-                             lar_block_rows rows, const double *u, lane_record *record) {
+                             lar_block_rows rows, int turn, const double *u, lane_record *record) {
     const lar_block_head *head = block;
-    lar_lane U[7][3], H[9];
+    lar_lane U[7][3];
     gather_modes(head, lane, rows, u, U);
-    if (shape == LAR_SHAPE_BOX)
-        strain_box(block, lane, U, H);
-    else
+    if (shape == LAR_SHAPE_BOX) {
+        strain_box(block, lane, turn, U, record->F);
+    } else {
+        lar_lane H[9];
         strain_general(block, lane, U, H);
+        UNROLL9 for (int k = 0; k < 9; k++) record->F[k] =
+            k % 4 == 0 ? H[k] + lar_lane_set(1) : H[k];
+    }
     UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         lar_lane c = lar_lane_load_once(&head->stiffness[m][lane]);
         UNROLL3 for (int i = 0; i < 3; i++) record->cq[m][i] = U[3 + m][i] * c;
     }
-    UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = k % 4 == 0 ? H[k] + lar_lane_set(1) : H[k];
 }
 
 typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar_lane I1,
@@ -163,12 +170,13 @@ LAR_INLINE void force_general(const lar_hex8_block *block, int lane, const lane_
     }
 }
 
-LAR_INLINE void force_box(const lar_box_block *block, int lane, const lane_record *record,
+LAR_INLINE void force_box(const lar_box_block *block, int lane, int turn, const lane_record *record,
                           lar_ilane n[7][3]) {
     UNROLL3 for (int m = 0; m < 3; m++) {
+        int axis = turn + m < 3 ? turn + m : turn + m - 3;
         lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
         UNROLL3 for (int i = 0; i < 3; i++) {
-            n[m][i] = lar_lane_round(record->F[3 * i + m] * B);
+            n[m][i] = lar_lane_round(record->F[3 * i + axis] * B);
             n[3 + m][i] = lar_lane_round(record->cq[m][i]);
         }
     }
@@ -213,10 +221,10 @@ LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_ro
 
 /* Phase 3: stress and hourglass forces to the nodes. */
 LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, lar_block_rows rows,
-                            const lane_record *record, int64_t *force) {
+                            int turn, const lane_record *record, int64_t *force) {
     lar_ilane n[7][3];
     if (shape == LAR_SHAPE_BOX)
-        force_box(block, lane, record, n);
+        force_box(block, lane, turn, record, n);
     else
         force_general(block, lane, record, n);
     UNROLL3 for (int i = 0; i < 3; i++) n[6][i] = lar_lane_round(record->cq[3][i]);
@@ -233,23 +241,23 @@ enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
          block += (size))                                                                          \
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, record++)
 
-typedef void (*strain_phase)(const char *blocks, size_t count, const double *u,
+typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const double *u,
                              lane_record *record);
 typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
                                  const lar_hex8_limits *limits, bool watch);
-typedef void (*force_phase)(const char *blocks, size_t count, const lane_record *record,
+typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
 #define DEFINE_PHASES(name, shape, rows)                                                           \
-    static void strain_##name(const char *blocks, size_t count, const double *u,                   \
+    static void strain_##name(const char *blocks, size_t count, int turn, const double *u,         \
                               lane_record *record) {                                               \
         FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
-        strain_lanes(block, lane, shape, rows, u, record);                                         \
+        strain_lanes(block, lane, shape, rows, turn, u, record);                                   \
     }                                                                                              \
-    static void force_##name(const char *blocks, size_t count, const lane_record *record,          \
-                             int64_t *force) {                                                     \
+    static void force_##name(const char *blocks, size_t count, int turn,                           \
+                             const lane_record *record, int64_t *force) {                          \
         FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
-        force_lanes(block, lane, shape, rows, record, force);                                      \
+        force_lanes(block, lane, shape, rows, turn, record, force);                                \
     }
 DEFINE_PHASES(general_none, LAR_SHAPE_GENERAL, LAR_ROWS_NONE)
 DEFINE_PHASES(general_four, LAR_SHAPE_GENERAL, LAR_ROWS_FOUR)
@@ -297,9 +305,9 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
     for (int32_t b = 0; b < run->count; b += CHUNK) {
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
         const char *blocks = (const char *)run->blocks + (size_t)b * size;
-        strain(blocks, count, u, record);
+        strain(blocks, count, run->turn, u, record);
         unsigned beyond = stress(blocks, count, size, record, limits, watch);
-        forces(blocks, count, record, force);
+        forces(blocks, count, run->turn, record, force);
         if (__builtin_expect(beyond != 0 && first < 0, 0))
             first = (int64_t)b * LAR_BLOCK + __builtin_ctz(beyond);
     }
