@@ -111,7 +111,8 @@ void lar_hex8_prepare(const double corner[8][3], const lar_material *material, l
     bending_stiffness(corner, bending);
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         memcpy(element->shape[m], X[3 + m], sizeof X[0]);
-        element->stiffness[m] = 2 * lar_material_shear(material) * bending[m] / 64;
+        element->stiffness[m] =
+            LAR_HOURGLASS_FACTOR * lar_material_shear(material) * bending[m] / 64;
     }
 }
 
