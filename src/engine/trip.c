@@ -63,8 +63,8 @@ static lar_status report_speed(const lar_domain *domain, const lar_state *state,
     lar_gid node = domain->layout.global[fastest];
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
-                    "%.3g m/s, more than an element per time step (%.3g m/s); use a smaller time "
-                    "step, or slower or smaller loads and motions",
+                    "%.3g m/s, hundreds of elements per time step (the limit is %.3g m/s); use a "
+                    "smaller time step, or slower or smaller loads and motions",
                     (unsigned long long)trip->step, (double)trip->step * domain->time_step,
                     (long long)mesh->node_id[node], mesh->position[node][0] + state->u[4 * fastest],
                     mesh->position[node][1] + state->u[4 * fastest + 1],
