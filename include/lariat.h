@@ -155,8 +155,9 @@ LAR_API lar_status lar_simulation_create(const lar_model *model, const lar_optio
                                          lar_simulation **simulation, lar_error *error);
 LAR_API void lar_simulation_destroy(lar_simulation *simulation);
 
-/* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element, place, time
- * and cause, and the state is that of the last good check. */
+/* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element or node, place,
+ * time and cause; the state is then the one after the failing step: finite and fit for a picture,
+ * but not for going on, and further calls fail with the same message. */
 LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
                                           lar_error *error);
 

@@ -43,6 +43,11 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
     return LAR_OK;
 }
 
+double lar_auto_step(const lar_model *model, double stable_step) {
+    double step = 0.8 * stable_step;
+    return model->duration > 0 ? fmin(step, model->duration / 200) : step;
+}
+
 static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
     const lar_model *model = domain->model;
     lar_status status =
@@ -50,7 +55,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     if (status) return status;
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
-        domain->time_step = LAR_AUTO_STEP * domain->stable_step;
+        domain->time_step = lar_auto_step(model, domain->stable_step);
         return LAR_OK;
     }
     if (!(wanted > 0) || !isfinite(wanted))

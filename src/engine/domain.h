@@ -44,8 +44,8 @@ typedef struct lar_domain {
     lar_conditions conditions;
 } lar_domain;
 
-/* Compiles a checked model. The step is options->time_step, or the model's, or automatic: 0.8 of
- * the stable step. A step above the stable step is an error that names both. */
+/* Compiles a checked model. The step is options->time_step, or the model's, or automatic
+ * (lar_auto_step). A step above the stable step is an error that names both. */
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
                              lar_error *error);
 void lar_domain_destroy(lar_domain *domain); /* idempotent */
@@ -54,9 +54,9 @@ void lar_domain_destroy(lar_domain *domain); /* idempotent */
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
                            lar_gid *worst, lar_error *error);
 
-/* The share of the stable step that `time_step: auto` takes: leaves room for elements that are
- * squeezed during the run. */
-#define LAR_AUTO_STEP 0.8
+/* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
+ * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
+double lar_auto_step(const lar_model *model, double stable_step);
 
 /* Displacements of the corners of global element e, [8][3]. */
 void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]);

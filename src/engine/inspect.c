@@ -65,7 +65,8 @@ lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_e
         status =
             lar_stable_step(model, LAR_ELEMENT_HEX8, &made.stable_step, &made.stable_worst, error);
     if (status) return status;
-    made.time_step = model->time_step > 0 ? model->time_step : LAR_AUTO_STEP * made.stable_step;
+    made.time_step =
+        model->time_step > 0 ? model->time_step : lar_auto_step(model, made.stable_step);
     *info = made;
     return LAR_OK;
 }

@@ -10,17 +10,34 @@ lar_options lar_options_default(void) {
     return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO};
 }
 
+/* The velocities half a step BEFORE the start, such that those half a step before and after it
+ * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
+ * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
 static void set_initial_velocities(lar_simulation *simulation) {
-    const lar_model *model = simulation->domain.model;
-    double *v = simulation->state.v;
+    lar_domain *domain = &simulation->domain;
+    lar_state *state = &simulation->state;
+    const lar_model *model = domain->model;
+    double keep = domain->motion.keep, gravity[3];
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
-            memcpy(v + 4 * simulation->domain.layout.local[initial->nodes.node[k]],
-                   initial->velocity, sizeof initial->velocity);
+            memcpy(state->v + 4 * domain->layout.local[initial->nodes.node[k]], initial->velocity,
+                   sizeof initial->velocity);
     }
-    for (int32_t i = 0; i < simulation->domain.conditions.constraint_count; i++)
-        v[simulation->domain.conditions.constraint[i].value] = 0;
+    lar_trip ignored = {0};
+    lar_step_forces(domain, state, &ignored);
+    lar_gravity_at(model, 0, gravity);
+    for (lar_gid g = 0; g < model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            int32_t value = 4 * domain->layout.local[g] + i;
+            double drift =
+                gravity[i] * domain->time_step / (1 + 0.5 * model->damping * domain->time_step);
+            double push = domain->push[value / 4] * (double)state->force[value];
+            state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
+        }
+    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
+    for (int32_t i = 0; i < domain->conditions.constraint_count; i++)
+        state->v[domain->conditions.constraint[i].value] = 0;
 }
 
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
