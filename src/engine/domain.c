@@ -111,6 +111,10 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
 }
 
+/* More than this is read from memory in every step: beyond the second-level cache and a fair share
+ * of the third. Decides about prefetching only. */
+enum { CACHED_BYTES = 12 << 20 };
+
 /* The runs of equal blocks, and the memory they need. */
 static void list_runs(lar_domain *domain) {
     const lar_layout *layout = &domain->layout;
@@ -121,7 +125,8 @@ static void list_runs(lar_domain *domain) {
             run->turn != lanes->turn || run->rows != lanes->rows) {
             domain->run_first[domain->run_count] = b;
             run = &domain->run[domain->run_count++];
-            *run = (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, 0, NULL};
+            *run =
+                (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL};
         }
         run->count++;
         domain->block_bytes += lar_block_size(lanes->shape);
@@ -137,6 +142,7 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     for (int r = 0; r < domain->run_count; r++) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
+        run->streamed = domain->block_bytes > CACHED_BYTES;
         for (int32_t b = 0; b < run->count; b++) {
             const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
             for (int lane = 0; lane < LAR_BLOCK; lane++)

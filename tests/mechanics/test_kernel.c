@@ -96,7 +96,7 @@ static void empty_lane(load *l, int n) {
 /* Loose blocks of general elements. */
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
                     int64_t *force, const lar_hex8_limits *limits, bool watch) {
-    lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, count, blocks};
+    lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, count, blocks};
     return kernels[k]->recover(&run, u, force, limits, watch);
 }
 

@@ -99,7 +99,7 @@ static bool shake(const lar_kernels *kernels, lar_law law, uint64_t *hash) {
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
     const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}};
-    const lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, BLOCKS, w->blocks};
+    const lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, BLOCKS, w->blocks};
     bool good = true;
     double damped = 0;
     for (int step = 0; step < STEPS && good; step++) {
