@@ -16,8 +16,8 @@
  * failure. Free with free(). */
 void *lar_calloc(size_t count, size_t size);
 
-/* Like lar_calloc, aligned to 64 bytes (one cache line, one AVX-512 vector). Free with
- * free(). */
+/* Like lar_calloc, aligned to 64 bytes (one cache line, one AVX-512 vector); large arrays to huge
+ * pages where the system has them. Free with free(). */
 void *lar_calloc_aligned(size_t count, size_t size);
 
 /* A copy of a string or of its first `length` bytes, or NULL. */
