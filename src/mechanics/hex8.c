@@ -189,21 +189,52 @@ double lar_hex8_energy(const lar_hex8 *element, const lar_material *material, co
     return element->volume * lar_law_energy(material, F);
 }
 
-/* One product with M^-1 K at rest, in modes: the nodal forces sum_m h_m G_m divided by the lumped
- * mass rho V/8 transform back to 64 G_m / (rho V). */
-static void rest_operator(const lar_hex8 *element, double shear, double bulk, double density,
-                          const double U[7][3], double result[7][3]) {
-    double H[3][3], P[3][3], q[4][3];
-    modal_gradient(element, U, H);
-    hourglass_displacement(element, U, H, q);
-    double trace = H[0][0] + H[1][1] + H[2][2];
+/* The stiffness at rest in modes, A = Z (x) 1 + V b^T D b: D is Hooke's law, b takes the modes to
+ * the strain sym(sum_m U_m (x) B_m), and Z holds the hourglass modes, the same along each axis. */
+typedef struct rest_stiffness {
+    const lar_hex8 *element;
+    double shear, bulk;
+    double hourglass[7][7];    /* Z = Q^T c Q with q_k = sum_m Q_km U_m */
+    double shear_compliance;   /* 1 / (2 G V): D^-1/V of a stress without pressure */
+    double pressure_softening; /* D^-1 s = s / (2 G) - softening tr(s) 1 */
+} rest_stiffness;
+
+static rest_stiffness at_rest(const lar_hex8 *element, double shear, double bulk) {
+    rest_stiffness rest = {.element = element, .shear = shear, .bulk = bulk};
+    double Q[LAR_HEX8_HOURGLASS][7] = {{0}};
+    for (int k = 0; k < LAR_HEX8_HOURGLASS; k++) {
+        const double *X = element->shape[k];
+        for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) {
+            const double *B = element->gradient[m];
+            Q[k][m] = -(B[0] * X[0] + B[1] * X[1] + B[2] * X[2]);
+        }
+        Q[k][3 + k] += 1;
+    }
+    for (int m = 0; m < 7; m++)
+        for (int n = 0; n < 7; n++)
+            for (int k = 0; k < LAR_HEX8_HOURGLASS; k++)
+                rest.hourglass[m][n] += element->stiffness[k] * Q[k][m] * Q[k][n];
+    rest.shear_compliance = 1 / (2 * shear * element->volume);
+    rest.pressure_softening = rest.shear_compliance / 3 - 1 / (9 * bulk * element->volume);
+    return rest;
+}
+
+/* image = A U */
+static void apply(const rest_stiffness *rest, const double U[7][3], double image[7][3]) {
+    double H[3][3], S[3][3];
+    modal_gradient(rest->element, U, H);
+    double pressure = (rest->bulk - 2 * rest->shear / 3) * (H[0][0] + H[1][1] + H[2][2]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            P[i][j] = shear * (H[i][j] + H[j][i]) + (i == j ? (bulk - 2 * shear / 3) * trace : 0);
-    modal_forces(element, P, q, result);
-    double factor = 64 / (density * element->volume);
+            S[i][j] = rest->element->volume *
+                      (rest->shear * (H[i][j] + H[j][i]) + (i == j ? pressure : 0));
     for (int m = 0; m < 7; m++)
-        for (int i = 0; i < 3; i++) result[m][i] *= factor;
+        for (int i = 0; i < 3; i++) {
+            image[m][i] = 0;
+            for (int n = 0; n < 7; n++) image[m][i] += rest->hourglass[m][n] * U[n][i];
+            if (m >= LAR_HEX8_GRADIENTS) continue;
+            for (int j = 0; j < 3; j++) image[m][i] += S[i][j] * rest->element->gradient[m][j];
+        }
 }
 
 static double dot21(const double a[7][3], const double b[7][3]) {
@@ -213,20 +244,97 @@ static double dot21(const double a[7][3], const double b[7][3]) {
     return sum;
 }
 
-double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material) {
-    double shear = lar_material_shear(material), bulk = lar_material_bulk(material);
-    double U[7][3], image[7][3], square = 0, residual = 0;
-    for (int m = 0; m < 7; m++) /* any start that leans on no symmetry */
+/* Power iteration from any start that leans on no symmetry: returns the Rayleigh quotient, which
+ * no eigenvalue bound may undercut; an eigenvalue, nearly always the largest, is within
+ * *residual. */
+static double rayleigh(const rest_stiffness *rest, double *residual) {
+    double U[7][3], image[7][3], quotient = 0;
+    for (int m = 0; m < 7; m++)
         for (int i = 0; i < 3; i++) U[m][i] = 1 + 0.37 * m - 0.61 * i + 0.11 * m * i * i;
-    /* Power iteration; an eigenvalue lies within the residual of the Rayleigh quotient. */
-    for (int n = 0; n < 40; n++) {
+    for (int n = 0; n < 12; n++) {
         double norm = sqrt(dot21(U, U));
         for (int k = 0; k < 21; k++) (&U[0][0])[k] /= norm;
-        rest_operator(element, shear, bulk, material->density, U, image);
-        square = dot21(U, image);
-        residual = sqrt(fmax(dot21(image, image) - square * square, 0));
-        if (residual < 1e-3 * square) break;
+        apply(rest, U, image);
+        quotient = dot21(U, image);
+        *residual = sqrt(fmax(dot21(image, image) - quotient * quotient, 0));
+        if (*residual < 1e-3 * quotient) break;
         memcpy(U, image, sizeof U);
     }
-    return sqrt(square + residual);
+    return quotient;
+}
+
+/* N = B^T M^-1 B for M = lambda 1 - Z, by M = L diag(d) L^T; false unless M is positive definite.
+ */
+static bool gradient_flexibility(const rest_stiffness *rest, double lambda, double N[3][3]) {
+    double L[7][7], scaled[7], Y[7][3], inverse[7];
+    memset(N, 0, 9 * sizeof(double));
+    for (int m = 0; m < 7; m++) {
+        double pivot = lambda - rest->hourglass[m][m];
+        for (int i = 0; i < 3; i++) Y[m][i] = m < 6 ? rest->element->gradient[m][i] : 0;
+        for (int n = 0; n < m; n++) {
+            scaled[n] = -rest->hourglass[m][n]; /* L_mn d_n */
+            for (int k = 0; k < n; k++) scaled[n] -= scaled[k] * L[n][k];
+            L[m][n] = scaled[n] * inverse[n];
+            pivot -= L[m][n] * scaled[n];
+            for (int i = 0; i < 3; i++) Y[m][i] -= L[m][n] * Y[n][i];
+        }
+        if (!(pivot > 0)) return false;
+        inverse[m] = 1 / pivot;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) N[i][j] += Y[m][i] * Y[m][j] * inverse[m];
+    }
+    return true;
+}
+
+/* Trace, sum of the principal minors and determinant of a symmetric matrix. */
+static void invariants(const double A[3][3], double e[3]) {
+    double cof[9];
+    e[2] = lar_lane_cofactor(&A[0][0], cof);
+    e[1] = cof[0] + cof[4] + cof[8];
+    e[0] = A[0][0] + A[1][1] + A[2][2];
+}
+
+/* Is lambda above every eigenvalue of A? By Schur complements lambda 1 - A is positive definite
+ * when M = lambda 1 - Z is and, for every symmetric s,
+ *
+ *     s : D^-1 s / V - tr(s s N) > 0,     N = B^T M^-1 B.
+ *
+ * Along the principal axes of N the six components of s part into three shears, for which that
+ * says 1 / (G V) > n_i + n_j, and the three normal ones, whose matrix is diag(r) - w 1 1^T with
+ * r_i = 1 / (2 G V) - n_i. Real eigenvalues are positive when their elementary symmetric functions
+ * are, and these need only the invariants of N: no eigenvector is ever computed. */
+static bool exceeds_all(const rest_stiffness *rest, double lambda) {
+    double N[3][3], shears[3][3], normals[3][3], e[3], r[3];
+    if (!gradient_flexibility(rest, lambda, N)) return false;
+    double a = rest->shear_compliance, w = rest->pressure_softening;
+    double trace = N[0][0] + N[1][1] + N[2][2];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            shears[i][j] = N[i][j] + (i == j ? 2 * a - trace : 0);
+            normals[i][j] = (i == j ? a : 0) - N[i][j];
+        }
+    invariants((const double(*)[3])shears, e);
+    invariants((const double(*)[3])normals, r);
+    return e[0] > 0 && e[1] > 0 && e[2] > 0 && r[0] > 3 * w && r[1] > 2 * w * r[0] &&
+           r[2] > w * r[1];
+}
+
+double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material) {
+    rest_stiffness rest =
+        at_rest(element, lar_material_shear(material), lar_material_bulk(material));
+    double residual, below = rayleigh(&rest, &residual);
+    double above = below + fmin(residual, 1e-3 * below), growth = 1e-3;
+    /* Proven at once as a rule; else up in growing strides and back by bisection. What is not a
+     * number ends here too and is reported by the caller. */
+    while (isfinite(above) && !exceeds_all(&rest, above)) {
+        below = above;
+        above *= 1 + growth;
+        growth *= 4;
+    }
+    while (isfinite(above) && growth > 1e-3 && above > 1.001 * below) {
+        double middle = sqrt(above * below);
+        *(exceeds_all(&rest, middle) ? &above : &below) = middle;
+    }
+    /* nodal forces sum_m h_m G_m over the lumped mass rho V/8 are modes 64 G_m / (rho V) */
+    return sqrt(64 * above / (material->density * element->volume));
 }
