@@ -108,10 +108,12 @@ uint64_t lar_simulation_hash(const lar_simulation *simulation) {
     const lar_state *state = &simulation->state;
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
-        const double *u = state->u + 4 * domain->layout.local[g],
-                     *v = state->v + 4 * domain->layout.local[g];
-        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[i]);
-        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[i]);
+        size_t node = (size_t)domain->layout.local[g];
+#define LAR_STATE_HASH(type, name, values, kept)                                                   \
+    for (int i = 0; kept && i < 3; i++)                                                            \
+        hash = lar_hash_double(hash, (double)state->name[node * (values) + (size_t)i]);
+        LAR_STATE_ARRAYS(LAR_STATE_HASH)
+#undef LAR_STATE_HASH
     }
     return hash;
 }
