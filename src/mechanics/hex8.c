@@ -263,8 +263,7 @@ static double rayleigh(const rest_stiffness *rest, double *residual) {
     return quotient;
 }
 
-/* N = B^T M^-1 B for M = lambda 1 - Z, by M = L diag(d) L^T; false unless M is positive definite.
- */
+/* N = B^T M^-1 B for M = lambda 1 - Z = L diag(d) L^T; false unless M is positive definite. */
 static bool gradient_flexibility(const rest_stiffness *rest, double lambda, double N[3][3]) {
     double L[7][7], scaled[7], Y[7][3], inverse[7];
     memset(N, 0, 9 * sizeof(double));
@@ -301,22 +300,16 @@ static void invariants(const double A[3][3], double e[3]) {
  *
  * Along the principal axes of N the six components of s part into three shears, for which that
  * says 1 / (G V) > n_i + n_j, and the three normal ones, whose matrix is diag(r) - w 1 1^T with
- * r_i = 1 / (2 G V) - n_i. Real eigenvalues are positive when their elementary symmetric functions
- * are, and these need only the invariants of N: no eigenvector is ever computed. */
+ * r_i = 1 / (2 G V) - n_i. Applied to (1, -1, 0) the latter contains the former. Real eigenvalues
+ * are positive when their elementary symmetric functions are, and these need only the invariants
+ * of N: no eigenvector is ever computed. */
 static bool exceeds_all(const rest_stiffness *rest, double lambda) {
-    double N[3][3], shears[3][3], normals[3][3], e[3], r[3];
-    if (!gradient_flexibility(rest, lambda, N)) return false;
-    double a = rest->shear_compliance, w = rest->pressure_softening;
-    double trace = N[0][0] + N[1][1] + N[2][2];
+    double R[3][3], r[3], w = rest->pressure_softening;
+    if (!gradient_flexibility(rest, lambda, R)) return false;
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            shears[i][j] = N[i][j] + (i == j ? 2 * a - trace : 0);
-            normals[i][j] = (i == j ? a : 0) - N[i][j];
-        }
-    invariants((const double(*)[3])shears, e);
-    invariants((const double(*)[3])normals, r);
-    return e[0] > 0 && e[1] > 0 && e[2] > 0 && r[0] > 3 * w && r[1] > 2 * w * r[0] &&
-           r[2] > w * r[1];
+        for (int j = 0; j < 3; j++) R[i][j] = (i == j ? rest->shear_compliance : 0) - R[i][j];
+    invariants((const double(*)[3])R, r);
+    return r[0] > 3 * w && r[1] > 2 * w * r[0] && r[2] > w * r[1];
 }
 
 double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material) {
