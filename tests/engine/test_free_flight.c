@@ -44,14 +44,17 @@ static void tumble(lar_law law, lar_element_kind kind, int rounds) {
     options.time_step = 3e-4;
     lar_simulation *simulation = start_with(model, options);
     momentum before = measure_momentum(simulation);
-    for (int round = 0; round < rounds; round++) {
-        advance(simulation, 1000);
+    double share = 0; /* of strain energy, at its highest: any one moment may be a zero crossing */
+    for (int round = 0; round < 100 * rounds; round++) {
+        lar_energy energy;
+        advance(simulation, 10);
+        lar_simulation_energy(simulation, &energy);
+        share = fmax(share, (energy.strain + energy.hourglass) / energy.kinetic);
+        if (round % 100 != 99) continue;
         momentum now = measure_momentum(simulation);
         compare(&before, &now);
     }
-    lar_energy energy;
-    lar_simulation_energy(simulation, &energy);
-    assert_true(energy.strain > 0.01 * energy.kinetic); /* it does vibrate */
+    assert_true(share > 0.02); /* it does vibrate */
     finish(simulation, model);
 }
 
