@@ -16,8 +16,13 @@ setup:
 demo: all
 	build/lariat demo-model out/demo
 	build/lariat run out/demo/uterus.yaml --out out/demo/results
-	@echo "The organ and its scene are in out/demo, the results in out/demo/results:"
-	@echo "open the .pvd file there in ParaView, or read probes.csv."
+	@echo
+	@echo "See it move: open out/demo/results/uterus.pvd in ParaView, Apply, Filters > Common >"
+	@echo "    Warp By Vector, Apply, play. Without ParaView: out/demo/results/probes.csv."
+	@echo "Pull elsewhere: change out/demo/uterus.yaml (it is commented; make demo writes it anew), then"
+	@echo "    build/lariat run out/demo/uterus.yaml --out out/demo/results"
+	@echo "At the pace of the clock: build/lariat run out/demo/uterus.yaml --realtime"
+	@echo "What else there is: build/lariat --help. Your own mesh: README.md."
 
 check:
 	@tools/setup.sh build check
