@@ -222,10 +222,15 @@ static void prepare_motion(lar_domain *domain) {
 
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
                              lar_error *error) {
+    return lar_domain_create_styled(model, options, LAR_LAYOUT_ROWS, domain, error);
+}
+
+lar_status lar_domain_create_styled(const lar_model *model, const lar_options *options,
+                                    lar_layout_style style, lar_domain *domain, lar_error *error) {
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = choose_step(domain, options, error);
-    if (!status) status = lar_layout_create(model, &domain->layout, error);
+    if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
     if (!status) {

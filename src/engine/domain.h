@@ -48,6 +48,9 @@ typedef struct lar_domain {
  * (lar_auto_step). A step above the stable step is an error that names both. */
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
                              lar_error *error);
+/* The same with a style of layout: LAR_LAYOUT_LOOSE shows that the layout changes no bit. */
+lar_status lar_domain_create_styled(const lar_model *model, const lar_options *options,
+                                    lar_layout_style style, lar_domain *domain, lar_error *error);
 void lar_domain_destroy(lar_domain *domain); /* idempotent */
 
 /* The elements' bound of the time step at rest and the element that sets it. */

@@ -9,9 +9,10 @@
  * and the nodes of a row's four lines get consecutive numbers, beginning with an even one. A block
  * of such a row then reads and writes 36 nodes as a few whole vectors where loose elements touch
  * 64 nodes one by one (mechanics/hex8_block.h). Rows are looked for along all three directions of
- * every element, longest first, starting along a Z curve (Morton 1966) so that neighbours in space
- * stay neighbours in memory; what is left over goes into loose blocks. Any hexahedral mesh has such
- * rows; meshes swept or voxelised from organs consist of little else.
+ * every element (row_plan.h), starting along a Z curve (Morton 1966) so that neighbours in space
+ * stay neighbours in memory; what is left over goes into loose blocks. Several ways of looking are
+ * tried and the one whose blocks cost least is kept. Any hexahedral mesh has such rows; meshes
+ * swept or voxelised from organs consist of little else.
  *
  * An element in a row is turned so that its xi runs along the row. The turn is decided from the
  * whole model, not from one domain, because the last bits of an element's forces depend on it.
@@ -43,7 +44,14 @@ typedef struct lar_layout {
     lar_lid *local;      /* [nodes of the model] */
 } lar_layout;
 
+typedef enum lar_layout_style {
+    LAR_LAYOUT_ROWS,
+    LAR_LAYOUT_LOOSE /* the same turned elements, but in loose general blocks: for comparison */
+} lar_layout_style;
+
 lar_status lar_layout_create(const lar_model *model, lar_layout *layout, lar_error *error);
+lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style style,
+                                    lar_layout *layout, lar_error *error);
 void lar_layout_destroy(lar_layout *layout); /* idempotent */
 
 #endif

@@ -16,11 +16,13 @@ lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_er
         return status;
     }
     for (size_t i = 0; i < faces; i++) made[i] = -1;
-    for (size_t i = 0; i + 1 < table.count; i++)
-        if (lar_face_key_same(&table.key[i], &table.key[i + 1])) {
-            made[table.key[i].face] = table.key[i + 1].face;
-            made[table.key[i + 1].face] = table.key[i].face;
-        }
+    for (size_t i = 0, end; i < table.count; i = end) {
+        for (end = i + 1; end < table.count; end++)
+            if (!lar_face_key_same(&table.key[i], &table.key[end])) break;
+        if (end - i != 2) continue;
+        made[table.key[i].face] = table.key[i + 1].face;
+        made[table.key[i + 1].face] = table.key[i].face;
+    }
     free(table.key);
     *neighbour = made;
     return LAR_OK;
@@ -37,38 +39,34 @@ static int across(int local, int axis) {
     return partner[local][axis];
 }
 
-/* The nodes of an element turned (right-handedly) so that its local face `front` becomes xi+. */
+/* The nodes of an element turned (right-handedly) so that its local face `front` becomes xi+, and
+ * the two axes after the face's own become eta and zeta; half a turn about eta where the face looks
+ * back. */
 static void turn_to_front(const int32_t node[8], int front, int32_t turned[8]) {
-    int axis = front / 2;
-    for (int a = 0; a < 8; a++) {
-        int sign[3]; /* of the old natural coordinates at the new local node a */
-        int xi = lar_node_sign[a][0], eta = lar_node_sign[a][1], zeta = lar_node_sign[a][2];
-        if (front % 2 == 0) { /* half a turn about the new eta */
-            xi = -xi;
-            zeta = -zeta;
-        }
-        sign[axis] = xi;
-        sign[(axis + 1) % 3] = eta;
-        sign[(axis + 2) % 3] = zeta;
-        for (int b = 0; b < 8; b++)
-            if (lar_node_sign[b][0] == sign[0] && lar_node_sign[b][1] == sign[1] &&
-                lar_node_sign[b][2] == sign[2])
-                turned[a] = node[b];
-    }
+    static const int8_t old[6][8] = {{5, 4, 7, 6, 1, 0, 3, 2}, {0, 1, 2, 3, 4, 5, 6, 7},
+                                     {2, 1, 5, 6, 3, 0, 4, 7}, {0, 3, 7, 4, 1, 2, 6, 5},
+                                     {7, 3, 2, 6, 4, 0, 1, 5}, {0, 4, 5, 1, 3, 7, 6, 2}};
+    for (int a = 0; a < 8; a++) turned[a] = node[old[front][a]];
 }
 
-/* The nodes of the next element of a row: its left face is the right face of `previous`. */
+/* The nodes of the next element of a row: its left face is the right face of `previous`. False when
+ * no turn of the element does that, as when the two lie on the same side of the face. */
 static bool turn_to_follow(const int32_t node[8], int entry, const int32_t previous[8],
                            int32_t turned[8]) {
     static const int left[4] = {0, 3, 7, 4}, right[4] = {1, 2, 6, 5};
-    for (int k = 0; k < 4; k++) {
-        int local = 0;
-        while (local < 8 && node[local] != previous[right[k]]) local++;
-        if (local == 8) return false;
-        turned[left[k]] = node[local];
-        turned[right[k]] = node[across(local, entry / 2)];
+    int32_t facing[8];
+    turn_to_front(node, opposite(entry), facing);
+    for (int quarters = 0; quarters < 4; quarters++) {
+        bool fits = true;
+        for (int k = 0; k < 4; k++) {
+            int from = (k + quarters) % 4;
+            fits = fits && facing[left[from]] == previous[right[k]];
+            turned[left[k]] = facing[left[from]];
+            turned[right[k]] = facing[right[from]];
+        }
+        if (fits) return true;
     }
-    return true;
+    return false;
 }
 
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
@@ -94,4 +92,47 @@ int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *u
         at = next;
         front = opposite(ahead % 6);
     }
+}
+
+static int local_of(const int32_t node[8], int32_t wanted) {
+    int local = 0;
+    while (local < 7 && node[local] != wanted) local++;
+    return local;
+}
+
+int lar_rows_axis(const int32_t node[8], int32_t from, int32_t to) {
+    int a = local_of(node, from), b = local_of(node, to), axis = 0;
+    while (axis < 2 && lar_node_sign[a][axis] == lar_node_sign[b][axis]) axis++;
+    return axis;
+}
+
+/* The face of an element on the side of local node `local` along `axis`. */
+static int face_at(int local, int axis) {
+    return 2 * axis + (lar_node_sign[local][axis] > 0);
+}
+
+int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t *e, int32_t from,
+                        int32_t to) {
+    enum { MOST_AROUND_EDGE = 8 };
+    for (int sense = 0; sense < 2; sense++) { /* around the edge one way, then the other */
+        int32_t at = *e;
+        int entered = -1;
+        for (int i = 0; i < MOST_AROUND_EDGE; i++) {
+            const int32_t *node = mesh->element[at];
+            int axis = lar_rows_axis(node, from, to), end = local_of(node, to);
+            int32_t ahead = neighbour[6 * at + face_at(end, axis)];
+            if (ahead >= 0) {
+                *e = ahead / 6;
+                node = mesh->element[*e];
+                return node[across(local_of(node, to), ahead % 6 / 2)];
+            }
+            int side[2] = {face_at(end, (axis + 1) % 3), face_at(end, (axis + 2) % 3)};
+            int leave = entered < 0 ? side[sense] : side[side[0] == entered];
+            int32_t over = neighbour[6 * at + leave];
+            if (over < 0) break;
+            at = over / 6;
+            entered = over % 6;
+        }
+    }
+    return -1;
 }

@@ -5,7 +5,7 @@
 #include "model/mesh.h"
 
 /* neighbour[6 e + f]: the face (element * 6 + face) on the other side of face f of element e, or
- * -1. The caller frees *neighbour. */
+ * -1: on the boundary, and between more than two elements. The caller frees *neighbour. */
 lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_error *error);
 
 /* The run of elements through e along its axis (0 xi, 1 eta, 2 zeta): elements for which
@@ -14,5 +14,14 @@ lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_er
  * nodes keep their order for axis 0. Returns the length. */
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
                    int axis, int most, int32_t *run, int32_t (*corner)[8]);
+
+/* The node that continues the edge from `from` to `to` of element *e, in a neighbour of *e or of
+ * another element around that edge; -1 at the end of the mesh. *e becomes the element that has the
+ * new edge. */
+int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t *e, int32_t from,
+                        int32_t to);
+
+/* The axis of an element along which its edge from node `from` to node `to` runs. */
+int lar_rows_axis(const int32_t node[8], int32_t from, int32_t to);
 
 #endif

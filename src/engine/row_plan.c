@@ -1,0 +1,243 @@
+#include "engine/row_plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/simd.h"
+#include "engine/rows.h"
+
+enum { LONGEST_RUN = 1024, BEYOND = LONGEST_RUN, ROW = LAR_BLOCK, HALF_ROW = LAR_BLOCK / 2 };
+enum { PASSES = 4 };
+
+/* The nodes of a turned element on the four lines along xi, at its left and right end. */
+static const int line_left[4] = {0, 3, 4, 7}, line_right[4] = {1, 2, 5, 6};
+
+typedef struct planner {
+    lar_draft *draft;
+    const int32_t *neighbour;
+    int32_t *run;             /* [LONGEST_RUN] */
+    int32_t (*run_corner)[8]; /* [LONGEST_RUN] */
+    lar_gid *beyond[2];       /* [BEYOND] nodes before and behind a line, going outwards */
+    int32_t *stamp;           /* [nodes] the last check that met the node */
+    int32_t stamp_now;
+    uint8_t *hopeless;          /* [elements] a bit per axis along which no row fits any more */
+    int32_t waiting[LAR_KINDS]; /* by kind: block with one row of four, -1: none */
+} planner;
+
+typedef const int32_t (*corners)[8];
+
+/* The node at place k of a line: the left end of element k, or the right end of the last. */
+static lar_gid line_node(corners corner, int length, int line, int k) {
+    return k < length ? corner[k][line_left[line]] : corner[length - 1][line_right[line]];
+}
+
+static bool line_is_numbered(const planner *plan, corners corner, int line) {
+    return plan->draft->layout->local[corner[0][line_left[line]]] >= 0;
+}
+
+/* Longest part of the run from `from`, a multiple of four, whose lines can be consecutive: no node
+ * has a number yet, or they are numbered one after the other. A run that closes on itself or
+ * crosses itself must not give a node two numbers or an element two lanes. */
+static int feasible_length(planner *plan, int from, int length) {
+    corners corner = (corners)plan->run_corner + from;
+    const lar_lid *local = plan->draft->layout->local;
+    int fits = 0, most = length - from;
+    plan->stamp_now++;
+    for (int k = 0; k <= most; k++) {
+        if (k < most && !plan->draft->open[plan->run[from + k]]) most = k;
+        for (int line = 0; line < 4; line++) {
+            lar_gid node = line_node(corner, length - from, line, k);
+            lar_lid first = local[corner[0][line_left[line]]];
+            if (local[node] != (first < 0 ? -1 : first + k) || plan->stamp[node] == plan->stamp_now)
+                return fits / HALF_ROW * HALF_ROW;
+            plan->stamp[node] = plan->stamp_now;
+        }
+        fits = k;
+    }
+    return fits / HALF_ROW * HALF_ROW;
+}
+
+/* The nodes that continue an edge of element e, from node to node, as long as they have no number.
+ * Returns how many were put into out[]. */
+static int nodes_beyond(planner *plan, lar_gid e, lar_gid from, lar_gid to, lar_gid *out) {
+    int count = 0;
+    while (count < BEYOND) {
+        lar_gid next = lar_rows_beyond(&plan->draft->model->mesh, plan->neighbour, &e, from, to);
+        if (next < 0 || plan->stamp[next] == plan->stamp_now ||
+            plan->draft->layout->local[next] >= 0)
+            break;
+        plan->stamp[next] = plan->stamp_now;
+        out[count++] = next;
+        from = to;
+        to = next;
+    }
+    return count;
+}
+
+/* Numbers a line of run[from..from+length) and what lies beyond its ends. The row's own beginning
+ * gets an even number. */
+static bool number_line(planner *plan, int from, int length, int line) {
+    corners corner = (corners)plan->run_corner + from;
+    const int32_t *run = plan->run + from;
+    lar_gid *before = plan->beyond[0], *behind = plan->beyond[1];
+    plan->stamp_now++;
+    for (int k = 0; k <= length; k++)
+        plan->stamp[line_node(corner, length, line, k)] = plan->stamp_now;
+    int ahead = nodes_beyond(plan, run[length - 1], corner[length - 1][line_left[line]],
+                             corner[length - 1][line_right[line]], behind);
+    int back =
+        nodes_beyond(plan, run[0], corner[0][line_right[line]], corner[0][line_left[line]], before);
+    bool good =
+        (plan->draft->layout->node_count + back) % 2 == 0 || lar_draft_number(plan->draft, -1);
+    while (good && back > 0) good = lar_draft_number(plan->draft, before[--back]);
+    for (int k = 0; good && k <= length; k++)
+        good = lar_draft_number(plan->draft, line_node(corner, length, line, k));
+    for (int k = 0; good && k < ahead; k++) good = lar_draft_number(plan->draft, behind[k]);
+    return good;
+}
+
+/* Puts run[from..from+count) into a block: eight into a new one, four beside four others. */
+static bool place_row(planner *plan, int from, int count) {
+    lar_layout *layout = plan->draft->layout;
+    lar_kind own =
+        lar_draft_kind(plan->draft, plan->run + from, (corners)plan->run_corner + from, count);
+    int32_t *waiting = &plan->waiting[lar_kind_index(own)];
+    lar_lanes *block;
+    int offset = 0;
+    if (count == ROW) {
+        block = lar_draft_block(plan->draft, own, LAR_ROWS_EIGHT);
+    } else if (*waiting >= 0) {
+        block = &layout->block[*waiting];
+        *waiting = -1;
+        offset = HALF_ROW;
+    } else {
+        block = lar_draft_block(plan->draft, own, LAR_ROWS_FOUR);
+        *waiting = layout->block_count - 1;
+    }
+    if (!block) return false;
+    for (int k = 0; k < count; k++) {
+        lar_gid e = plan->run[from + k];
+        block->element[LAR_ROW_LANES[offset + k]] = e;
+        memcpy(layout->corner[e], plan->run_corner[from + k], sizeof plan->run_corner[0]);
+        plan->draft->open[e] = false;
+    }
+    return true;
+}
+
+/* Cuts the traced run into rows and numbers their lines. */
+static bool place_run(planner *plan, int length) {
+    for (int from = 0; from + HALF_ROW <= length;) {
+        int part = feasible_length(plan, from, length);
+        if (part == 0) {
+            from++;
+            continue;
+        }
+        for (int line = 0; line < 4; line++)
+            if (!line_is_numbered(plan, (corners)plan->run_corner + from, line) &&
+                !number_line(plan, from, part, line))
+                return false;
+        for (int done = 0; done < part;) {
+            int count = part - done >= ROW ? ROW : HALF_ROW;
+            if (!place_row(plan, from + done, count)) return false;
+            done += count;
+        }
+        from += part;
+    }
+    return true;
+}
+
+/* The run through e along one of its axes, as far as its law goes. Returns the length. */
+static int trace(planner *plan, lar_gid e, int axis) {
+    const lar_draft *draft = plan->draft;
+    int length = lar_rows_trace(&draft->model->mesh, plan->neighbour, draft->open, e, axis,
+                                LONGEST_RUN, plan->run, plan->run_corner);
+    lar_law law = lar_draft_law(draft, e);
+    int at = 0;
+    while (at < length - 1 && plan->run[at] != e) at++;
+    int begin = at, end = at + 1;
+    while (begin > 0 && lar_draft_law(draft, plan->run[begin - 1]) == law) begin--;
+    while (end < length && lar_draft_law(draft, plan->run[end]) == law) end++;
+    memmove(plan->run, plan->run + begin, (size_t)(end - begin) * sizeof *plan->run);
+    memmove(plan->run_corner, plan->run_corner + begin,
+            (size_t)(end - begin) * sizeof *plan->run_corner);
+    return end - begin;
+}
+
+/* Nodes never lose their numbers and elements never open again: where no row fits now, none ever
+ * will. Noted for the whole run, so that a long one is not traced once per element. */
+static void give_up(planner *plan, int length) {
+    for (int k = 0; k < length; k++) {
+        lar_gid e = plan->run[k];
+        int axis = lar_rows_axis(plan->draft->model->mesh.element[e], plan->run_corner[k][0],
+                                 plan->run_corner[k][1]);
+        plan->hopeless[e] |= (uint8_t)(1u << axis);
+    }
+}
+
+/* How good it is to cut the traced run into rows: the share of its elements that rows would hold,
+ * rows of four counting less, and a bonus for lines that neighbouring rows have numbered already,
+ * so that a region keeps to one direction; the longer of two equal runs. 0: no row fits. */
+static double run_score(planner *plan, int length) {
+    double held = 0;
+    int shared = 0, lines = 0;
+    for (int from = 0; from + HALF_ROW <= length;) {
+        int part = feasible_length(plan, from, length);
+        for (int line = 0; part > 0 && line < 4; line++, lines++)
+            shared += line_is_numbered(plan, (corners)plan->run_corner + from, line);
+        held += part / ROW * ROW + 0.7 * (part % ROW);
+        from += part > 0 ? part : 1;
+    }
+    return held > 0 ? held / length + 0.2 * shared / lines + 1e-6 * length : 0;
+}
+
+/* The axis of e with the best score above `wanted`, or -1. */
+static int best_axis(planner *plan, lar_gid e, int first_axis, double wanted) {
+    int best = -1;
+    for (int i = 0; i < 3; i++) {
+        int axis = (first_axis + i) % 3;
+        if (plan->hopeless[e] >> axis & 1) continue;
+        int length = trace(plan, e, axis);
+        double score = run_score(plan, length);
+        if (score == 0) give_up(plan, length);
+        if (score > wanted) {
+            wanted = score;
+            best = axis;
+        }
+    }
+    return best;
+}
+
+static bool place_rows(planner *plan, const lar_gid *order, lar_row_habit habit) {
+    lar_draft *draft = plan->draft;
+    for (int pass = PASSES - 1; pass >= 0; pass--)
+        for (int32_t i = 0; i < draft->model->mesh.element_count; i++) {
+            lar_gid e = order[i];
+            if (!draft->open[e]) continue;
+            int axis = best_axis(plan, e, habit.axis, habit.patience * pass);
+            if (axis >= 0 && !place_run(plan, trace(plan, e, axis))) return false;
+        }
+    /* A row of four that stayed alone becomes a loose block. */
+    for (int k = 0; k < LAR_KINDS; k++)
+        if (plan->waiting[k] >= 0) draft->layout->block[plan->waiting[k]].rows = LAR_ROWS_NONE;
+    return true;
+}
+
+bool lar_row_plan(lar_draft *draft, const lar_gid *order, const int32_t *neighbour,
+                  lar_row_habit habit) {
+    const lar_mesh *mesh = &draft->model->mesh;
+    planner plan = {.draft = draft, .neighbour = neighbour};
+    plan.run = lar_calloc(LONGEST_RUN, sizeof *plan.run);
+    plan.run_corner = lar_calloc(LONGEST_RUN, sizeof *plan.run_corner);
+    for (int end = 0; end < 2; end++) plan.beyond[end] = lar_calloc(BEYOND, sizeof(lar_gid));
+    plan.stamp = lar_calloc((size_t)mesh->node_count, sizeof *plan.stamp);
+    plan.hopeless = lar_calloc((size_t)mesh->element_count, sizeof *plan.hopeless);
+    memset(plan.waiting, -1, sizeof plan.waiting);
+    bool good = plan.run && plan.run_corner && plan.beyond[0] && plan.beyond[1] && plan.stamp &&
+                plan.hopeless && place_rows(&plan, order, habit);
+    free(plan.run);
+    free(plan.run_corner);
+    for (int end = 0; end < 2; end++) free(plan.beyond[end]);
+    free(plan.stamp);
+    free(plan.hopeless);
+    return good;
+}
