@@ -30,8 +30,8 @@ stable <"$SCRATCH/out" >printed
 quoted "run: demo" | stable >shown
 [ "$(wc -l <shown)" -eq 5 ] || fail "the output of the demonstration was not found in README.md"
 cmp -s printed shown || {
-    fail "README.md shows another output of the demonstration; when the physics was changed on" \
-        "purpose, put this into it (and the pictures: tools/render/pictures.sh):"
+    fail "README.md shows another output of the demonstration; when physics or rows were changed" \
+        "on purpose, put this into it (pictures: tools/render/pictures.sh):"
     sed 's/^/    /' printed >&2
 }
 
