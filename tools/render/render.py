@@ -9,32 +9,31 @@ Needs VTK for the system's Python, and a display; without one, a virtual display
 
     apt-get install python3-vtk9 xvfb xauth
 
-Nothing else in Lariat needs either. README.md beside this file has the commands of the pictures
-in docs/images.
+Nothing else in Lariat needs either. pictures.sh beside this file makes the pictures of docs/images.
 """
 import argparse
 import math
+import os
 
+import numpy
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the graphics backend)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonTransforms import vtkTransform
-from vtkmodules.vtkFiltersCore import (vtkCellDataToPointData, vtkFeatureEdges,
-                                       vtkImageAppend, vtkPolyDataNormals)
+from vtkmodules.vtkFiltersCore import (vtkCellDataToPointData, vtkFeatureEdges, vtkImageAppend,
+                                       vtkPolyDataNormals)
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter, vtkWarpVector
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkFiltersSources import vtkArrowSource
-from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkImagingCore import vtkImageResize
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-from vtkmodules.vtkRenderingOpenGL2 import vtkRenderStepsPass, vtkSSAOPass
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer,
                                          vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
-
-import numpy
+from vtkmodules.vtkRenderingOpenGL2 import vtkRenderStepsPass, vtkSSAOPass
 
 # Colours of the parts of the demonstration organ by cell tag (1 to 4), then of other tags.
 PARTS = [(208, 112, 102), (224, 148, 128), (236, 208, 182), (200, 160, 148),
@@ -46,13 +45,17 @@ STOPS = [(0.00, (240, 232, 222)), (0.22, (250, 200, 140)), (0.48, (238, 118, 82)
          (0.74, (180, 44, 92)), (1.00, (66, 16, 82))]
 
 
-def read_grid(path, scale):
+def read_grid(path, scale, color):
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(path)
     reader.Update()
     grid = reader.GetOutput()
     if grid.GetNumberOfCells() == 0:
         raise SystemExit(f"{path}: no cells could be read; give a .vtu that lariat run wrote")
+    wanted = "tag" if color == "parts" else color
+    if not grid.GetCellData().HasArray(wanted) and not grid.GetPointData().HasArray(wanted):
+        raise SystemExit(f"{path}: there is no array '{wanted}'; choose another --color, or add "
+                         "the field to the scene's output")
     if grid.GetPointData().HasArray("displacement"):
         grid.GetPointData().SetActiveVectors("displacement")
         warp = vtkWarpVector()
@@ -309,7 +312,8 @@ def draw(renderer, width, height):
 
 def picture(options):
     width, height = options.size
-    surfaces = [surface_of(read_grid(path, options.scale), options.crease) for path in options.frames]
+    grids = [read_grid(path, options.scale, options.color) for path in options.frames]
+    surfaces = [surface_of(grid, options.crease) for grid in grids]
     all_bounds = [s.GetBounds() for s in surfaces]
     bounds = [(min if i % 2 == 0 else max)(b[i] for b in all_bounds) for i in range(6)]
     for i in (4, 5):
@@ -352,4 +356,6 @@ def picture(options):
 
 
 if __name__ == "__main__":
+    if not os.environ.get("DISPLAY"):
+        raise SystemExit("render.py: there is no display; put xvfb-run -a in front of the command")
     picture(parse_arguments())
