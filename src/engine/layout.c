@@ -104,12 +104,15 @@ static bool build(const lar_model *model, const lar_gid *order, const int32_t *n
     return built;
 }
 
-/* Builds with every habit, or with the first for a large model, and returns the best. */
+/* Builds with one habit after the other and returns the best. One is enough for a large model, and
+ * when everything is in rows of eight. */
 static bool choose_habit(const lar_model *model, const lar_gid *order, const int32_t *neighbour,
                          lar_row_habit *best) {
-    double least = DBL_MAX;
+    int32_t elements = model->mesh.element_count;
+    double least = DBL_MAX, perfect = rows_cost[LAR_ROWS_EIGHT] * elements / LAR_BLOCK;
     *best = habits[0];
-    for (int h = 0; model->mesh.element_count <= TRY_ALL_ELEMENTS && h < HABITS; h++) {
+    if (elements > TRY_ALL_ELEMENTS) return true;
+    for (int h = 0; h < HABITS && least > perfect; h++) {
         lar_layout trial;
         bool built = build(model, order, neighbour, habits[h], LAR_LAYOUT_ROWS, &trial);
         double cost = layout_cost(&trial);

@@ -20,7 +20,7 @@ typedef struct planner {
     lar_gid *beyond[2];       /* [BEYOND] nodes before and behind a line, going outwards */
     int32_t *stamp;           /* [nodes] the last check that met the node */
     int32_t stamp_now;
-    uint8_t *hopeless;          /* [elements] a bit per axis along which no row fits any more */
+    uint8_t *hopeless;          /* [elements] a bit per face by which no row can leave any more */
     int32_t waiting[LAR_KINDS]; /* by kind: block with one row of four, -1: none */
 } planner;
 
@@ -146,10 +146,10 @@ static bool place_run(planner *plan, int length) {
     return true;
 }
 
-/* The run through e along one of its axes, as far as its law goes. Returns the length. */
-static int trace(planner *plan, lar_gid e, int axis) {
+/* The run that leaves e by a face, as far as its law goes. Returns the length. */
+static int trace(planner *plan, lar_gid e, int front) {
     const lar_draft *draft = plan->draft;
-    int length = lar_rows_trace(&draft->model->mesh, plan->neighbour, draft->open, e, axis,
+    int length = lar_rows_trace(&draft->model->mesh, plan->neighbour, draft->open, e, front,
                                 LONGEST_RUN, plan->run, plan->run_corner);
     lar_law law = lar_draft_law(draft, e);
     int at = 0;
@@ -168,9 +168,9 @@ static int trace(planner *plan, lar_gid e, int axis) {
 static void give_up(planner *plan, int length) {
     for (int k = 0; k < length; k++) {
         lar_gid e = plan->run[k];
-        int axis = lar_rows_axis(plan->draft->model->mesh.element[e], plan->run_corner[k][0],
-                                 plan->run_corner[k][1]);
-        plan->hopeless[e] |= (uint8_t)(1u << axis);
+        int front = lar_rows_face(plan->draft->model->mesh.element[e], plan->run_corner[k][0],
+                                  plan->run_corner[k][1]);
+        plan->hopeless[e] |= (uint8_t)(1u << front);
     }
 }
 
@@ -190,18 +190,19 @@ static double run_score(planner *plan, int length) {
     return held > 0 ? held / length + 0.2 * shared / lines + 1e-6 * length : 0;
 }
 
-/* The axis of e with the best score above `wanted`, or -1. */
-static int best_axis(planner *plan, lar_gid e, int first_axis, double wanted) {
+/* The face by which the run with the best score above `wanted` leaves e, or -1. Backwards counts
+ * too: lines that are numbered already fit in one direction only. */
+static int best_front(planner *plan, lar_gid e, int first_axis, double wanted) {
     int best = -1;
-    for (int i = 0; i < 3; i++) {
-        int axis = (first_axis + i) % 3;
-        if (plan->hopeless[e] >> axis & 1) continue;
-        int length = trace(plan, e, axis);
+    for (int i = 0; i < 6; i++) {
+        int front = 2 * ((first_axis + i) % 3) + (i < 3);
+        if (plan->hopeless[e] >> front & 1) continue;
+        int length = trace(plan, e, front);
         double score = run_score(plan, length);
         if (score == 0) give_up(plan, length);
         if (score > wanted) {
             wanted = score;
-            best = axis;
+            best = front;
         }
     }
     return best;
@@ -213,8 +214,8 @@ static bool place_rows(planner *plan, const lar_gid *order, lar_row_habit habit)
         for (int32_t i = 0; i < draft->model->mesh.element_count; i++) {
             lar_gid e = order[i];
             if (!draft->open[e]) continue;
-            int axis = best_axis(plan, e, habit.axis, habit.patience * pass);
-            if (axis >= 0 && !place_run(plan, trace(plan, e, axis))) return false;
+            int front = best_front(plan, e, habit.axis, habit.patience * pass);
+            if (front >= 0 && !place_run(plan, trace(plan, e, front))) return false;
         }
     /* A row of four that stayed alone becomes a loose block. */
     for (int k = 0; k < LAR_KINDS; k++)

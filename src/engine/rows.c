@@ -70,9 +70,9 @@ static bool turn_to_follow(const int32_t node[8], int entry, const int32_t previ
 }
 
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
-                   int axis, int most, int32_t *run, int32_t (*corner)[8]) {
+                   int front, int most, int32_t *run, int32_t (*corner)[8]) {
     /* Back to the beginning: `front` is always the face that leads forward. */
-    int32_t first = e, front = 2 * axis + 1;
+    int32_t first = e;
     for (int steps = 0; steps < most / 2; steps++) {
         int32_t behind = neighbour[6 * first + opposite(front)];
         if (behind < 0 || !usable[behind / 6] || behind / 6 == e) break;
@@ -100,15 +100,15 @@ static int local_of(const int32_t node[8], int32_t wanted) {
     return local;
 }
 
-int lar_rows_axis(const int32_t node[8], int32_t from, int32_t to) {
-    int a = local_of(node, from), b = local_of(node, to), axis = 0;
-    while (axis < 2 && lar_node_sign[a][axis] == lar_node_sign[b][axis]) axis++;
-    return axis;
-}
-
 /* The face of an element on the side of local node `local` along `axis`. */
 static int face_at(int local, int axis) {
     return 2 * axis + (lar_node_sign[local][axis] > 0);
+}
+
+int lar_rows_face(const int32_t node[8], int32_t from, int32_t to) {
+    int a = local_of(node, from), b = local_of(node, to), axis = 0;
+    while (axis < 2 && lar_node_sign[a][axis] == lar_node_sign[b][axis]) axis++;
+    return face_at(b, axis);
 }
 
 int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t *e, int32_t from,
@@ -119,14 +119,14 @@ int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t 
         int entered = -1;
         for (int i = 0; i < MOST_AROUND_EDGE; i++) {
             const int32_t *node = mesh->element[at];
-            int axis = lar_rows_axis(node, from, to), end = local_of(node, to);
-            int32_t ahead = neighbour[6 * at + face_at(end, axis)];
+            int end = local_of(node, to), face = lar_rows_face(node, from, to);
+            int32_t ahead = neighbour[6 * at + face];
             if (ahead >= 0) {
                 *e = ahead / 6;
                 node = mesh->element[*e];
                 return node[across(local_of(node, to), ahead % 6 / 2)];
             }
-            int side[2] = {face_at(end, (axis + 1) % 3), face_at(end, (axis + 2) % 3)};
+            int side[2] = {face_at(end, (face / 2 + 1) % 3), face_at(end, (face / 2 + 2) % 3)};
             int leave = entered < 0 ? side[sense] : side[side[0] == entered];
             int32_t over = neighbour[6 * at + leave];
             if (over < 0) break;

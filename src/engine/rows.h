@@ -8,12 +8,12 @@
  * -1: on the boundary, and between more than two elements. The caller frees *neighbour. */
 lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_error *error);
 
-/* The run of elements through e along its axis (0 xi, 1 eta, 2 zeta): elements for which
- * usable[element] is true, at most `most`, in run[], front to back; corner[k] gets the nodes of
- * run[k] turned so that the row is its xi direction. When e's own axis leads to the front, its
- * nodes keep their order for axis 0. Returns the length. */
+/* The run of elements through e that leaves it by its local face `front`: elements for which
+ * usable[element] is true, at most `most`, in run[], first to last; corner[k] gets the nodes of
+ * run[k] turned so that the row is its xi direction. A run that begins with e and leaves it by xi+
+ * keeps the order of e's nodes. Returns the length. */
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
-                   int axis, int most, int32_t *run, int32_t (*corner)[8]);
+                   int front, int most, int32_t *run, int32_t (*corner)[8]);
 
 /* The node that continues the edge from `from` to `to` of element *e, in a neighbour of *e or of
  * another element around that edge; -1 at the end of the mesh. *e becomes the element that has the
@@ -21,7 +21,7 @@ int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *u
 int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t *e, int32_t from,
                         int32_t to);
 
-/* The axis of an element along which its edge from node `from` to node `to` runs. */
-int lar_rows_axis(const int32_t node[8], int32_t from, int32_t to);
+/* The local face to which the edge from node `from` to node `to` of an element leads. */
+int lar_rows_face(const int32_t node[8], int32_t from, int32_t to);
 
 #endif
