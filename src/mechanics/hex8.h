@@ -31,9 +31,9 @@
  * A bent beam of n elements through the thickness takes 1 - 1/n^2 of its exact energy from the
  * mean strains and k G/E of the missing 1/n^2 from the hourglass modes. Young's modulus would be
  * k = 3 and exact for this one mode; the others (torsion, xi eta zeta) then add too much. k = 1.58
- * is the largest factor that keeps the hourglass energy below 5% of the strain energy with four
- * elements through the thickness, and such beams within 1.5% of the converged deflection; the
- * sweep is in docs/validation.md.
+ * keeps the hourglass energy just below 5% of the strain energy with four elements through the
+ * thickness (k = 1.6 does not), and such beams within 1.5% of the converged deflection; with two
+ * elements it leaves them 5 to 8% too soft under small loads. The sweep is in docs/validation.md.
  */
 #ifndef LAR_MECHANICS_HEX8_H
 #define LAR_MECHANICS_HEX8_H
