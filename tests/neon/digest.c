@@ -1,11 +1,12 @@
-/* One line per instruction set and law: a digest of 300 steps of a shaken block of crooked
- * elements, through the same kernels as a simulation.
+/* One line per instruction set, law, body and form of its blocks: a digest of 100 steps of a shaken
+ * brick, through the same kernels as a simulation.
  *
- *     c neo-hookean 0123456789abcdef
+ *     c neo-hookean crooked 0123456789abcdef general rows-of-eight
  *
- * digest.sh runs it on this processor and, cross-compiled, on an emulated ARM processor, and
- * compares. It needs base, mechanics and the materials only, so that it links without any other
- * library.
+ * The body is crooked, or of boxes whose xi runs along x, y or z (box0, box1, box2); the form
+ * (general or box blocks, loose or in rows) must not change its digest. digest.sh runs this on this
+ * processor and, cross-compiled, on an emulated ARM processor, and compares. It needs base,
+ * mechanics and the materials only, so that it links without any other library.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,16 +14,32 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/simd.h"
 #include "mechanics/hex8_block.h"
 
-enum { EDGE = 4, NODES_EDGE = EDGE + 1, ELEMENTS = EDGE * EDGE * EDGE, STEPS = 300 };
-enum { NODES = NODES_EDGE * NODES_EDGE * NODES_EDGE + 1, BLOCKS = ELEMENTS / LAR_BLOCK };
-_Static_assert(NODES % 2 == 0 && ELEMENTS % LAR_BLOCK == 0, "whole pairs and blocks");
+enum { LONG = 8, EDGE = 4, ELEMENTS = LONG * EDGE * EDGE, STEPS = 100 };
+enum { NODES = (LONG + 1) * (EDGE + 1) * (EDGE + 1) + 1, BLOCKS = ELEMENTS / LAR_BLOCK };
+_Static_assert(NODES % 2 == 0 && (int)LONG == (int)LAR_BLOCK, "whole pairs and rows");
 
 static const double SIDE = 0.01, DENSITY = 1000.0, DT = 5e-5, SCALE = 0x1p40;
 
+/* A body (turn of its boxes, -1: crooked) and the form in which the kernels get it. */
+typedef struct form {
+    int turn;
+    lar_block_shape shape;
+    lar_block_rows rows;
+} form;
+
+static const form forms[] = {
+    {-1, LAR_SHAPE_GENERAL, LAR_ROWS_NONE},  {-1, LAR_SHAPE_GENERAL, LAR_ROWS_FOUR},
+    {-1, LAR_SHAPE_GENERAL, LAR_ROWS_EIGHT}, {0, LAR_SHAPE_GENERAL, LAR_ROWS_NONE},
+    {0, LAR_SHAPE_BOX, LAR_ROWS_NONE},       {1, LAR_SHAPE_GENERAL, LAR_ROWS_FOUR},
+    {1, LAR_SHAPE_BOX, LAR_ROWS_FOUR},       {2, LAR_SHAPE_GENERAL, LAR_ROWS_EIGHT},
+    {2, LAR_SHAPE_BOX, LAR_ROWS_EIGHT}};
+
 typedef struct world {
-    lar_hex8_block blocks[BLOCKS];
+    lar_hex8_block general[BLOCKS];
+    lar_box_block box[BLOCKS];
     double position[NODES][3];
     double u[NODES][4] __attribute__((aligned(64)));
     double v[NODES][4] __attribute__((aligned(64)));
@@ -39,31 +56,33 @@ static double chance(void) {
 }
 
 static int node_at(int i, int j, int k) {
-    return i + NODES_EDGE * (j + NODES_EDGE * k);
+    return i + (LONG + 1) * (j + (EDGE + 1) * k);
 }
 
-static void place_nodes(world *w) {
-    for (int k = 0; k < NODES_EDGE; k++)
-        for (int j = 0; j < NODES_EDGE; j++)
-            for (int i = 0; i < NODES_EDGE; i++) {
+static void place_nodes(world *w, int turn) {
+    for (int k = 0; k <= EDGE; k++)
+        for (int j = 0; j <= EDGE; j++)
+            for (int i = 0; i <= LONG; i++) {
                 int n = node_at(i, j, k);
                 const int at[3] = {i, j, k};
-                for (int axis = 0; axis < 3; axis++) {
-                    w->position[n][axis] = SIDE * (at[axis] + 0.15 * chance());
+                for (int m = 0; m < 3; m++) {
+                    int axis = turn < 0 ? m : (m + turn) % 3;
+                    double crooked = turn < 0 ? 0.15 * chance() : 0;
+                    w->position[n][axis] = SIDE * (at[m] + crooked);
                     w->v[n][axis] = 0.5 * chance();
                 }
             }
 }
 
-static void pack_element(world *w, int e, const lar_material *material) {
-    static const int offset[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                     {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-    const int at[3] = {e % EDGE, e / EDGE % EDGE, e / EDGE / EDGE};
-    lar_hex8_block *block = &w->blocks[e / LAR_BLOCK];
-    int lane = e % LAR_BLOCK;
+/* Into both kinds of blocks, in the lane of its place in the row. */
+static void pack_element(world *w, int e, int turn, const lar_material *material) {
+    const int at[3] = {e % LONG, e / LONG % EDGE, e / LONG / EDGE};
+    lar_hex8_block *block = &w->general[e / LAR_BLOCK];
+    lar_box_block *box = &w->box[e / LAR_BLOCK];
+    int lane = LAR_ROW_LANES[e % LAR_BLOCK];
     double corner[8][3];
     for (int a = 0; a < 8; a++) {
-        int n = node_at(at[0] + offset[a][0], at[1] + offset[a][1], at[2] + offset[a][2]);
+        int n = node_at(at[0] + (a % 4 == 1 || a % 4 == 2), at[1] + (a % 4 > 1), at[2] + (a > 3));
         memcpy(corner[a], w->position[n], sizeof corner[a]);
         block->head.node[a][lane] = 4 * n;
         w->mass[n] += DENSITY * SIDE * SIDE * SIDE / 8;
@@ -72,12 +91,15 @@ static void pack_element(world *w, int e, const lar_material *material) {
     lar_hex8_prepare(corner, material, &hex8);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) block->gradient[m][i][lane] = hex8.gradient[m][i];
+    for (int m = 0; m < 3 && turn >= 0; m++)
+        box->gradient[m][lane] = hex8.gradient[m][(m + turn) % 3];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         for (int i = 0; i < 3; i++) block->shape[m][i][lane] = hex8.shape[m][i];
         block->head.stiffness[m][lane] = hex8.stiffness[m] * SCALE;
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         block->head.modulus[k][lane] = material->parameter[k] * hex8.volume * SCALE;
+    box->head = block->head;
 }
 
 static uint64_t digest(uint64_t hash, const void *data, size_t size) {
@@ -87,19 +109,26 @@ static uint64_t digest(uint64_t hash, const void *data, size_t size) {
 }
 
 /* False when an element left the limits: then the digest would say nothing. */
-static bool shake(const lar_kernels *kernels, lar_law law, uint64_t *hash) {
+static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint64_t *hash) {
     world *w = lar_calloc_aligned(1, sizeof *w);
     if (!w) return false;
     lar_material material = {.law = law, .density = DENSITY};
     lar_material_from_shear_bulk(&material, 4e3, 1e5);
     chance_state = 2001;
-    place_nodes(w);
-    for (int e = 0; e < ELEMENTS; e++) pack_element(w, e, &material);
+    place_nodes(w, as->turn);
+    for (int e = 0; e < ELEMENTS; e++) pack_element(w, e, as->turn, &material);
     for (int n = 0; n < NODES; n++) w->push[n] = w->mass[n] > 0 ? DT / (w->mass[n] * SCALE) : 0;
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
     const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}};
-    const lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, BLOCKS, w->blocks};
+    bool boxes = as->shape == LAR_SHAPE_BOX;
+    const lar_block_run run = {.law = law,
+                               .shape = as->shape,
+                               .rows = as->rows,
+                               .turn = boxes ? as->turn : 0,
+                               .streamed = as->turn == 1,
+                               .count = BLOCKS,
+                               .blocks = boxes ? (const void *)w->box : w->general};
     bool good = true;
     double damped = 0;
     for (int step = 0; step < STEPS && good; step++) {
@@ -113,19 +142,29 @@ static bool shake(const lar_kernels *kernels, lar_law law, uint64_t *hash) {
     return good;
 }
 
+static int print_digest(const lar_kernels *kernels, lar_law law, const form *as) {
+    static const char *const body[] = {"crooked", "box0", "box1", "box2"};
+    static const char *const shape[] = {"general", "box"};
+    static const char *const rows[] = {"loose", "rows-of-four", "rows-of-eight"};
+    uint64_t hash;
+    if (!shake(kernels, law, as, &hash)) {
+        fprintf(stderr, "digest: %s %s %s left the limits\n", kernels->name, lar_law_name[law],
+                body[as->turn + 1]);
+        return 1;
+    }
+    printf("%s %s %s %016" PRIx64 " %s %s\n", kernels->name, lar_law_name[law], body[as->turn + 1],
+           hash, shape[as->shape], rows[as->rows]);
+    return 0;
+}
+
 int main(void) {
+    int failures = 0;
     for (lar_isa isa = LAR_ISA_C; isa <= LAR_ISA_AVX512; isa++) {
         const lar_kernels *kernels = NULL;
         if (lar_kernels_find(isa, &kernels, NULL)) continue;
-        for (int law = 0; law < LAR_LAW_COUNT; law++) {
-            uint64_t hash;
-            if (!shake(kernels, (lar_law)law, &hash)) {
-                fprintf(stderr, "digest: %s %s left the limits\n", kernels->name,
-                        lar_law_name[law]);
-                return 1;
-            }
-            printf("%s %s %016" PRIx64 "\n", kernels->name, lar_law_name[law], hash);
-        }
+        for (int law = 0; law < LAR_LAW_COUNT; law++)
+            for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++)
+                failures += print_digest(kernels, (lar_law)law, &forms[i]);
     }
-    return 0;
+    return failures != 0;
 }

@@ -47,8 +47,10 @@ grep -q '^neon ' "$scratch/arm.txt" || {
     echo "digest: the ARM program has no NEON kernels" >&2
     exit 1
 }
-# Per law, one digest only.
+# Per law and body, one digest only.
 cat "$scratch/native.txt" "$scratch/arm.txt" | awk '
-    { if ($2 in digest && digest[$2] != $3) { print "digest: " $1 " differs for " $2; bad = 1 }
-      digest[$2] = $3 }
+    { body = $2 " " $3
+      if (body in digest && digest[body] != $4) {
+          print "digest: " $1 " differs for " body " (" $5 ", " $6 ")"; bad = 1 }
+      digest[body] = $4 }
     END { exit bad }'
