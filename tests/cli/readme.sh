@@ -36,7 +36,7 @@ cmp -s printed shown || {
 }
 
 # Commands.
-ln -s "$SOURCE/examples" examples
+cp -r "$SOURCE/examples" examples # a copy: its meshes are named relative to it
 awk '/^```sh/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page" |
     sed -n 's/ *#.*//; s/^build\/lariat //p' >commands
 [ "$(wc -l <commands)" -ge 3 ] || fail "the commands of README.md were not found"
