@@ -168,8 +168,7 @@ static const element_type *find_type(lar_span name) {
 static lar_status refuse_type(inp_reader *reader, const inp_card *card, lar_span type) {
     return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
                     "%s:%d: elements of type '%.*s' are not read: Lariat computes with eight-node "
-                    "hexahedra (C3D8, C3D8R, C3D8I, C3D8H, C3D8RH); mesh the volume with these or "
-                    "use `lariat mesh` to make hexahedra from its surface",
+                    "hexahedra (C3D8, C3D8R, C3D8I, C3D8H, C3D8RH); mesh the volume with these",
                     reader->path, card->line, shown(type), type.at);
 }
 

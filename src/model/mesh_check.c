@@ -227,8 +227,7 @@ static lar_status check_shapes(const lar_mesh *mesh, lar_error *error) {
 lar_status lar_mesh_check(const lar_mesh *mesh, lar_error *error) {
     if (mesh->element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: holds no eight-node hexahedra; mesh the volume with hexahedra or use "
-                        "`lariat mesh` to make them from its surface",
+                        "%s: holds no eight-node hexahedra; mesh the volume with hexahedra",
                         source_of(mesh));
     lar_status status = check_positions(mesh, error);
     if (!status) status = check_connectivity(mesh, error);

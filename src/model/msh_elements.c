@@ -73,7 +73,7 @@ static lar_status find_type(msh_reader *reader, int64_t number, int64_t id,
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
                         "%s: element %lld is a %s, but Lariat computes with eight-node "
                         "hexahedra; mesh the volume with hexahedra (Gmsh: transfinite and "
-                        "recombine) or use `lariat mesh` to make hexahedra from its surface",
+                        "recombine)",
                         msh_here(reader).text, (long long)id, (*type)->name);
     }
     return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,

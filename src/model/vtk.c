@@ -200,8 +200,7 @@ static lar_status read_dataset(vtk_file *file) {
     if (lar_span_equal_nocase(kind, "UNSTRUCTURED_GRID")) return LAR_OK;
     return lar_fail(file->error, LAR_ERROR_UNSUPPORTED,
                     "%s:%d: DATASET %.*s is no mesh of hexahedra that Lariat reads; save it as an "
-                    "unstructured grid (ParaView: Append Datasets, then save as .vtu), or mesh an "
-                    "image with \"lariat mesh\"",
+                    "unstructured grid (ParaView: Append Datasets, then save as .vtu)",
                     file->path, file->text.line, kind.length < 40 ? (int)kind.length : 40, kind.at);
 }
 

@@ -168,8 +168,7 @@ static lar_status refuse_cell(const char *path, int64_t cell, int64_t type, lar_
     cell_dimension(type, &name);
     const char *remedy = type == 25 || type == 29 || type == 33 || type == 72
                              ? "save the mesh with first-order (eight-node) elements"
-                             : "mesh the body with hexahedra (\"lariat mesh\" makes them from an "
-                               "image or a surface), or remove these cells";
+                             : "mesh the body with hexahedra, or remove these cells";
     return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                     "%s: cell %" PRId64 " is a %s (VTK cell type %" PRId64
                     "); Lariat computes with eight-node hexahedra; %s",
