@@ -53,11 +53,14 @@ bool lar_grow_array(void *array, size_t *capacity, size_t count, size_t size) {
 }
 
 lar_status lar_bytes_read(const char *path, lar_bytes *out, lar_error *error) {
+    /* Opening a pipe would wait for somebody who writes into it: looked at before. */
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return lar_fail(error, LAR_ERROR_IO, "%s: is not a regular file; name a file", path);
     FILE *file = fopen(path, "rb");
     if (!file)
         return lar_fail(error, LAR_ERROR_IO, "%s: cannot be opened: %s; check the path", path,
                         strerror(errno));
-    struct stat info;
     if (fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode)) {
         fclose(file);
         return lar_fail(error, LAR_ERROR_IO, "%s: is not a regular file; name a file", path);

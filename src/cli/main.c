@@ -1,7 +1,10 @@
 /* lariat: the command line. One row per command; everything a command needs is in its own file. */
 #include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 
@@ -58,7 +61,18 @@ static int dispatch(int argc, char **argv) {
     return unknown_command(name);
 }
 
+/* A closed standard stream's number would go to the next file that is opened, and our words into
+ * it. What is put there instead can be read but not written: output fails, as it should. A file
+ * that grows beyond the user's limit fails likewise, instead of ending the program. */
+static void prepare_process(void) {
+    int opened = open("/dev/null", O_RDONLY);
+    while (opened >= 0 && opened <= STDERR_FILENO) opened = open("/dev/null", O_RDONLY);
+    if (opened >= 0) close(opened);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
 int main(int argc, char **argv) {
+    prepare_process();
     int status = dispatch(argc, argv);
     /* A result that did not reach its file is no success. */
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == CLI_DONE)

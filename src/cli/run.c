@@ -43,12 +43,16 @@ static void ask_stop(int signal_number) {
     stop_asked = signal_number;
 }
 
-/* The first signal ends the run with what there is, a second one ends the program. */
+/* The first signal ends the run with what there is, a second one ends the program. A closed
+ * terminal does the same, but not under nohup. */
 static void catch_signals(void) {
     struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+    struct sigaction hangup;
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &action, NULL);
 }
 
 /* ---- progress --------------------------------------------------------------------------- */
@@ -81,7 +85,8 @@ static int add_frame(run *r) {
     uint64_t step = lar_simulation_steps(r->simulation);
     if (!r->results || r->framed == step) return CLI_DONE;
     if (lar_results_add(r->results, r->simulation, &error))
-        return fail(r, CLI_FAILED, error.message);
+        return fail(r, error.status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
+                    error.message);
     r->framed = step;
     r->frames++;
     return CLI_DONE;

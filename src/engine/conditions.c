@@ -88,9 +88,18 @@ static double factor_at(const lar_model *model, int curve, double time) {
     return curve < 0 ? 1 : lar_curve_value(&model->curve[curve], time);
 }
 
-/* Subtracts an external force from the residual, in force units, rounded to nearest. */
-static void add_external(int64_t *force, double scale, const double external[3]) {
-    for (int i = 0; i < 3; i++) force[i] -= llrint(external[i] * scale);
+/* Subtracts an external force from the residual, in force units, rounded to nearest. False, and
+ * that part left out, where the sum would come near the end of the integers. */
+static bool add_external(int64_t *force, double scale, const double external[3]) {
+    bool fits = true;
+    for (int i = 0; i < 3; i++) {
+        double units = external[i] * scale;
+        if (fabs(units) + fabs((double)force[i]) < 0x1p60)
+            force[i] -= llrint(units);
+        else
+            fits = false;
+    }
+    return fits;
 }
 
 /* Corner forces of a pressure that follows the deformed face: -p integral N_a (x_r cross x_s) over
@@ -141,13 +150,14 @@ double lar_conditions_half_work(const lar_conditions *c, const lar_condition_con
     return work;
 }
 
-void lar_conditions_load(lar_conditions *c, const lar_condition_context *context, double time,
-                         lar_state *state) {
+int32_t lar_conditions_load(lar_conditions *c, const lar_condition_context *context, double time,
+                            lar_state *state) {
+    int32_t beyond = -1;
     for (int32_t i = 0; i < c->force_count; i++) {
         lar_point_force *f = &c->force[i];
         double factor = factor_at(context->model, f->curve, time);
         for (int k = 0; k < 3; k++) f->now[k] = factor * f->force[k];
-        add_external(state->force + f->node, context->scale, f->now);
+        if (!add_external(state->force + f->node, context->scale, f->now)) beyond = f->node / 4;
     }
     for (int32_t i = 0; i < c->pressure_count; i++) {
         lar_face_pressure *p = &c->pressure[i];
@@ -156,8 +166,10 @@ void lar_conditions_load(lar_conditions *c, const lar_condition_context *context
             for (int k = 0; k < 3; k++) x[a][k] = p->position[a][k] + state->u[p->node[a] + k];
         pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), p->now);
         for (int a = 0; a < 4; a++)
-            add_external(state->force + p->node[a], context->scale, p->now[a]);
+            if (!add_external(state->force + p->node[a], context->scale, p->now[a]))
+                beyond = p->node[a] / 4;
     }
+    return beyond;
 }
 
 void lar_conditions_observe(lar_conditions *c, const lar_condition_context *context,

@@ -62,9 +62,10 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  lar_conditions *conditions, lar_error *error);
 void lar_conditions_destroy(lar_conditions *conditions); /* idempotent */
 
-/* Adds the loads at `time` to state->force. */
-void lar_conditions_load(lar_conditions *conditions, const lar_condition_context *context,
-                         double time, lar_state *state);
+/* Adds the loads at `time` to state->force. Returns a node (local) whose loads are too large for
+ * the force sums, so that the run must stop; -1 when there is none. */
+int32_t lar_conditions_load(lar_conditions *conditions, const lar_condition_context *context,
+                            double time, lar_state *state);
 
 /* Half the work of one step by the loads of the last lar_conditions_load, with the velocities as
  * they are: once before and once after the nodes move [J]. */

@@ -153,17 +153,27 @@ static lar_status check_finite(const lar_simulation *simulation, lar_error *erro
                 !isfinite(simulation->state.v[4 * n + i]))
                 return lar_fail(error, LAR_ERROR_UNSTABLE,
                                 "node %lld has left the range of numbers; this state is not "
-                                "written, the frames before it are good",
+                                "written, the frames before it are good; use a smaller time step, "
+                                "or slower or smaller loads and motions",
                                 (long long)domain->model->mesh.node_id[g]);
         }
     return LAR_OK;
 }
 
-/* A model may have been read from a frame of an earlier run in this folder. */
-static lar_status spare_the_mesh(const char *path, const lar_mesh *mesh, lar_error *error) {
-    struct stat frame, source;
-    if (!mesh->source || stat(path, &frame) != 0 || stat(mesh->source, &source) != 0) return LAR_OK;
-    if (frame.st_dev != source.st_dev || frame.st_ino != source.st_ino) return LAR_OK;
+static bool same_file(const struct stat *file, const char *path) {
+    struct stat other;
+    return path && stat(path, &other) == 0 && file->st_dev == other.st_dev &&
+           file->st_ino == other.st_ino;
+}
+
+/* A model may have been read from frames of an earlier run in this folder. */
+static lar_status spare_the_mesh(const char *path, const lar_model *model, lar_error *error) {
+    struct stat frame;
+    if (stat(path, &frame) != 0) return LAR_OK;
+    bool spared = same_file(&frame, model->mesh.source);
+    for (int i = 0; i < model->mesh_file_count; i++)
+        spared = spared || same_file(&frame, model->mesh_file[i]);
+    if (!spared) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO,
                     "%s: is the mesh of this model and will not be overwritten by a frame; choose "
                     "another folder for the results",
@@ -205,7 +215,7 @@ static lar_status add_frame(lar_results *results, const lar_simulation *simulati
     const char *relative = room ? path + strlen(path) - strlen(results->name) - strlen(ending) : "";
     char *file = room ? lar_strdup(relative) : NULL;
     lar_status status = file ? LAR_OK : lar_fail_memory(error, sizeof ending, "a frame's name");
-    if (!status) status = spare_the_mesh(path, &simulation->domain.model->mesh, error);
+    if (!status) status = spare_the_mesh(path, simulation->domain.model, error);
     if (!status) status = write_frame(results, simulation, path, error);
     free(path);
     if (status) {

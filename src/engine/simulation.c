@@ -40,6 +40,17 @@ static void set_initial_velocities(lar_simulation *simulation) {
         state->v[domain->conditions.constraint[i].value] = 0;
 }
 
+/* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
+static lar_status check_damping(const lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    if (domain->motion.keep > 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
+                    "a damping below %.3g 1/s or a time_step below %.3g s",
+                    model->source ? model->source : "model", model->damping, domain->time_step,
+                    2 / domain->time_step, 2 / model->damping);
+}
+
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
                                  lar_simulation **simulation, lar_error *error) {
     if (!model || !simulation)
@@ -50,6 +61,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
     lar_simulation *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
     lar_status status = lar_domain_create(model, &chosen, &made->domain, error);
+    if (!status) status = check_damping(&made->domain, error);
     if (!status) status = lar_state_create(&made->state, made->domain.layout.node_padded, error);
     if (status) {
         lar_simulation_destroy(made);

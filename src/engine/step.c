@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <string.h>
 
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
@@ -78,9 +77,15 @@ static void move_nodes(const lar_domain *domain, double time, lar_state *state, 
         *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
 }
 
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+static void apply_loads(lar_domain *domain, double time, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_conditions_load(&domain->conditions, &context, lar_state_time(domain, state), state);
+    int32_t beyond = lar_conditions_load(&domain->conditions, &context, time, state);
+    if (beyond >= 0 && !trip->kind)
+        *trip = (lar_trip){LAR_TRIP_LOAD, domain->layout.global[beyond], state->step};
+}
+
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+    apply_loads(domain, lar_state_time(domain, state), state, trip);
     recover_elements(domain, state, trip);
 }
 
@@ -89,12 +94,15 @@ void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
     double time = lar_state_time(domain, state);
 
-    lar_conditions_load(conditions, &context, time, state);
+    apply_loads(domain, time, state, trip);
     state->external += lar_conditions_half_work(conditions, &context, time, state);
     recover_elements(domain, state, trip);
     lar_conditions_observe(conditions, &context, state);
     move_nodes(domain, time, state, trip);
     state->external += lar_conditions_impose(conditions, &context, time, state);
     state->external += lar_conditions_half_work(conditions, &context, time, state);
+    /* The watch over speeds does not see nodes that are moved. */
+    if (!isfinite(state->external) && !trip->kind)
+        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
     state->step++;
 }

@@ -14,8 +14,8 @@
 
 /* Why a run must stop: polled once per step, set once, never cleared. */
 typedef struct lar_trip {
-    enum { LAR_TRIP_NONE, LAR_TRIP_ELEMENT, LAR_TRIP_SPEED } kind;
-    lar_gid element; /* of LAR_TRIP_ELEMENT */
+    enum { LAR_TRIP_NONE, LAR_TRIP_ELEMENT, LAR_TRIP_SPEED, LAR_TRIP_LOAD } kind;
+    lar_gid element; /* of LAR_TRIP_ELEMENT; the node of LAR_TRIP_LOAD */
     uint64_t step;   /* the step under way */
 } lar_trip;
 

@@ -19,18 +19,39 @@ static void examine_element(const lar_domain *domain, const lar_state *state, la
     *frequency_growth = sqrt(lar_lane_square_sum(cof) / 3) / fabs(*volume_ratio);
 }
 
+/* What the instability begins with says more than the step size: nothing has had time to grow. */
+static const char *hint(const lar_trip *trip) {
+    return trip->step < 8 ? ", and check the units of mesh, material and loads" : "";
+}
+
+/* The place of a node or element, or its place at rest when it has left the range of numbers. */
+static void choose_place(const double now[3], const double rest[3], double place[3]) {
+    bool finite = isfinite(now[0]) && isfinite(now[1]) && isfinite(now[2]);
+    for (int i = 0; i < 3; i++) place[i] = finite ? now[i] : rest[i];
+}
+
 static lar_status report_element(const lar_domain *domain, const lar_state *state,
                                  const lar_trip *trip, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    double center[3] = {0}, volume_ratio, growth;
+    double center[3] = {0}, rest[3] = {0}, place[3], volume_ratio, growth;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
             lar_gid node = mesh->element[trip->element][a];
+            rest[i] += mesh->position[node][i] / 8;
             center[i] +=
                 (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
         }
     examine_element(domain, state, trip->element, &volume_ratio, &growth);
+    choose_place(center, rest, place);
     const char *cause, *remedy;
+    if (!isfinite(volume_ratio) || !isfinite(growth))
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
+                        "torn beyond the range of numbers; use a smaller time step, or slower or "
+                        "smaller loads and motions%s",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        (long long)mesh->element_id[trip->element], place[0], place[1], place[2],
+                        hint(trip));
     if (!(volume_ratio > domain->limits.least_volume)) {
         cause = "is turned inside out or crushed";
         remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
@@ -43,10 +64,10 @@ static lar_status report_element(const lar_domain *domain, const lar_state *stat
     }
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
-                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s",
+                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s%s",
                     (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    (long long)mesh->element_id[trip->element], center[0], center[1], center[2],
-                    cause, volume_ratio, domain->time_step, domain->stable_step, remedy);
+                    (long long)mesh->element_id[trip->element], place[0], place[1], place[2], cause,
+                    volume_ratio, domain->time_step, domain->stable_step, remedy, hint(trip));
 }
 
 static lar_status report_speed(const lar_domain *domain, const lar_state *state,
@@ -61,20 +82,40 @@ static lar_status report_speed(const lar_domain *domain, const lar_state *state,
                 fastest = n;
             }
     lar_gid node = domain->layout.global[fastest];
+    const double *u = state->u + 4 * fastest, *rest = mesh->position[node];
+    double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]}, place[3];
+    choose_place(now, rest, place);
+    if (!isfinite(highest))
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
+                        "left the range of numbers; use a smaller time step, or slower or smaller "
+                        "loads and motions%s",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        (long long)mesh->node_id[node], place[0], place[1], place[2], hint(trip));
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
                     "%.3g m/s, hundreds of elements per time step (the limit is %.3g m/s); use a "
-                    "smaller time step, or slower or smaller loads and motions",
+                    "smaller time step, or slower or smaller loads and motions%s",
                     (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    (long long)mesh->node_id[node], mesh->position[node][0] + state->u[4 * fastest],
-                    mesh->position[node][1] + state->u[4 * fastest + 1],
-                    mesh->position[node][2] + state->u[4 * fastest + 2], highest,
-                    domain->motion.speed);
+                    (long long)mesh->node_id[node], place[0], place[1], place[2], highest,
+                    domain->motion.speed, hint(trip));
+}
+
+static lar_status report_load(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const double *at = mesh->position[trip->element];
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): the forces and pressures on node %lld, at "
+                    "(%.4g, %.4g, %.4g) m at rest, are far beyond what the material can bear; use "
+                    "smaller loads, and check the units of mesh, material and loads",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
 }
 
 lar_status lar_trip_report(const lar_domain *domain, const lar_state *state, const lar_trip *trip,
                            lar_error *error) {
     if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
     if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, state, trip, error);
+    if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
     return report_speed(domain, state, trip, error);
 }

@@ -20,6 +20,7 @@ lar_model *lar_model_create(void) {
 void lar_model_destroy(lar_model *model) {
     if (!model) return;
     lar_mesh_clear(&model->mesh);
+    for (int i = 0; i < model->mesh_file_count; i++) free(model->mesh_file[i]);
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
     for (int i = 0; i < model->fix_count; i++) free(model->fix[i].nodes.node);
@@ -32,6 +33,7 @@ void lar_model_destroy(lar_model *model) {
         free(model->output.probe[i].nodes.node);
     }
     for (int i = 0; i < model->notice_count; i++) free(model->notice[i]);
+    free(model->mesh_file);
     free(model->material);
     free(model->element_material);
     free(model->curve);

@@ -80,6 +80,8 @@ struct lar_model {
     char *title;
     char *source; /* the file */
     lar_mesh mesh;
+    int mesh_file_count; /* of a scene: the files that the mesh was read from */
+    char **mesh_file;
 
     int material_count;
     lar_material *material;

@@ -106,10 +106,14 @@ static lar_status append_mesh(lar_scene *scene, const lar_yaml *node, const lar_
 static lar_status read_file(lar_scene *scene, const lar_yaml *node, const char *name, double scale,
                             lar_mesh *mesh) {
     char *path = lar_path_beside(scene->path, name);
-    if (!path) return lar_scene_no_memory(scene, strlen(name));
+    char **kept = path ? LAR_MODEL_APPEND(scene->model, mesh_file) : NULL;
+    if (!kept) {
+        free(path);
+        return lar_scene_no_memory(scene, strlen(name));
+    }
+    *kept = path;
     lar_error own = {0};
     lar_status status = scene->read_mesh(path, scale, mesh, &own);
-    free(path);
     if (status) return lar_scene_fail(scene, node, status, "%s", own.message);
     if (mesh->node_count <= 0 || mesh->element_count <= 0)
         return lar_scene_fail(scene, node, LAR_ERROR_MODEL,

@@ -1,0 +1,72 @@
+#!/bin/sh
+# What a hostile or careless hand gives the command: a message, never a crash, a hang, a number
+# that is none, or somebody's mesh overwritten.
+. "$(dirname "$0")/lib.sh"
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH/beam.vtk"
+beam=$SOURCE/examples/beam.yaml
+
+# A pipe that nobody writes into, and the endless file.
+for name in scene.yaml mesh.vtk mesh.vtu mesh.msh mesh.inp deck.feb; do
+    mkfifo "$SCRATCH/$name"
+    expect 1 timeout 20 "$LARIAT" info "$SCRATCH/$name"
+    complains "$name: is not a regular file"
+done
+ln -s /dev/zero "$SCRATCH/zero.vtk"
+expect 1 timeout 20 "$LARIAT" info "$SCRATCH/zero.vtk"
+complains 'is not a regular file'
+
+# Loads and motions beyond all numbers. Each line is put into the scene of the beam.
+violent() {
+    printf '%s\n' "$2" | cat "$beam" - >"$SCRATCH/violent.yaml"
+    rm -rf "$SCRATCH/results"
+    expect "$1" "$LARIAT" run "$SCRATCH/violent.yaml" --time 0.05 --out "$SCRATCH/results"
+    silent
+}
+for p in 1e12 1e30 1e200 1e308; do
+    violent 3 "load: [ { faces: all, pressure: $p } ]"
+    complains 'unstable at step 0 .*\(pressures on node\|node [0-9]* near\).*check the units'
+    violent 3 "load: [ { faces: all, pressure: 1, curve: { points: [[0, 0], [0.01, $p]] } } ]"
+    violent 3 "load: [ { nodes: all, force: [1, 0, 0], curve: { points: [[0, 0], [0.01, $p]] } } ]"
+    complains 'unstable at step'
+done
+violent 3 'initial: [ { nodes: all, velocity: [1.0e308, 0, 0] } ]'
+complains 'has left the range of numbers'
+violent 3 'move: [ { nodes: { nearest: [0.04, 0, 0] }, axes: x, by: -1.0e308, over: 0.01 } ]'
+complains 'is torn beyond the range of numbers\|has left the range of numbers'
+expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --steps 1
+
+# Damping that would turn velocities around in every step.
+for c in 1.0e6 1.0e30 1.0e308; do
+    sed "s/^damping:.*/damping: $c/" "$beam" >"$SCRATCH/damped.yaml"
+    expect 1 "$LARIAT" run "$SCRATCH/damped.yaml" --steps 10
+    complains 'use a damping below .* 1/s or a time_step below'
+done
+
+# Frames spare every mesh of the scene, not only its first.
+expect 0 "$LARIAT" run "$beam" --steps 1 --out "$SCRATCH/again"
+cp "$SCRATCH/again/beam_000000.vtu" "$SCRATCH/again/first.vtu"
+printf '%s\n' 'lariat: 1' 'mesh: [first.vtu, beam_000000.vtu]' 'materials:' '  - { cells: all,' \
+    '    law: neo-hookean, density: 1e3, shear_modulus: 4e3, bulk_modulus: 4e5 }' \
+    >"$SCRATCH/again/beam.yaml"
+expect 1 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/again"
+complains 'will not be overwritten'
+cmp -s "$SCRATCH/again/beam_000000.vtu" "$SCRATCH/again/first.vtu" || fail "a mesh was overwritten"
+
+# A limit on the size of files is a full disk, not a crash.
+(
+    ulimit -f 1
+    "$LARIAT" run "$beam" --steps 10 --out "$SCRATCH/limited" >"$SCRATCH/out" 2>"$SCRATCH/err"
+)
+[ $? -eq 1 ] || fail "no plain failure where files may not grow"
+complains 'cannot be written: File too large'
+[ -z "$(find "$SCRATCH/limited" -name '*.part')" ] || fail "a half frame is left"
+
+# Closed streams: no message ends up in a result.
+"$LARIAT" run "$SCRATCH/violent.yaml" --time 0.05 --out "$SCRATCH/closed" <&- >&- 2>&-
+[ $? -eq 3 ] || fail "exit status with closed streams"
+grep -q lariat "$SCRATCH/closed/probes.csv" && fail "a message in probes.csv"
+"$LARIAT" info "$beam" >&- 2>"$SCRATCH/err"
+[ $? -eq 1 ] || fail "success although standard output is closed"
+complains 'standard output cannot be written'
+
+finish "hostile input is refused"
