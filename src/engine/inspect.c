@@ -47,6 +47,10 @@ static lar_status count_fixed_nodes(const lar_model *model, int32_t *count, lar_
 }
 
 lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_error *error) {
+    if (!model || !info)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_model_inspect needs a model and a place for what it finds; neither "
+                        "may be NULL");
     lar_model_info made = {.title = model->title ? model->title : "",
                            .nodes = model->mesh.node_count,
                            .elements = model->mesh.element_count,

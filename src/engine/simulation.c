@@ -58,6 +58,10 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
                         "lar_simulation_create needs a model and a "
                         "place for the simulation");
     lar_options chosen = options ? *options : lar_options_default();
+    if ((unsigned)chosen.element > LAR_ELEMENT_HEX8_MATRIX)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
+                        (int)chosen.element);
     lar_simulation *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
     lar_status status = lar_domain_create(model, &chosen, &made->domain, error);
@@ -80,6 +84,9 @@ void lar_simulation_destroy(lar_simulation *simulation) {
 }
 
 lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
+    if (!simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_advance needs a simulation, not NULL");
     lar_trip *trip = &simulation->trip;
     for (uint64_t i = 0; i < steps && !trip->kind; i++)
         lar_step(&simulation->domain, &simulation->state, trip);

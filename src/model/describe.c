@@ -12,8 +12,14 @@ static lar_status refuse_index(const char *what, int32_t index, int32_t count, l
                     (long)count);
 }
 
+static lar_status refuse_null(const char *function, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s needs a model and a place for the answer; neither may be NULL", function);
+}
+
 lar_status lar_model_material(const lar_model *model, int32_t index, lar_material_info *info,
                               lar_error *error) {
+    if (!model || !info) return refuse_null("lar_model_material", error);
     if (index < 0 || index >= model->material_count)
         return refuse_index("material", index, model->material_count, error);
     const lar_material *material = &model->material[index];
@@ -34,6 +40,7 @@ int32_t lar_model_set_count(const lar_model *model) {
 lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *info,
                          lar_error *error) {
     static const char *const kind[] = {"nodes", "elements", "faces"};
+    if (!model || !info) return refuse_null("lar_model_set", error);
     if (index < 0 || index >= model->mesh.set_count)
         return refuse_index("set", index, model->mesh.set_count, error);
     const lar_set *set = &model->mesh.set[index];
