@@ -6,7 +6,7 @@
 #include "mechanics/hex8_block.h"
 
 enum { MOST = 9, LANES = MOST * LAR_BLOCK, ROOM = 8 * LANES + 2, SPARE = ROOM - 1 };
-static const double size = 0.01, scale = 0x1p36; /* m, force units per newton */
+static const double size = 0.01, scale = 0x1p52; /* m, force units per newton: every bit shows */
 static const double modulus_shear = 4e3, modulus_bulk = 2e5;
 
 static const lar_kernels *kernels[4];
