@@ -1,8 +1,10 @@
 /* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv.
  *
  * After every frame the folder can be opened as it is: frames and series appear whole (written
- * beside and renamed), the series names only frames that are there. Positions are those of the
- * reference; the point array "displacement" moves them (ParaView: Warp By Vector). */
+ * beside and renamed), the series names only frames that are there. From the thousandth frame on
+ * it may miss the last thousandth of them until the end: written anew for each, a long run would
+ * spend its time there. Positions are those of the reference; the point array "displacement"
+ * moves them (ParaView: Warp By Vector). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +29,8 @@ static const struct {
 
 struct lar_results {
     char *folder, *name, *series;
-    int count; /* frames so far */
+    int count;  /* frames so far */
+    int listed; /* of them in the series */
     size_t file_capacity, time_capacity;
     char **file;
     double *time;
@@ -78,6 +81,26 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
                     : lar_fail_memory(error, 48 * nodes + 24 * elements, "the fields of a frame");
 }
 
+static bool same_file(const struct stat *file, const char *path) {
+    struct stat other;
+    return path && stat(path, &other) == 0 && file->st_dev == other.st_dev &&
+           file->st_ino == other.st_ino;
+}
+
+/* A model may have been read from frames of an earlier run here, or a link may lead to it. */
+static lar_status spare_the_mesh(const char *path, const lar_model *model, lar_error *error) {
+    struct stat file;
+    if (stat(path, &file) != 0) return LAR_OK;
+    bool spared = same_file(&file, model->mesh.source);
+    for (int i = 0; i < model->mesh_file_count; i++)
+        spared = spared || same_file(&file, model->mesh_file[i]);
+    if (!spared) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is the mesh of this model and will not be overwritten by results; choose "
+                    "another folder for the results",
+                    path);
+}
+
 static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
                               lar_error *error) {
     results->folder = lar_strdup(folder);
@@ -86,9 +109,10 @@ static lar_status open_folder(lar_results *results, const char *folder, const la
     if (!results->series) return lar_fail_memory(error, strlen(folder), "the paths of results");
     lar_status status = lar_folder_make(folder, error);
     if (!status) status = prepare_arrays(results, model, error);
-    if (!status)
-        status = lar_probe_file_open(&results->probes, lar_folder_join(folder, "probes.csv"), model,
-                                     error);
+    char *probes = status ? NULL : lar_folder_join(folder, "probes.csv");
+    if (probes) status = spare_the_mesh(probes, model, error);
+    if (!status) return lar_probe_file_open(&results->probes, probes, model, error);
+    free(probes);
     return status;
 }
 
@@ -109,9 +133,19 @@ lar_status lar_results_open(const char *folder, const lar_simulation *simulation
     return status;
 }
 
+/* Failure is told once: what could not be written is not tried again at the end. */
+static lar_status write_series(lar_results *results, lar_error *error) {
+    results->listed = results->count;
+    return lar_pvd_write(results->series, (const char *const *)results->file, results->time,
+                         results->count, error);
+}
+
 lar_status lar_results_close(lar_results *results, lar_error *error) {
     if (!results) return LAR_OK;
-    lar_status status = lar_probe_file_close(&results->probes, error);
+    lar_status status = results->listed < results->count ? write_series(results, error) : LAR_OK;
+    lar_error later;
+    lar_status closed = lar_probe_file_close(&results->probes, &later);
+    if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
     for (int i = 0; i < results->count; i++) free(results->file[i]);
     for (int i = 0; i < CELL_FIELDS; i++) free(results->cell[i]);
     free(results->file);
@@ -158,26 +192,6 @@ static lar_status check_finite(const lar_simulation *simulation, lar_error *erro
                                 (long long)domain->model->mesh.node_id[g]);
         }
     return LAR_OK;
-}
-
-static bool same_file(const struct stat *file, const char *path) {
-    struct stat other;
-    return path && stat(path, &other) == 0 && file->st_dev == other.st_dev &&
-           file->st_ino == other.st_ino;
-}
-
-/* A model may have been read from frames of an earlier run in this folder. */
-static lar_status spare_the_mesh(const char *path, const lar_model *model, lar_error *error) {
-    struct stat frame;
-    if (stat(path, &frame) != 0) return LAR_OK;
-    bool spared = same_file(&frame, model->mesh.source);
-    for (int i = 0; i < model->mesh_file_count; i++)
-        spared = spared || same_file(&frame, model->mesh_file[i]);
-    if (!spared) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is the mesh of this model and will not be overwritten by a frame; choose "
-                    "another folder for the results",
-                    path);
 }
 
 static lar_status write_frame(lar_results *results, const lar_simulation *simulation,
@@ -234,9 +248,8 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
                         "lar_results_add needs results and a simulation; neither may be NULL");
     lar_status status = check_finite(simulation, error);
     if (!status) status = add_frame(results, simulation, error);
-    if (!status)
-        status = lar_pvd_write(results->series, (const char *const *)results->file, results->time,
-                               results->count, error);
+    if (!status && results->count - results->listed > results->count / 1000)
+        status = write_series(results, error);
     /* The force array is scratch between steps: the state that the caller sees stays the same. */
     if (!status) status = lar_probe_file_add(&results->probes, (lar_simulation *)simulation, error);
     return status;

@@ -118,7 +118,9 @@ lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model
                                lar_error *error) {
     *file = (lar_probe_file){.path = path, .descriptor = -1};
     if (!path) return lar_fail_memory(error, 1, "the path of probes.csv");
-    file->descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    /* A pipe without a reader is an error, nothing to wait for; one with a reader may be slow. */
+    file->descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (file->descriptor >= 0) fcntl(file->descriptor, F_SETFL, O_WRONLY);
     if (file->descriptor < 0) return fail_to(file, "opened for writing", errno, error);
     return add_line(file, model, NULL, error);
 }

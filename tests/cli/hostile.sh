@@ -52,6 +52,26 @@ expect 1 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/agai
 complains 'will not be overwritten'
 cmp -s "$SCRATCH/again/beam_000000.vtu" "$SCRATCH/again/first.vtu" || fail "a mesh was overwritten"
 
+rm -rf "$SCRATCH/linked"
+mkdir "$SCRATCH/linked"
+ln -s "$SCRATCH/beam.vtk" "$SCRATCH/linked/probes.csv"
+cp "$beam" "$SCRATCH/beam.yaml"
+expect 1 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 1 --out "$SCRATCH/linked"
+complains 'will not be overwritten'
+cmp -s "$SCRATCH/beam.vtk" "$SOURCE/examples/beam.vtk" || fail "the mesh behind a link was lost"
+
+# A pipe in the place of a result.
+rm "$SCRATCH/linked/probes.csv"
+mkfifo "$SCRATCH/linked/probes.csv"
+expect 1 timeout 20 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 1 --out "$SCRATCH/linked"
+complains 'probes.csv: cannot be opened'
+
+# Many frames: the series is not written anew for each, but complete at the end.
+printf 'output: { every: 1.0e-9, fields: [] }\n' | cat "$beam" - >"$SCRATCH/beam.yaml"
+expect 0 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 2500 --out "$SCRATCH/many"
+[ "$(grep -c '<DataSet' "$SCRATCH/many/beam.pvd")" -eq 2501 ] || fail "frames missing in the series"
+rm -rf "$SCRATCH/many"
+
 # A limit on the size of files is a full disk, not a crash.
 (
     ulimit -f 1
