@@ -92,7 +92,7 @@ static void test_refusals(void **state) {
     refuses("missing.vtk", LAR_ERROR_IO, "missing.vtk: cannot be opened");
     refuses("empty.yaml", LAR_ERROR_FORMAT, "empty");
     refuses("model.stl", LAR_ERROR_ARGUMENT, "the extension \".stl\" is not known; give a scene");
-    refuses("noext", LAR_ERROR_ARGUMENT, "is not known");
+    refuses("noext", LAR_ERROR_ARGUMENT, "has no extension");
     refuses("lost.yaml", LAR_ERROR_IO, "lost.yaml:2:7: ");
     refuses("lost.yaml", LAR_ERROR_IO, "lost.vtu: cannot be opened");
     lar_model *model;
