@@ -23,6 +23,7 @@ typedef struct run_settings {
 typedef struct run {
     run_settings settings;
     lar_model *model;
+    lar_model_info info;
     lar_simulation *simulation;
     lar_results *results; /* NULL without --out */
     lar_step_clock clock;
@@ -103,16 +104,15 @@ static uint64_t next_stop(const run *r) {
 }
 
 static run_report report_of(const run *r) {
-    run_report report = {.scene = r->settings.scene,
-                         .element = cli_element_names[r->settings.element],
-                         .interrupted = stop_asked != 0,
-                         .folder = r->settings.out,
-                         .frames = r->frames,
-                         .simulation = r->simulation,
-                         .clock = &r->clock,
-                         .elapsed = r->elapsed};
-    lar_model_inspect(r->model, &report.info, NULL);
-    return report;
+    return (run_report){.scene = r->settings.scene,
+                        .element = cli_element_names[r->settings.element],
+                        .interrupted = stop_asked != 0,
+                        .folder = r->settings.out,
+                        .frames = r->frames,
+                        .simulation = r->simulation,
+                        .clock = &r->clock,
+                        .elapsed = r->elapsed,
+                        .info = r->info};
 }
 
 static int write_run_json(run *r, const run_report *report) {
@@ -212,7 +212,8 @@ static int prepare(run *r) {
     int status = cli_open_model(&cli_run, settings->scene, &r->model);
     lar_error error;
     if (status) return status;
-    if (lar_simulation_create(r->model, &options, &r->simulation, &error))
+    if (lar_model_inspect(r->model, &r->info, &error) ||
+        lar_simulation_create(r->model, &options, &r->simulation, &error))
         return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     status = choose_length(r);
     if (!status && settings->out &&

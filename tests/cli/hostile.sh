@@ -42,6 +42,15 @@ for c in 1.0e6 1.0e30 1.0e308; do
     complains 'use a damping below .* 1/s or a time_step below'
 done
 
+# A material whose frequency is no number, also for the elements that could do without it.
+sed 's/youngs_modulus: 1.0e5, poisson_ratio: 0.45/shear_modulus: 1e-10, bulk_modulus: 1e20/' "$beam" \
+    >"$SCRATCH/ratio.yaml"
+for element in hex8 hex8-full hex8-matrix; do
+    expect 1 "$LARIAT" run "$SCRATCH/ratio.yaml" --steps 10 --json --element $element
+    complains 'has no finite frequency'
+    silent
+done
+
 # Frames spare every mesh of the scene, not only its first.
 expect 0 "$LARIAT" run "$beam" --steps 1 --out "$SCRATCH/again"
 cp "$SCRATCH/again/beam_000000.vtu" "$SCRATCH/again/first.vtu"
