@@ -15,7 +15,7 @@
 #include "engine/measure.h"
 #include "engine/results_probe.h"
 #include "mechanics/law.h"
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 
 /* Stress and energy of the elements: in the order of the columns of `cell`. */
 enum { CELL_VON_MISES, CELL_PRESSURE, CELL_ENERGY, CELL_FIELDS };

@@ -2,8 +2,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "model/mesh_io.h"
-#include "model/scene.h"
+#include "model/format/mesh_io.h"
+#include "model/scene/scene.h"
 
 /* ---- scenes from files -------------------------------------------------------------------- */
 

@@ -2,7 +2,7 @@
  * elements in loose general blocks, 1,000 steps, on every instruction set of this machine. */
 #include "engine_test.h"
 
-#include "model/demo.h"
+#include "model/demo/demo.h"
 
 enum { STEPS = 1000 };
 

@@ -6,7 +6,7 @@
 #include "engine_test.h"
 
 #include "base/simd.h"
-#include "model/demo.h"
+#include "model/demo/demo.h"
 
 static const int line_left[4] = {0, 3, 4, 7}, line_right[4] = {1, 2, 5, 6};
 

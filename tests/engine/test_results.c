@@ -20,7 +20,7 @@
 #include "engine/results_probe.h"
 #include "mechanics/law.h"
 #include "model/brick.h"
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 
 #define FOLDER LAR_TEST_BUILD "/results"
 

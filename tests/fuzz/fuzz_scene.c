@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../model/brick.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

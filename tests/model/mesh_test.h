@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 
 typedef lar_status (*mesh_parser)(const char *path, const lar_bytes *bytes, lar_mesh *mesh,
                                   lar_error *error);

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "model/demo.h"
-#include "model/mesh_io.h"
+#include "model/demo/demo.h"
+#include "model/format/mesh_io.h"
 #include "model/model.h"
 
 static const char folder[] = LAR_TEST_BUILD "/demo_organ/inside";

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 #include "model/model.h"
 
 /* ---- decks made of pieces ---------------------------------------------------------------------

@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "brick.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 #define HEAD "lariat: 1\nmesh: brick.vtu\n"
 #define MATERIAL                                                                                   \

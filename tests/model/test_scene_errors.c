@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "brick.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 #define BASE                                                                                       \
     "lariat: 1\nmesh: brick.vtu\n"                                                                 \

@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 
 enum { SAMPLE_POINTS = 13, SAMPLE_CELLS = 3, SAMPLE_CORNERS = 20 };
 

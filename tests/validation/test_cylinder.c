@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "model/mesh_io.h"
+#include "model/format/mesh_io.h"
 #include "validation/reference.h"
 
 typedef double point[3];

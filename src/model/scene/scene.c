@@ -1,0 +1,132 @@
+#include "model/scene/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* contact and tools are known, so that the answer can be better than "unknown key". */
+static lar_status refuse_later_keys(const lar_scene *scene) {
+    static const char *const later[] = {"contact", "tools"};
+    for (const lar_yaml *entry = scene->root->first; entry; entry = entry->next)
+        for (int i = 0; i < 2; i++)
+            if (strcmp(entry->key->text, later[i]) == 0)
+                return lar_scene_fail(scene, entry->key, LAR_ERROR_UNSUPPORTED,
+                                      "contact and tools are not computed yet; remove the key "
+                                      "\"%s\"",
+                                      later[i]);
+    return LAR_OK;
+}
+
+static lar_status check_root(const lar_scene *scene) {
+    static const char *const keys[] = {
+        "lariat", "title", "mesh", "scale", "gravity", "time_step", "damping",  "materials",
+        "sets",   "fix",   "move", "load",  "initial", "output",    "duration", NULL};
+    const lar_yaml *version = NULL;
+    int64_t number;
+    if (scene->root->kind != LAR_YAML_MAPPING)
+        return lar_scene_fail(scene, scene->root, LAR_ERROR_FORMAT,
+                              "this is no scene: a scene is a list of lines \"key: value\" and "
+                              "begins with the line lariat: 1");
+    lar_status status =
+        lar_scene_need(scene, scene->root, "a scene", "lariat", "lariat: 1", &version);
+    if (status) return status;
+    if (!lar_scene_is_integer(version, &number) || number != 1) {
+        char shown[LAR_YAML_SHOWN];
+        return lar_scene_fail(scene, version, LAR_ERROR_UNSUPPORTED,
+                              "lariat: expected 1, the version of the scene format that this "
+                              "program reads, but found %s",
+                              lar_yaml_show(version, shown));
+    }
+    status = refuse_later_keys(scene);
+    return status ? status : lar_scene_keys(scene, scene->root, "a scene", keys);
+}
+
+static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
+    const char *const expected = "auto, or a number in seconds (SI units), for example 1.0e-4";
+    if (lar_scene_is_word(node, "auto")) return LAR_OK;
+    return lar_scene_positive(scene, node, expected, &scene->model->time_step);
+}
+
+static lar_status read_title(lar_scene *scene, const lar_yaml *node) {
+    const char *title = strrchr(scene->path, '/');
+    title = title ? title + 1 : scene->path;
+    lar_status status = node ? lar_scene_text(scene, node, "a text", &title) : LAR_OK;
+    if (status) return status;
+    scene->model->title = lar_strdup(title);
+    scene->model->source = lar_strdup(scene->path);
+    if (!scene->model->title || !scene->model->source)
+        return lar_scene_no_memory(scene, strlen(title) + 1);
+    return LAR_OK;
+}
+
+/* What needs no mesh, first: its mistakes should not wait for a large file. */
+static lar_status read_plain_values(lar_scene *scene, double *scale) {
+    lar_model *model = scene->model;
+    const lar_yaml *root = scene->root, *value;
+    *scale = 1.0;
+    lar_status status = read_title(scene, lar_yaml_get(root, "title"));
+    if (!status && (value = lar_yaml_get(root, "scale")))
+        status = lar_scene_positive(scene, value,
+                                    "a number, metres per unit of the mesh file, "
+                                    "for example 0.001 for millimetres",
+                                    scale);
+    if (!status && (value = lar_yaml_get(root, "gravity")))
+        status = lar_scene_vector(scene, value, LAR_IN_GRAVITY, model->gravity);
+    if (!status && (value = lar_yaml_get(root, "time_step"))) status = read_time_step(scene, value);
+    if (!status && (value = lar_yaml_get(root, "damping")))
+        status = lar_scene_not_negative(scene, value, "a number in 1/s, for example 2.0",
+                                        &model->damping);
+    if (!status && (value = lar_yaml_get(root, "duration")))
+        status = lar_scene_positive(scene, value, LAR_IN_SECONDS, &model->duration);
+    return status;
+}
+
+static lar_status read_root(lar_scene *scene) {
+    typedef lar_status part_reader(lar_scene * scene, const lar_yaml *node);
+    static const struct {
+        const char *key;
+        part_reader *read;
+    } part[] = {{"sets", lar_scene_read_sets},    {"materials", lar_scene_read_materials},
+                {"fix", lar_scene_read_fix},      {"move", lar_scene_read_move},
+                {"load", lar_scene_read_load},    {"initial", lar_scene_read_initial},
+                {"output", lar_scene_read_output}};
+    const lar_yaml *mesh = NULL, *materials;
+    double scale;
+    lar_status status = check_root(scene);
+    if (!status)
+        status = lar_scene_need(scene, scene->root, "a scene", "mesh", "mesh: organ.vtu", &mesh);
+    if (!status)
+        status = lar_scene_need(scene, scene->root, "a scene", "materials",
+                                "materials: [{cells: all, law: neo-hookean, density: 1050, "
+                                "shear_modulus: 4.0e3, bulk_modulus: 4.0e5}]",
+                                &materials);
+    if (!status) status = read_plain_values(scene, &scale);
+    if (!status) status = lar_scene_read_meshes(scene, mesh, scale);
+    for (size_t i = 0; !status && i < sizeof part / sizeof part[0]; i++) {
+        const lar_yaml *value = lar_yaml_get(scene->root, part[i].key);
+        if (value) status = part[i].read(scene, value);
+    }
+    return status ? status : lar_model_check(scene->model, scene->error);
+}
+
+lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
+                                lar_scene_mesh_reader *read_mesh, lar_model **model,
+                                lar_error *error) {
+    lar_error unused; /* the parts may rely on an error to write to */
+    lar_yaml_tree tree;
+    lar_status status = lar_yaml_parse(path, bytes, &tree, error);
+    if (status) return status;
+    lar_scene scene = {.path = path,
+                       .root = tree.root,
+                       .read_mesh = read_mesh,
+                       .model = lar_model_create(),
+                       .error = error ? error : &unused};
+    status = scene.model ? read_root(&scene) : lar_scene_no_memory(&scene, sizeof *scene.model);
+    lar_scene_sets_clear(&scene);
+    free(scene.axis_line);
+    lar_yaml_clear(&tree);
+    if (status)
+        lar_model_destroy(scene.model);
+    else
+        *model = scene.model;
+    return status;
+}

@@ -1,0 +1,142 @@
+/* The scene reader's own header: what its sources share. The format is docs/formats.md.
+ *
+ *     bytes --yaml_tree.c--> tree --scene.c--> lar_model
+ *                                     |
+ *           scene_mesh.c      mesh files, several put together
+ *           scene_sets.c      set names, ids, tags -> marks (one byte per node, element or face)
+ *           scene_select.c    selectors -> marks -> lists of indices
+ *           scene_material.c  materials
+ *           scene_motion.c    fix, move, load, initial, curves
+ *           scene_output.c    output, probes
+ *           scene_value.c     numbers, words, keys, and every message's "FILE:LINE:COLUMN: "
+ *
+ * Every function here returns the status of lar_scene_fail, which has written the sentence.
+ */
+#ifndef LAR_MODEL_SCENE_H
+#define LAR_MODEL_SCENE_H
+
+#include "model/id_map.h"
+#include "model/model.h"
+#include "model/scene/yaml_tree.h"
+
+/* Reads a mesh file; has the shape of lar_mesh_read, tests and fuzzing give another one. */
+typedef lar_status lar_scene_mesh_reader(const char *path, double scale, lar_mesh *mesh,
+                                         lar_error *error);
+
+/* lar_scene_parse with another source of meshes. */
+lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
+                                lar_scene_mesh_reader *read_mesh, lar_model **model,
+                                lar_error *error);
+
+typedef struct lar_scene {
+    const char *path;
+    const lar_yaml *root;
+    lar_scene_mesh_reader *read_mesh;
+    lar_model *model; /* growing */
+    lar_error *error;
+
+    /* Made when first asked for (scene_sets.c). */
+    lar_id_map node_ids, element_ids;
+    int32_t *boundary; /* faces, as lar_mesh_boundary gives them */
+    int32_t boundary_count;
+    double size; /* diagonal of the mesh's bounding box [m] */
+
+    int *axis_line; /* [nodes][3]: the line that fixes (< 0) or moves (> 0) it, 0 free */
+} lar_scene;
+
+/* ---- scene_value.c ------------------------------------------------------------------------ */
+
+/* "FILE:LINE:COLUMN: " of `at` and the sentence. */
+lar_status lar_scene_fail(const lar_scene *scene, const lar_yaml *at, lar_status status,
+                          const char *format, ...) __attribute__((format(printf, 4, 5)));
+lar_status lar_scene_no_memory(const lar_scene *scene, size_t bytes);
+
+/* "WHAT WORD is unknown; did you mean ...? ..." with the names that exist (`list` introduces
+ * them). */
+lar_status lar_scene_unknown(const lar_scene *scene, const lar_yaml *at, lar_status status,
+                             const char *what, const char *list, const char *const *names,
+                             int count);
+
+/* `node` is a mapping with no other keys than `keys` (ends with NULL). `what`: "a fix entry". */
+lar_status lar_scene_keys(const lar_scene *scene, const lar_yaml *node, const char *what,
+                          const char *const *keys);
+/* `node` is a list. `what` says of what. */
+lar_status lar_scene_list(const lar_scene *scene, const lar_yaml *node, const char *what);
+/* The value of a key that must be there; `example` says how to write it. */
+lar_status lar_scene_need(const lar_scene *scene, const lar_yaml *mapping, const char *what,
+                          const char *key, const char *example, const lar_yaml **value);
+
+/* What a number is, for messages. */
+#define LAR_IN_PASCAL   "a number in pascal (SI units), for example 4.0e3"
+#define LAR_IN_METRES   "a number in metres (SI units), for example 0.01"
+#define LAR_IN_SECONDS  "a number in seconds (SI units), for example 0.2"
+#define LAR_IN_DENSITY  "a number in kg/m^3 (SI units), for example 1050"
+#define LAR_IN_NEWTON   "three numbers in newton (SI units), for example [0, 0, -0.1]"
+#define LAR_IN_POSITION "three numbers in metres (SI units), for example [0, 0, 0.01]"
+#define LAR_IN_VELOCITY "three numbers in m/s (SI units), for example [0, 0, 0.5]"
+#define LAR_IN_GRAVITY  "three numbers in m/s^2 (SI units), for example [0, 0, -9.81]"
+
+/* A finite number that is written without quotes and unit. */
+lar_status lar_scene_number(const lar_scene *scene, const lar_yaml *node, const char *expected,
+                            double *value);
+/* The same, more than zero, or at least zero. */
+lar_status lar_scene_positive(const lar_scene *scene, const lar_yaml *node, const char *expected,
+                              double *value);
+lar_status lar_scene_not_negative(const lar_scene *scene, const lar_yaml *node,
+                                  const char *expected, double *value);
+lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const char *expected,
+                            double value[3]);
+lar_status lar_scene_integer(const lar_scene *scene, const lar_yaml *node, const char *expected,
+                             int64_t *value);
+/* True when the node is written like an integer. */
+bool lar_scene_is_integer(const lar_yaml *node, int64_t *value);
+/* A text that is not empty. */
+lar_status lar_scene_text(const lar_scene *scene, const lar_yaml *node, const char *expected,
+                          const char **value);
+bool lar_scene_is_word(const lar_yaml *node, const char *word);
+
+/* ---- scene_mesh.c ------------------------------------------------------------------------- */
+
+lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double scale);
+
+/* ---- scene_sets.c -------------------------------------------------------------------------- */
+
+/* Marks: one byte per node, per element, or per face (element * 6 + local face). The functions
+ * below set bytes to 1 and leave the others alone. */
+size_t lar_scene_mark_count(const lar_scene *scene, lar_set_kind kind);
+lar_status lar_scene_mark_set(lar_scene *scene, const lar_yaml *name, lar_set_kind kind,
+                              uint8_t *mark);
+lar_status lar_scene_mark_tag(lar_scene *scene, const lar_yaml *tag, lar_set_kind kind,
+                              uint8_t *mark);
+/* `id` is an integer as lar_scene_is_integer takes it; nodes and elements only. */
+lar_status lar_scene_mark_id(lar_scene *scene, const lar_yaml *id, lar_set_kind kind,
+                             uint8_t *mark);
+/* Everything on the boundary. */
+lar_status lar_scene_mark_surface(lar_scene *scene, lar_set_kind kind, uint8_t *mark);
+
+/* Fills scene->boundary. */
+lar_status lar_scene_need_boundary(lar_scene *scene);
+void lar_scene_sets_clear(lar_scene *scene);
+
+/* The key `sets`. */
+lar_status lar_scene_read_sets(lar_scene *scene, const lar_yaml *node);
+
+/* ---- scene_select.c ----------------------------------------------------------------------- */
+
+/* What `nodes:`, `faces:`, `elements:` and `cells:` take: "all", a set name, an integer, a
+ * selector mapping, or a list of those. Gives the indices, ascending; the caller frees them. An
+ * empty selection is an error. Integers are node ids, and tags where `tags` is true (cells). */
+lar_status lar_scene_select(lar_scene *scene, const lar_yaml *node, lar_set_kind kind, bool tags,
+                            int32_t **index, int32_t *count);
+lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_node_list *nodes);
+
+/* ---- scene_material.c, scene_motion.c, scene_output.c -------------------------------------- */
+
+lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_initial(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node);
+
+#endif

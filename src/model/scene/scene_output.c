@@ -1,0 +1,124 @@
+#include "model/scene/scene.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- fields ------------------------------------------------------------------------------- */
+
+static lar_status read_fields(lar_scene *scene, const lar_yaml *node) {
+    enum { FIELDS = 5 };
+    static const char *const names[FIELDS] = {"displacement", "velocity", "von_mises", "pressure",
+                                              "energy"};
+    static const unsigned bits[FIELDS] = {LAR_FIELD_DISPLACEMENT, LAR_FIELD_VELOCITY,
+                                          LAR_FIELD_VON_MISES, LAR_FIELD_PRESSURE,
+                                          LAR_FIELD_ENERGY};
+    lar_status status = lar_scene_list(scene, node, "fields");
+    if (status) return status;
+    unsigned fields = 0;
+    for (const lar_yaml *entry = node->first; entry; entry = entry->next) {
+        int i = 0;
+        while (i < FIELDS && !lar_scene_is_word(entry, names[i])) i++;
+        if (i == FIELDS)
+            return lar_scene_unknown(scene, entry, LAR_ERROR_FORMAT, "the field", "the fields are",
+                                     names, FIELDS);
+        fields |= bits[i];
+    }
+    scene->model->output.fields = fields;
+    return LAR_OK;
+}
+
+/* ---- probes ------------------------------------------------------------------------------- */
+
+/* The column's name: the one given, else from what is probed. */
+static lar_status name_probe(lar_scene *scene, const lar_yaml *entry, const lar_yaml *what,
+                             lar_probe *probe) {
+    const lar_yaml *given = lar_yaml_get(entry, "name");
+    const lar_probe *all = scene->model->output.probe;
+    int count = scene->model->output.probe_count;
+    const char *name;
+    char text[128];
+    lar_status status = given ? lar_scene_text(scene, given, "a name", &name) : LAR_OK;
+    if (status) return status;
+    if (given)
+        snprintf(text, sizeof text, "%s", name);
+    else if (what->kind == LAR_YAML_SCALAR)
+        snprintf(text, sizeof text, "%s%.100s%s",
+                 strcmp(what->key->text, "node") == 0 ? "node " : "", what->text,
+                 probe->what == LAR_PROBE_REACTION ? " reaction" : "");
+    else
+        snprintf(text, sizeof text, "probe %d", count);
+    for (int i = 0; i < count - 1; i++)
+        if (strcmp(all[i].name, text) == 0)
+            return lar_scene_fail(scene, given ? given : entry, LAR_ERROR_MODEL,
+                                  "two probes would be called \"%.60s\"; give this one another "
+                                  "name, for example name: tip",
+                                  text);
+    probe->name = lar_strdup(text);
+    return probe->name ? LAR_OK : lar_scene_no_memory(scene, sizeof text);
+}
+
+/* Nodes that nothing holds have no reaction: most likely the wrong set. */
+static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
+                                       const lar_probe *probe) {
+    for (int32_t n = 0; scene->axis_line && n < probe->nodes.count; n++)
+        for (int axis = 0; axis < 3; axis++)
+            if (scene->axis_line[3 * (size_t)probe->nodes.node[n] + (size_t)axis]) return LAR_OK;
+    return lar_model_notice(scene->model, scene->error,
+                            "%s:%d:%d: the probe \"%.60s\" sums reactions, but none of its nodes "
+                            "is fixed or moved: it will be zero",
+                            scene->path, entry->line, entry->column, probe->name);
+}
+
+static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
+    static const char *const keys[] = {"node", "nodes", "set", "sum", "name", NULL};
+    enum { MOST = 1000 };
+    lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
+    if (status) return status;
+    const lar_yaml *where = NULL, *sum = lar_yaml_get(entry, "sum");
+    for (int i = 0; i < 3; i++) {
+        const lar_yaml *found = lar_yaml_get(entry, keys[i]);
+        if (found && where)
+            return lar_scene_fail(scene, found->key, LAR_ERROR_FORMAT,
+                                  "a probe takes one of node, nodes and set; make two probes");
+        if (found) where = found;
+    }
+    if (!where)
+        return lar_scene_fail(scene, entry, LAR_ERROR_FORMAT,
+                              "a probe needs the key \"node\", \"nodes\" or \"set\"; add one, for "
+                              "example node: 12");
+    int64_t ignored;
+    if (strcmp(where->key->text, "node") == 0)
+        status = lar_scene_integer(scene, where, "the number of a node in the mesh file", &ignored);
+    if (!status && sum && !lar_scene_is_word(sum, "reaction"))
+        status = lar_scene_fail(scene, sum, LAR_ERROR_FORMAT,
+                                "sum: expected reaction, the sum of the forces of the supports; "
+                                "without sum a probe is the mean displacement");
+    if (!status && scene->model->output.probe_count >= MOST)
+        status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
+                                "there are more than %d probes; write the field displacement "
+                                "instead",
+                                MOST);
+    if (status) return status;
+    lar_probe *probe = LAR_MODEL_APPEND(scene->model, output.probe);
+    if (!probe) return lar_scene_no_memory(scene, sizeof *probe);
+    probe->what = sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
+    status = name_probe(scene, entry, where, probe);
+    if (!status) status = lar_scene_select_nodes(scene, where, &probe->nodes);
+    return status || !sum ? status : notice_free_reaction(scene, entry, probe);
+}
+
+lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {
+    static const char *const keys[] = {"every", "fields", "probes", NULL};
+    lar_output *output = &scene->model->output;
+    lar_status status = lar_scene_keys(scene, node, "output", keys);
+    const lar_yaml *every = lar_yaml_get(node, "every"), *fields = lar_yaml_get(node, "fields");
+    const lar_yaml *probes = lar_yaml_get(node, "probes");
+    if (!status && every)
+        status = lar_scene_not_negative(scene, every, LAR_IN_SECONDS, &output->every);
+    if (!status && fields) status = read_fields(scene, fields);
+    if (!status && probes) status = lar_scene_list(scene, probes, "probes, {node: 12}");
+    for (const lar_yaml *entry = probes ? probes->first : NULL; !status && entry;
+         entry = entry->next)
+        status = read_probe(scene, entry);
+    return status;
+}
