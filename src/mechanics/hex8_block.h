@@ -68,7 +68,7 @@ typedef struct lar_block_run {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
-    int turn; /* of boxes, 0..2; else 0 */
+    int turn;      /* of boxes, 0..2; else 0 */
     bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
     int32_t count;
     const void *blocks; /* lar_hex8_block or lar_box_block [count] */

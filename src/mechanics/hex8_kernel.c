@@ -101,8 +101,8 @@ LAR_INLINE void strain_box(const lar_box_block *block, int lane, int turn, lar_l
     UNROLL3 for (int m = 0; m < 3; m++) {
         int axis = turn + m < 3 ? turn + m : turn + m - 3;
         lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++)
-            F[3 * i + axis] = U[m][i] * B + lar_lane_set(i == axis ? 1 : 0);
+        UNROLL3 for (int i = 0; i < 3; i++) F[3 * i + axis] =
+            U[m][i] * B + lar_lane_set(i == axis ? 1 : 0);
     }
 }
 

@@ -6,9 +6,9 @@
 #define LAR_MODEL_CURVE_H
 
 typedef enum lar_curve_kind {
-    LAR_CURVE_RAMP,  /* 0 to 1 over `over` seconds, smooth (third-order smoothstep), then held;
-                        over == 0: 1 from the start */
-    LAR_CURVE_TABLE  /* through the points (time, value), held before and after */
+    LAR_CURVE_RAMP, /* 0 to 1 over `over` seconds, smooth (third-order smoothstep), then held;
+                       over == 0: 1 from the start */
+    LAR_CURVE_TABLE /* through the points (time, value), held before and after */
 } lar_curve_kind;
 
 typedef enum lar_curve_shape {

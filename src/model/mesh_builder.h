@@ -33,8 +33,8 @@ lar_status lar_mesh_builder_set_id(lar_mesh_builder *builder, int64_t id, int li
 lar_status lar_mesh_builder_set_face(lar_mesh_builder *builder, int64_t element_id, int face,
                                      int line, lar_error *error);
 /* or a face by its four corner node ids in any order (it must be a face of an element). */
-lar_status lar_mesh_builder_set_quad(lar_mesh_builder *builder, const int64_t node_ids[4],
-                                     int line, lar_error *error);
+lar_status lar_mesh_builder_set_quad(lar_mesh_builder *builder, const int64_t node_ids[4], int line,
+                                     lar_error *error);
 
 /* Moves everything into *mesh (zeroed before). A set of nodes of which some were dropped keeps
  * the others. */

@@ -49,7 +49,7 @@ typedef struct lar_vtu_frame {
 lar_status lar_vtu_write(const char *path, const lar_vtu_frame *frame, lar_error *error);
 
 /* Writes a .pvd collection of `count` frames: file names relative to it, and times. */
-lar_status lar_pvd_write(const char *path, const char *const *files, const double *times,
-                         int count, lar_error *error);
+lar_status lar_pvd_write(const char *path, const char *const *files, const double *times, int count,
+                         lar_error *error);
 
 #endif
