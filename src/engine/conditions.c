@@ -4,24 +4,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes of faces, counted before the lists are made. */
-static lar_status allocate(lar_conditions *c, size_t constraints, size_t forces, size_t pressures,
-                           lar_error *error) {
+/* Room for at most so many entries; the lists are still empty. */
+static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints, size_t forces,
+                           size_t pressures, lar_error *error) {
+    c->held = lar_calloc(nodes, sizeof *c->held);
     c->constraint = lar_calloc(constraints, sizeof *c->constraint);
     c->force = lar_calloc(forces, sizeof *c->force);
     c->pressure = lar_calloc(pressures, sizeof *c->pressure);
-    if (c->constraint && c->force && c->pressure) return LAR_OK;
+    if (c->held && c->constraint && c->force && c->pressure) return LAR_OK;
     lar_conditions_destroy(c);
-    return lar_fail_memory(error, constraints + forces + pressures, "supports and loads");
+    return lar_fail_memory(error,
+                           nodes + constraints * sizeof *c->constraint + forces * sizeof *c->force +
+                               pressures * sizeof *c->pressure,
+                           "supports and loads");
 }
 
+/* Sets overlap at edges and corners: what is held already is not held again, or its reaction would
+ * count twice. (Whatever is moved is held by nothing else: lar_model_check.) */
 static void add_constraints(lar_conditions *c, const int32_t *local, const lar_node_list *nodes,
                             unsigned axes, double by, int curve) {
-    for (int32_t i = 0; i < nodes->count; i++)
+    for (int32_t i = 0; i < nodes->count; i++) {
+        int32_t node = nodes->node[i];
+        unsigned fresh = axes & ~(unsigned)c->held[node];
         for (int axis = 0; axis < 3; axis++)
-            if (axes & (1u << axis))
-                c->constraint[c->constraint_count++] = (lar_constraint){
-                    .value = 4 * local[nodes->node[i]] + axis, .curve = curve, .by = by};
+            if (fresh & (1u << axis))
+                c->constraint[c->constraint_count++] =
+                    (lar_constraint){.value = 4 * local[node] + axis, .curve = curve, .by = by};
+        c->held[node] |= (uint8_t)fresh;
+    }
 }
 
 static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t *local,
@@ -45,7 +55,8 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local, l
         constraints += 3u * (size_t)model->move[i].nodes.count;
     for (int i = 0; i < model->load_count; i++) forces += (size_t)model->load[i].nodes.count;
     for (int i = 0; i < model->pressure_count; i++) pressures += (size_t)model->pressure[i].count;
-    lar_status status = allocate(c, constraints, forces, pressures, error);
+    size_t nodes = (size_t)model->mesh.node_count;
+    lar_status status = allocate(c, nodes, constraints, forces, pressures, error);
     if (status) return status;
 
     for (int i = 0; i < model->fix_count; i++)
@@ -73,6 +84,7 @@ void lar_conditions_destroy(lar_conditions *c) {
     free(c->constraint);
     free(c->force);
     free(c->pressure);
+    free(c->held);
     *c = (lar_conditions){0};
 }
 

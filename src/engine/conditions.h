@@ -46,6 +46,7 @@ typedef struct lar_conditions {
     lar_constraint *constraint;
     lar_point_force *force;
     lar_face_pressure *pressure;
+    uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint` */
     bool gravity_varies;
 } lar_conditions;
 
@@ -57,7 +58,7 @@ typedef struct lar_condition_context {
     const double *mass; /* by local node */
 } lar_condition_context;
 
-/* `local` maps global to local nodes. */
+/* `local` maps global to local nodes. An axis that several entries hold is held once. */
 lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  lar_conditions *conditions, lar_error *error);
 void lar_conditions_destroy(lar_conditions *conditions); /* idempotent */

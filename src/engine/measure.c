@@ -31,7 +31,7 @@ static double next_velocity(const lar_domain *domain, const lar_state *state, in
            domain->push[value / 4] * (double)state->force[value];
 }
 
-/* Half of the present step's share of kinetic, damping and constraint work for one value. */
+/* Kinetic energy of one value, and half of the present step's share of damping. */
 static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_t value,
                         double ahead, lar_energy *energy) {
     double mass = domain->mass[value / 4], behind = state->v[value];
@@ -40,15 +40,16 @@ static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_
         0.25 * domain->model->damping * domain->time_step * mass * behind * (behind + ahead);
 }
 
-static void add_constraint_work(const lar_domain *domain, const lar_state *state,
-                                const lar_constraint *constraint, double ahead,
-                                const double gravity[3], lar_energy *energy) {
-    double behind = state->v[constraint->value], dt = domain->time_step;
-    double reaction = domain->mass[constraint->value / 4] *
-                          ((ahead - behind) / dt + 0.5 * domain->model->damping * (ahead + behind) -
-                           gravity[constraint->value % 4]) +
-                      (double)state->force[constraint->value] / domain->scale;
-    energy->external += 0.5 * dt * reaction * behind;
+/* What a support exerts on a value: all that the rest of the equation of motion leaves open. */
+static double support_force(const lar_domain *domain, const lar_state *state,
+                            const lar_constraint *constraint, double ahead,
+                            const double gravity[3]) {
+    int32_t value = constraint->value;
+    double behind = state->v[value];
+    double inertia =
+        (ahead - behind) / domain->time_step + 0.5 * domain->model->damping * (ahead + behind);
+    return domain->mass[value / 4] * (inertia - gravity[value % 4]) +
+           (double)state->force[value] / domain->scale;
 }
 
 static double gravity_potential(const lar_domain *domain, const lar_state *state) {
@@ -59,22 +60,37 @@ static double gravity_potential(const lar_domain *domain, const lar_state *state
     return work;
 }
 
-/* Velocities half a step ahead, supports included; NULL without memory. */
-static double *velocities_ahead(const lar_domain *domain, const lar_state *state,
-                                const double gravity[3]) {
-    double *ahead = lar_calloc(4 * (size_t)domain->layout.node_padded, sizeof *ahead);
-    if (!ahead) return NULL;
-    for (int32_t n = 0; n < domain->layout.node_count; n++)
-        for (int i = 0; i < 3; i++)
-            ahead[4 * n + i] = next_velocity(domain, state, 4 * n + i, gravity);
+/* The velocity half a step ahead of a supported value. */
+static double supported_velocity(const lar_domain *domain, const lar_state *state,
+                                 const lar_constraint *constraint) {
     double time = lar_state_time(domain, state), dt = domain->time_step;
-    for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
-        const lar_constraint *c = &domain->conditions.constraint[i];
-        ahead[c->value] = (lar_constraint_value(domain->model, c, time + dt) -
-                           lar_constraint_value(domain->model, c, time)) /
-                          dt;
+    return (lar_constraint_value(domain->model, constraint, time + dt) -
+            lar_constraint_value(domain->model, constraint, time)) /
+           dt;
+}
+
+/* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
+static void add_motion(const lar_domain *domain, const lar_state *state, const double gravity[3],
+                       lar_energy *energy) {
+    const lar_conditions *conditions = &domain->conditions;
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            int32_t value = 4 * domain->layout.local[g] + i;
+            if (conditions->held[g] >> i & 1) continue;
+            add_kinetic(domain, state, value, next_velocity(domain, state, value, gravity), energy);
+        }
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        double ahead = supported_velocity(domain, state, c);
+        add_kinetic(domain, state, c->value, ahead, energy);
+        if (c->curve >= 0)
+            energy->external += 0.5 * domain->time_step * state->v[c->value] *
+                                support_force(domain, state, c, ahead, gravity);
     }
-    return ahead;
+}
+
+static void clear_forces(const lar_domain *domain, lar_state *state) {
+    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
 }
 
 void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
@@ -89,19 +105,8 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
                      .damping = 0.25 * domain->model->damping * domain->time_step * state->damped};
     energy->external += lar_conditions_half_work(&domain->conditions, &context, time, state);
     if (!domain->conditions.gravity_varies) energy->external += gravity_potential(domain, state);
-    double *ahead = velocities_ahead(domain, state, gravity);
-    if (ahead) {
-        for (int32_t n = 0; n < domain->layout.node_count; n++)
-            for (int i = 0; i < 3; i++)
-                add_kinetic(domain, state, 4 * n + i, ahead[4 * n + i], energy);
-        for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
-            const lar_constraint *c = &domain->conditions.constraint[i];
-            if (c->curve >= 0)
-                add_constraint_work(domain, state, c, ahead[c->value], gravity, energy);
-        }
-    }
-    free(ahead);
-    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
+    add_motion(domain, state, gravity, energy);
+    clear_forces(domain, state);
 
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
         double hourglass;
@@ -129,28 +134,25 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
     return lar_law_energy(material, F);
 }
 
-void lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
-                          double sum[3]) {
+lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
+                                double sum[3], lar_error *error) {
+    const lar_conditions *conditions = &domain->conditions;
+    size_t count = (size_t)domain->layout.node_padded;
+    bool *wanted = lar_calloc(count, sizeof *wanted);
+    if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
+    for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
     double gravity[3];
     lar_gravity_at(domain->model, lar_state_time(domain, state), gravity);
-    memset(sum, 0, 3 * sizeof *sum);
-    unsigned char *wanted = lar_calloc((size_t)domain->layout.node_padded, 1);
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);
-    double *ahead = velocities_ahead(domain, state, gravity);
-    if (wanted && ahead) {
-        for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = 1;
-        for (int32_t i = 0; i < domain->conditions.constraint_count; i++) {
-            int32_t value = domain->conditions.constraint[i].value;
-            if (!wanted[value / 4]) continue;
-            double behind = state->v[value];
-            double inertia = (ahead[value] - behind) / domain->time_step +
-                             0.5 * domain->model->damping * (ahead[value] + behind);
-            sum[value % 4] += domain->mass[value / 4] * (inertia - gravity[value % 4]) +
-                              (double)state->force[value] / domain->scale;
-        }
+    memset(sum, 0, 3 * sizeof *sum);
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        if (!wanted[c->value / 4]) continue;
+        double ahead = supported_velocity(domain, state, c);
+        sum[c->value % 4] += support_force(domain, state, c, ahead, gravity);
     }
-    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
+    clear_forces(domain, state);
     free(wanted);
-    free(ahead);
+    return LAR_OK;
 }

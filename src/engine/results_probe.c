@@ -54,19 +54,23 @@ static void mean_displacement(const lar_simulation *simulation, const lar_node_l
     }
 }
 
-static void print_values(FILE *line, lar_simulation *simulation) {
+static lar_status print_values(FILE *line, lar_simulation *simulation, lar_error *error) {
     const lar_output *output = &simulation->domain.model->output;
     fprintf(line, "%.10g", lar_simulation_time(simulation));
     for (int i = 0; i < output->probe_count; i++) {
         const lar_probe *probe = &output->probe[i];
         double value[3];
+        lar_status status = LAR_OK;
         if (probe->what == LAR_PROBE_REACTION)
-            lar_measure_reaction(&simulation->domain, &simulation->state, &probe->nodes, value);
+            status = lar_measure_reaction(&simulation->domain, &simulation->state, &probe->nodes,
+                                          value, error);
         else
             mean_displacement(simulation, &probe->nodes, value);
+        if (status) return status;
         fprintf(line, ",%.17g,%.17g,%.17g", value[0], value[1], value[2]);
     }
     fputc('\n', line);
+    return LAR_OK;
 }
 
 /* Appends a line, whole or not at all. */
@@ -98,12 +102,12 @@ static lar_status add_line(lar_probe_file *file, const lar_model *model, lar_sim
     if (line) {
         locale_t before = uselocale(c_locale);
         if (simulation)
-            print_values(line, simulation);
+            status = print_values(line, simulation, error);
         else
             print_header(line, model);
         uselocale(before);
         bool complete = !ferror(line);
-        if (fclose(line) != 0 || !complete)
+        if ((fclose(line) != 0 || !complete) && !status)
             status = lar_fail_memory(error, size, "a line of probes.csv");
     }
     if (c_locale) freelocale(c_locale);

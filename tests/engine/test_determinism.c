@@ -161,7 +161,7 @@ static void looking_does_not_change_the_run(void **unused) {
         lar_simulation_energy(simulation, &energy);
         lar_measure_stress(&simulation->domain, &simulation->state, i, stress);
         lar_measure_reaction(&simulation->domain, &simulation->state, &model->fix[0].nodes,
-                             reaction);
+                             reaction, NULL);
     }
     assert_true(lar_simulation_hash(simulation) == run(model, LAR_ISA_AUTO, STEPS, &name));
     finish(simulation, model);
