@@ -10,6 +10,17 @@ lar_options lar_options_default(void) {
     return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO};
 }
 
+/* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
+ * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
+static void set_initial_displacements(lar_simulation *simulation) {
+    const lar_conditions *conditions = &simulation->domain.conditions;
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        double value = lar_constraint_value(simulation->domain.model, c, 0);
+        if (value != 0) simulation->state.u[c->value] = value; /* never -0: it has other bits */
+    }
+}
+
 /* The velocities half a step BEFORE the start, such that those half a step before and after it
  * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
  * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
@@ -71,6 +82,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
         lar_simulation_destroy(made);
         return status;
     }
+    set_initial_displacements(made);
     set_initial_velocities(made);
     *simulation = made;
     return LAR_OK;

@@ -157,6 +157,28 @@ static void motion_is_imposed_exactly(void **unused) {
     finish(simulation, model);
 }
 
+/* A motion whose curve does not begin with 0 begins there: no work comes from nowhere. */
+static void a_motion_may_begin_displaced(void **unused) {
+    (void)unused;
+    brick b = soft_brick;
+    lar_model *model = brick_model(&b);
+    fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+    int curve = add_table(model, LAR_CURVE_LINEAR, 2, (const double[][2]){{0, 1}, {0.05, 2}});
+    move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_X, 2e-4, curve);
+    lar_simulation *simulation = start_step(model, 5e-5);
+    assert_true(node_u(simulation, brick_node(&b, 3, 1, 1))[0] == 2e-4);
+    double kept[2];
+    for (int end = 0; end < 2; end++) {
+        lar_energy e;
+        lar_simulation_energy(simulation, &e);
+        kept[end] = e.kinetic + e.strain + e.hourglass + e.damping - e.external;
+        if (end == 0) advance(simulation, 1000);
+    }
+    assert_true(kept[0] > 0);
+    assert_below(fabs(kept[1] / kept[0] - 1), 1e-3);
+    finish(simulation, model);
+}
+
 /* Nothing that is not part of the body may fall out of the range of the watch: without damping, for
  * longer than a free fall takes to become too fast. */
 static void a_heavy_body_swings_for_ever(void **unused) {
@@ -299,6 +321,7 @@ int main(void) {
         cmocka_unit_test(gravity_follows_its_curve),
         cmocka_unit_test(damping_slows_by_its_factor),
         cmocka_unit_test(motion_is_imposed_exactly),
+        cmocka_unit_test(a_motion_may_begin_displaced),
         cmocka_unit_test(a_heavy_body_swings_for_ever),
         cmocka_unit_test(reactions_carry_the_weight),
         cmocka_unit_test(a_closed_pressure_is_balanced),
