@@ -9,6 +9,11 @@
 #include "engine/row_plan.h"
 #include "engine/rows.h"
 
+/* Local nodes are addressed by 32-bit offsets, four values each, and faces by 32-bit numbers, six
+ * of an element. A line of five and more nodes may need a spare one before it, so a quarter of the
+ * nodes at most is added to those of the model. */
+enum { NODES_MOST = 1 << 28, ELEMENTS_MOST = INT32_MAX / 6 };
+
 /* Ways of looking for rows. The first serves models too large to try them all. */
 static const lar_row_habit habits[] = {{1, 0.3}, {0, 0.3}, {2, 0.3}, {1, 0.2}, {0, 0.2},
                                        {2, 0.2}, {1, 0.4}, {0, 0.4}, {2, 0.4}};
@@ -132,10 +137,16 @@ lar_status lar_layout_create(const lar_model *model, lar_layout *layout, lar_err
 
 lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style style,
                                     lar_layout *layout, lar_error *error) {
+    *layout = (lar_layout){0};
+    if (model->mesh.node_count > NODES_MOST || model->mesh.element_count > ELEMENTS_MOST)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s: %d nodes and %d elements are more than can be numbered (%d and %d); "
+                        "use a coarser mesh",
+                        model->source ? model->source : "model", (int)model->mesh.node_count,
+                        (int)model->mesh.element_count, NODES_MOST, ELEMENTS_MOST);
     size_t elements = (size_t)model->mesh.element_count;
     lar_gid *order = lar_calloc(elements, sizeof *order);
     int32_t *neighbour = NULL;
-    *layout = (lar_layout){0};
     lar_status status =
         order ? LAR_OK : lar_fail_memory(error, elements * sizeof *order, "the element order");
     if (!status) status = lar_order_elements(model, order, error);

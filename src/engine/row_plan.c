@@ -35,6 +35,17 @@ static bool line_is_numbered(const planner *plan, corners corner, int line) {
     return plan->draft->layout->local[corner[0][line_left[line]]] >= 0;
 }
 
+/* From here on no node has been met. Checks are counted, billions of them for a large model: before
+ * the count ends it begins anew. */
+static void begin_check(planner *plan) {
+    if (plan->stamp_now == INT32_MAX) {
+        size_t nodes = (size_t)plan->draft->model->mesh.node_count;
+        memset(plan->stamp, 0, nodes * sizeof *plan->stamp);
+        plan->stamp_now = 0;
+    }
+    plan->stamp_now++;
+}
+
 /* Longest part of the run from `from`, a multiple of four, whose lines can be consecutive: no node
  * has a number yet, or they are numbered one after the other. A run that closes on itself or
  * crosses itself must not give a node two numbers or an element two lanes. */
@@ -42,7 +53,7 @@ static int feasible_length(planner *plan, int from, int length) {
     corners corner = (corners)plan->run_corner + from;
     const lar_lid *local = plan->draft->layout->local;
     int fits = 0, most = length - from;
-    plan->stamp_now++;
+    begin_check(plan);
     for (int k = 0; k <= most; k++) {
         if (k < most && !plan->draft->open[plan->run[from + k]]) most = k;
         for (int line = 0; line < 4; line++) {
@@ -80,7 +91,7 @@ static bool number_line(planner *plan, int from, int length, int line) {
     corners corner = (corners)plan->run_corner + from;
     const int32_t *run = plan->run + from;
     lar_gid *before = plan->beyond[0], *behind = plan->beyond[1];
-    plan->stamp_now++;
+    begin_check(plan);
     for (int k = 0; k <= length; k++)
         plan->stamp[line_node(corner, length, line, k)] = plan->stamp_now;
     int ahead = nodes_beyond(plan, run[length - 1], corner[length - 1][line_left[line]],

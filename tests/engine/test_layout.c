@@ -472,6 +472,25 @@ static void the_organ_is_nearly_all_rows(void **unused) {
     }
 }
 
+/* Numbers that 32 bits could not hold are refused before anything is made of them. */
+static void too_many_to_number(void **unused) {
+    (void)unused;
+    lar_model *model = boxes(1, 1, 1, 0);
+    int32_t nodes = model->mesh.node_count, elements = model->mesh.element_count;
+    for (int over = 0; over < 2; over++) {
+        lar_layout layout;
+        lar_error error;
+        model->mesh.node_count = over ? nodes : (1 << 28) + 1;
+        model->mesh.element_count = over ? INT32_MAX / 6 + 1 : elements;
+        assert_int_equal(lar_layout_create(model, &layout, &error), LAR_ERROR_UNSUPPORTED);
+        assert_non_null(strstr(error.message, "use a coarser mesh"));
+        lar_layout_destroy(&layout);
+    }
+    model->mesh.node_count = nodes;
+    model->mesh.element_count = elements;
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bricks_of_all_sizes),
@@ -484,6 +503,7 @@ int main(void) {
         cmocka_unit_test(a_row_that_crosses_itself),
         cmocka_unit_test(a_fold_ends_a_row),
         cmocka_unit_test(the_organ_is_nearly_all_rows),
+        cmocka_unit_test(too_many_to_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
