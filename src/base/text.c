@@ -41,16 +41,18 @@ bool lar_text_line(lar_text *text, lar_span *line) {
 
 /* strtod in the C locale, whatever the program's locale is. */
 static double parse_double(const char *start, char **stop) {
-    static locale_t c_locale;
-    if (!c_locale) {
+    static locale_t shared; /* made by the first thread that is here */
+    locale_t known = __atomic_load_n(&shared, __ATOMIC_ACQUIRE);
+    if (!known) {
         locale_t fresh = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-        locale_t expected = (locale_t)0;
-        if (!__atomic_compare_exchange_n(&c_locale, &expected, fresh, false, __ATOMIC_ACQ_REL,
-                                         __ATOMIC_ACQUIRE) &&
-            fresh)
+        if (!fresh) return strtod(start, stop);
+        if (__atomic_compare_exchange_n(&shared, &known, fresh, false, __ATOMIC_ACQ_REL,
+                                        __ATOMIC_ACQUIRE))
+            known = fresh;
+        else
             freelocale(fresh);
     }
-    return strtod_l(start, stop, c_locale);
+    return strtod_l(start, stop, known);
 }
 
 bool lar_span_double(lar_span span, double *value) {
