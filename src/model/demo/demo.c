@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "base/folder.h"
 #include "model/format/mesh_io.h"
 
 /* The moduli are chosen for the explicit scheme: the stable step is that of a pressure wave across
@@ -66,35 +66,6 @@ static const char scene_text[] =
     "    - { name: ovary_left, set: ovary_left }\n"
     "    - { name: cervix_reaction, set: cervix, sum: reaction } # force of the supports\n";
 
-/* Makes a folder and those above it that are missing. */
-static lar_status make_folder(const char *folder, lar_error *error) {
-    char *path = lar_strdup(folder);
-    if (!path) return lar_fail_memory(error, strlen(folder) + 1, folder);
-    int cause = 0;
-    for (char *at = path; !cause && *at; ++at) {
-        const bool last = at[1] == 0;
-        if (!last && (at[1] != '/' || *at == '/')) continue;
-        const char kept = at[1];
-        at[1] = 0;
-        if (mkdir(path, 0777) != 0 && errno != EEXIST) cause = errno;
-        at[1] = kept;
-    }
-    struct stat found;
-    if (!cause && stat(folder, &found) == 0 && !S_ISDIR(found.st_mode)) cause = ENOTDIR;
-    free(path);
-    if (!cause) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot make this folder: %s; choose another one or check the permissions",
-                    folder, strerror(cause));
-}
-
-static char *join(const char *folder, const char *name) {
-    const size_t size = strlen(folder) + strlen(name) + 2;
-    char *path = lar_calloc(size, 1);
-    if (path) snprintf(path, size, "%s/%s", folder, name);
-    return path;
-}
-
 /* First under another name, so that a full disk leaves no half file. */
 static lar_status write_scene(const char *path, const char *part, lar_error *error) {
     FILE *file = fopen(part, "wb");
@@ -115,11 +86,12 @@ lar_status lar_demo_write(const char *folder, lar_error *error) {
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "no folder is given for the demonstration organ; name one, for example "
                         "demo");
-    lar_status status = make_folder(folder, error);
+    lar_status status = lar_folder_make(folder, error);
     if (status) return status;
     lar_mesh mesh = {0};
-    char *mesh_path = join(folder, "uterus.vtu"), *scene_path = join(folder, "uterus.yaml");
-    char *part_path = join(folder, "uterus.yaml.part");
+    char *mesh_path = lar_folder_join(folder, "uterus.vtu"),
+         *scene_path = lar_folder_join(folder, "uterus.yaml");
+    char *part_path = lar_folder_join(folder, "uterus.yaml.part");
     if (!mesh_path || !scene_path || !part_path)
         status = lar_fail_memory(error, strlen(folder), "a path");
     if (!status) status = lar_demo_mesh(&mesh, error);
