@@ -7,15 +7,11 @@
 
 #include "mechanics/hex8_full.h"
 
-static const lar_material *material_of(const lar_model *model, lar_gid e) {
-    return &model->material[model->element_material[e]];
-}
-
 /* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
 static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
                                 lar_hex8 *hex8) {
     double corner[8][3];
-    const lar_material *material = material_of(model, e);
+    const lar_material *material = lar_model_material_of(model, e);
     lar_mesh_corners(&model->mesh, e, corner);
     lar_hex8_prepare(corner, material, hex8);
     return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
@@ -37,8 +33,7 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
     if (!(fastest > 0) || !isfinite(fastest))
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: element %lld has no finite frequency; check its shape and material",
-                        model->source ? model->source : "model",
-                        (long long)model->mesh.element_id[*worst]);
+                        lar_model_source(model), (long long)model->mesh.element_id[*worst]);
     *step = 2 / fastest;
     return LAR_OK;
 }
@@ -61,12 +56,12 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     if (!(wanted > 0) || !isfinite(wanted))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: the time step must be a positive number of seconds, or auto",
-                        model->source ? model->source : "model");
+                        lar_model_source(model));
     if (wanted > domain->stable_step)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: time step %g s is above the stable step %.4g s (set by element "
                         "%lld); use time_step: auto, a smaller step, larger or softer elements",
-                        model->source ? model->source : "model", wanted, domain->stable_step,
+                        lar_model_source(model), wanted, domain->stable_step,
                         (long long)model->mesh.element_id[domain->stable_worst]);
     domain->time_step = wanted;
     return LAR_OK;
@@ -86,7 +81,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
                       lar_gid e, double *steepest) {
     lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_material *material = material_of(domain->model, e);
+    const lar_material *material = lar_model_material_of(domain->model, e);
     const lar_gid *node = domain->layout.corner[e];
     lar_block_head *head = memory;
     double corner[8][3];
@@ -171,7 +166,7 @@ static void choose_scale(lar_domain *domain) {
     double characteristic = DBL_MIN;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3];
-        const lar_material *material = material_of(model, e);
+        const lar_material *material = lar_model_material_of(model, e);
         lar_mesh_corners(&model->mesh, e, corner);
         double side = cbrt(lar_hexahedron_volume(corner));
         double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
@@ -192,7 +187,7 @@ static lar_status spread_mass(lar_domain *domain, lar_error *error) {
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3];
         lar_mesh_corners(&model->mesh, e, corner);
-        double share = material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
+        double share = lar_model_material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
         for (int a = 0; a < 8; a++)
             domain->mass[domain->layout.local[model->mesh.element[e][a]]] += share;
     }
@@ -245,7 +240,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
         status = lar_fail(error, LAR_ERROR_MODEL,
                           "%s: a nodal force of %g N is far beyond what this material can bear; "
                           "check its unit",
-                          model->source ? model->source : "model", largest);
+                          lar_model_source(model), largest);
     if (status) lar_domain_destroy(domain);
     return status;
 }

@@ -8,7 +8,7 @@ int lar_kind_index(lar_kind kind) {
 }
 
 lar_law lar_draft_law(const lar_draft *draft, lar_gid e) {
-    return draft->model->material[draft->model->element_material[e]].law;
+    return lar_model_material_of(draft->model, e)->law;
 }
 
 /* The turn of a box whose edges follow the axes to the bit, -1 for any other element. */

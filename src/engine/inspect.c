@@ -14,7 +14,7 @@ static void inspect_elements(const lar_model *model, lar_model_info *info) {
         lar_mesh_corners(&model->mesh, e, corner);
         double volume = lar_hexahedron_volume(corner), quality = lar_scaled_jacobian(corner);
         info->volume += volume;
-        info->mass += volume * model->material[model->element_material[e]].density;
+        info->mass += volume * lar_model_material_of(model, e)->density;
         info->scaled_jacobian_mean += quality / model->mesh.element_count;
         if (quality < info->scaled_jacobian_min) {
             info->scaled_jacobian_min = quality;

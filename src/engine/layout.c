@@ -142,7 +142,7 @@ lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style sty
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: %d nodes and %d elements are more than can be numbered (%d and %d); "
                         "use a coarser mesh",
-                        model->source ? model->source : "model", (int)model->mesh.node_count,
+                        lar_model_source(model), (int)model->mesh.node_count,
                         (int)model->mesh.element_count, NODES_MOST, ELEMENTS_MOST);
     size_t elements = (size_t)model->mesh.element_count;
     lar_gid *order = lar_calloc(elements, sizeof *order);

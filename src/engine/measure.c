@@ -5,10 +5,6 @@
 
 #include "mechanics/hex8_full.h"
 
-static const lar_material *material_of(const lar_domain *domain, lar_gid e) {
-    return &domain->model->material[domain->model->element_material[e]];
-}
-
 static double element_energy(const lar_domain *domain, const lar_state *state, lar_gid e,
                              double *hourglass) {
     double corner[8][3], u[8][3];
@@ -16,10 +12,10 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
     lar_domain_corners(domain, state->u, e, u);
     *hourglass = 0;
     if (domain->kind != LAR_ELEMENT_HEX8)
-        return lar_hex8_full_energy(corner, material_of(domain, e), u);
+        return lar_hex8_full_energy(corner, lar_model_material_of(domain->model, e), u);
     lar_hex8 hex8;
-    lar_hex8_prepare(corner, material_of(domain, e), &hex8);
-    return lar_hex8_energy(&hex8, material_of(domain, e), u, hourglass);
+    lar_hex8_prepare(corner, lar_model_material_of(domain->model, e), &hex8);
+    return lar_hex8_energy(&hex8, lar_model_material_of(domain->model, e), u, hourglass);
 }
 
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
@@ -118,7 +114,7 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]) {
     double corner[8][3], u[8][3];
-    const lar_material *material = material_of(domain, e);
+    const lar_material *material = lar_model_material_of(domain->model, e);
     lar_mesh_corners(&domain->model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
     if (domain->kind != LAR_ELEMENT_HEX8) {

@@ -48,7 +48,7 @@ lar_status lar_order_elements(const lar_model *model, lar_gid *order, lar_error 
     for (lar_gid e = 0; e < count; e++) {
         double center[3];
         center_of(mesh, e, center);
-        uint64_t key = (uint64_t)model->material[model->element_material[e]].law << 60;
+        uint64_t key = (uint64_t)lar_model_material_of(model, e)->law << 60;
         for (int i = 0; i < 3; i++)
             key |= spread_bits((uint64_t)(cells * (center[i] - lower[i]) / upper)) << i;
         rank[e] = (ranked){key, e};

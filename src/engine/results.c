@@ -43,7 +43,7 @@ struct lar_results {
 
 /* The model's file without folder and extension. */
 static char *series_name(const lar_model *model) {
-    const char *source = model->source && *model->source ? model->source : "model";
+    const char *source = lar_model_source(model);
     const char *slash = strrchr(source, '/');
     const char *base = slash ? slash + 1 : source;
     const char *dot = strrchr(base, '.');

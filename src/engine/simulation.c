@@ -58,7 +58,7 @@ static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
                     "a damping below %.3g 1/s or a time_step below %.3g s",
-                    model->source ? model->source : "model", model->damping, domain->time_step,
+                    lar_model_source(model), model->damping, domain->time_step,
                     2 / domain->time_step, 2 / model->damping);
 }
 

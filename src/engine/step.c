@@ -26,7 +26,7 @@ static void recover_slowly(const lar_domain *domain, lar_state *state, lar_trip 
     const lar_model *model = domain->model;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3], u[8][3], f[8][3];
-        const lar_material *material = &model->material[model->element_material[e]];
+        const lar_material *material = lar_model_material_of(model, e);
         lar_mesh_corners(&model->mesh, e, corner);
         lar_domain_corners(domain, state->u, e, u);
         double J = domain->kind == LAR_ELEMENT_HEX8_FULL

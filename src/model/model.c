@@ -104,10 +104,6 @@ double lar_model_duration(const lar_model *model) {
 
 /* ---- the check -------------------------------------------------------------------------- */
 
-static const char *source_of(const lar_model *model) {
-    return model->source ? model->source : "model";
-}
-
 static bool finite3(const double v[3]) {
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
@@ -117,7 +113,7 @@ static lar_status check_materials(const lar_model *model, lar_error *error) {
     for (int i = 0; i < model->material_count; i++) {
         char where[256];
         const char *name = model->material[i].name;
-        snprintf(where, sizeof where, "%s: material %d%s%s", source_of(model), i + 1,
+        snprintf(where, sizeof where, "%s: material %d%s%s", lar_model_source(model), i + 1,
                  name ? " " : "", name ? name : "");
         lar_status status = lar_material_check(&model->material[i], where, error);
         if (status) return status;
@@ -127,7 +123,7 @@ static lar_status check_materials(const lar_model *model, lar_error *error) {
             model->element_material[e] >= model->material_count)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: element %lld (tag %d) has no material; give one to every element",
-                            source_of(model), (long long)mesh->element_id[e],
+                            lar_model_source(model), (long long)mesh->element_id[e],
                             (int)mesh->element_tag[e]);
     return LAR_OK;
 }
@@ -144,7 +140,7 @@ static lar_status check_curves(const lar_model *model, lar_error *error) {
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: curve %d is no function of time; its times must be finite and "
                             "ascending and its values finite",
-                            source_of(model), i + 1);
+                            lar_model_source(model), i + 1);
     }
     return LAR_OK;
 }
@@ -152,13 +148,14 @@ static lar_status check_curves(const lar_model *model, lar_error *error) {
 static lar_status check_list(const lar_model *model, const char *what, int entry,
                              const int32_t *index, int32_t count, int64_t limit, lar_error *error) {
     if (count < 0 || (count > 0 && !index))
-        return lar_fail(error, LAR_ERROR_MODEL, "%s: %s entry %d has no list", source_of(model),
-                        what, entry + 1);
+        return lar_fail(error, LAR_ERROR_MODEL, "%s: %s entry %d has no list",
+                        lar_model_source(model), what, entry + 1);
     for (int32_t i = 0; i < count; i++)
         if (index[i] < 0 || index[i] >= limit)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: %s entry %d names index %d, but the mesh ends before %lld",
-                            source_of(model), what, entry + 1, (int)index[i], (long long)limit);
+                            lar_model_source(model), what, entry + 1, (int)index[i],
+                            (long long)limit);
     return LAR_OK;
 }
 
@@ -168,7 +165,7 @@ static lar_status check_entry(const lar_model *model, const char *what, int entr
                 : lar_fail(error, LAR_ERROR_MODEL,
                            "%s: %s entry %d is not valid; axes must name x, y or z, values must "
                            "be finite and its curve must exist",
-                           source_of(model), what, entry + 1);
+                           lar_model_source(model), what, entry + 1);
 }
 
 static bool curve_exists(const lar_model *model, int curve) {
@@ -251,8 +248,8 @@ static lar_status check_conflicts(const lar_model *model, lar_error *error) {
                 status = lar_fail(error, LAR_ERROR_MODEL,
                                   "%s: node %lld is moved by move entry %d and %s on the same "
                                   "axis; leave one of the two",
-                                  source_of(model), (long long)mesh->node_id[nodes->node[n]], i + 1,
-                                  *node & axes ? "fixed" : "moved by another entry");
+                                  lar_model_source(model), (long long)mesh->node_id[nodes->node[n]],
+                                  i + 1, *node & axes ? "fixed" : "moved by another entry");
             *node |= (uint8_t)(axes << 3);
         }
     }
@@ -275,14 +272,14 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
     if (!isfinite(model->output.every) || model->output.every < 0.0)
         wrong = "the output interval must be finite and not negative, in seconds";
     if (!wrong) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", source_of(model), wrong);
+    return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", lar_model_source(model), wrong);
 }
 
 lar_status lar_model_check(const lar_model *model, lar_error *error) {
     if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: the model has no elements; give it a mesh of hexahedra",
-                        source_of(model));
+                        lar_model_source(model));
     lar_status status = check_materials(model, error);
     if (!status) status = check_numbers(model, error);
     if (!status) status = check_curves(model, error);

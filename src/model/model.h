@@ -120,6 +120,16 @@ void *lar_model_append(void **array, int *count, size_t size);
 #define LAR_MODEL_APPEND(model, name)                                                              \
     lar_model_append((void **)&(model)->name, &(model)->name##_count, sizeof *(model)->name)
 
+/* How messages name the model: its file, or "model". */
+static inline const char *lar_model_source(const lar_model *model) {
+    return model->source && *model->source ? model->source : "model";
+}
+
+/* The material of element e. */
+static inline const lar_material *lar_model_material_of(const lar_model *model, lar_gid e) {
+    return &model->material[model->element_material[e]];
+}
+
 /* Adds a notice (printf-style). */
 lar_status lar_model_notice(lar_model *model, lar_error *error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
