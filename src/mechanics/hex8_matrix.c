@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "mechanics/hex8_full.h"
 #include "mechanics/hexahedron.h"
 
 enum { FREEDOMS = 24, STRAINS = 6 };
@@ -144,18 +143,4 @@ double lar_hex8_matrix_force(const double corner[8][3], const lar_material *mate
         force[n / 3][n % 3] = sum;
     }
     return least;
-}
-
-double lar_hex8_matrix_energy(const double corner[8][3], const lar_material *material,
-                              const double u[8][3]) {
-    return lar_hex8_full_energy(corner, material, u);
-}
-
-void lar_hex8_matrix_stress(const double corner[8][3], const lar_material *material,
-                            const double u[8][3], double cauchy[6]) {
-    lar_hex8_full_stress(corner, material, u, cauchy);
-}
-
-double lar_hex8_matrix_frequency(const double corner[8][3], const lar_material *material) {
-    return lar_hex8_full_frequency(corner, material);
 }

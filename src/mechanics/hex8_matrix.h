@@ -24,8 +24,8 @@
  *     C_s = C_0 + (S - C_0 E) E^T / (E . E)      (C_0 alone where E is below 1e-12).
  *
  * The forces are those of hex8-full by another road, so each tests the other; energy, stress and
- * frequency are the same integrals and are taken from there. More than four times the operations:
- * never for a real run.
+ * frequency are the same integrals: hex8_full.h has them for both. More than four times the
+ * operations: never for a real run.
  */
 #ifndef LAR_MECHANICS_HEX8_MATRIX_H
 #define LAR_MECHANICS_HEX8_MATRIX_H
@@ -41,12 +41,5 @@ double lar_hex8_matrix_build(const double corner[8][3], const lar_material *mate
  * nothing unless it is positive. */
 double lar_hex8_matrix_force(const double corner[8][3], const lar_material *material,
                              const double u[8][3], double force[8][3]);
-
-/* As in hex8_full.h. */
-double lar_hex8_matrix_energy(const double corner[8][3], const lar_material *material,
-                              const double u[8][3]);
-void lar_hex8_matrix_stress(const double corner[8][3], const lar_material *material,
-                            const double u[8][3], double cauchy[6]);
-double lar_hex8_matrix_frequency(const double corner[8][3], const lar_material *material);
 
 #endif
