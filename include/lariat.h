@@ -18,6 +18,10 @@
  * order of the mesh file. Every call that can fail returns a lar_status (LAR_OK is 0) and writes
  * one sentence to *error, which may be NULL; outputs are set on success only. Destroy functions
  * accept NULL. The library never exits, and prints nothing.
+ *
+ * Threads. A model may be used by any number of threads at once. A simulation, and the results that
+ * are written from it, belong to one thread at a time: also calls that take a const simulation may
+ * use scratch memory inside it, though never change what another call returns.
  */
 #ifndef LARIAT_H
 #define LARIAT_H
@@ -77,9 +81,9 @@ typedef struct lar_model_info {
     double shortest_edge;      /* [m] */
     double scaled_jacobian_min, scaled_jacobian_mean; /* -1..1, a cube has 1 */
     int32_t scaled_jacobian_worst;                    /* element index */
-    double stable_step;   /* largest time step that the elements allow, without safety [s] */
+    double stable_step;   /* largest that LAR_ELEMENT_HEX8 allows at rest, without safety [s] */
     int32_t stable_worst; /* the element that asks for it */
-    double time_step;     /* the step that a simulation will use [s] */
+    double time_step;     /* what lar_options_default() will take [s] */
 } lar_model_info;
 
 LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
@@ -129,8 +133,8 @@ typedef struct lar_simulation lar_simulation;
 
 typedef enum lar_element_kind {
     LAR_ELEMENT_HEX8 = 0,   /* uniform strain with total hourglass control: the fast one */
-    LAR_ELEMENT_HEX8_FULL,  /* eight Gauss points: the oracle (T 4.2.2) */
-    LAR_ELEMENT_HEX8_MATRIX /* element matrices built every step (T 4.2.1) */
+    LAR_ELEMENT_HEX8_FULL,  /* eight Gauss points: the oracle */
+    LAR_ELEMENT_HEX8_MATRIX /* element matrices built every step */
 } lar_element_kind;
 
 typedef enum lar_isa {
@@ -156,8 +160,9 @@ LAR_API lar_status lar_simulation_create(const lar_model *model, const lar_optio
 LAR_API void lar_simulation_destroy(lar_simulation *simulation);
 
 /* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element or node, place,
- * time and cause; the state is then the one after the failing step: finite and fit for a picture,
- * but not for going on, and further calls fail with the same message. */
+ * time and cause; the state is then the one after the failing step: nearly always finite and fit
+ * for a picture (lar_results_add refuses it where it is not), but not for going on, and further
+ * calls fail with the same message. */
 LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
                                           lar_error *error);
 
@@ -186,13 +191,14 @@ LAR_API void lar_simulation_energy(const lar_simulation *simulation, lar_energy 
 
 typedef struct lar_results lar_results;
 
-/* Opens a folder for results (made when missing): frames as .vtu with one .pvd, and probes.csv,
- * as the model's `output` asks. Frames appear whole or not at all. */
+/* Opens a folder for results of this simulation's model (made when missing): frames as .vtu with
+ * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
-/* Adds the present state as a frame. */
+/* Adds the present state as a frame. LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
                                    lar_error *error);
+/* Completes the series and frees the results, also on failure. NULL is fine. */
 LAR_API lar_status lar_results_close(lar_results *results, lar_error *error);
 
 /* Seconds of simulated time between frames that the model asks for; 0 when it does not say. */
