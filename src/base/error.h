@@ -15,7 +15,7 @@
 
 #include "lariat.h"
 
-/* Writes the message (printf-style, cut to size, never NULL-terminated late) into *error,
+/* Writes the message (printf-style, cut to size, always terminated) into *error,
  * which may be NULL, and returns `status` for `return lar_fail(...)`. */
 lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -72,8 +72,10 @@ static int kernel_main(int argc, char **argv) {
         CLI_END};
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
-    lar_bench_kernel_options wanted = {
-        .elements = (int32_t)elements, .general = shape == 0, .isa = (lar_isa)isa, (int)repeat};
+    lar_bench_kernel_options wanted = {.elements = (int32_t)elements,
+                                       .general = shape == 0,
+                                       .isa = (lar_isa)isa,
+                                       .repeat = (int)repeat};
     lar_bench_kernel_result result;
     lar_error error;
     if (lar_bench_kernel(&wanted, &result, &error))

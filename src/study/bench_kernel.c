@@ -137,7 +137,7 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Seconds that `steps` steps take, negative when the run failed. */
+/* Seconds that `steps` steps take; they mean nothing when *status is not LAR_OK. */
 static double time_steps(lar_simulation *simulation, uint64_t steps, lar_status *status,
                          lar_error *error) {
     double begin = seconds();
@@ -163,13 +163,14 @@ static lar_status calibrate(lar_simulation *simulation, const lar_fma_peak *peak
         took = time_steps(simulation, *steps, &status, error);
         if (took > 0.25 * wanted) break;
     }
+    if (status) return status;
     *steps = (uint64_t)fmax(1, (double)*steps * wanted / took);
     for (*rounds = 256;; *rounds *= 2) {
         took = time_peak(peak, *rounds);
         if (took > 0.25 * wanted) break;
     }
     *rounds = (uint64_t)fmax(1, (double)*rounds * wanted / took);
-    return status;
+    return LAR_OK;
 }
 
 static int compare(const void *a, const void *b) {
