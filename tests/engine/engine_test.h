@@ -6,29 +6,10 @@
 #ifndef LAR_TESTS_ENGINE_TEST_H
 #define LAR_TESTS_ENGINE_TEST_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/measure.h"
 #include "engine/simulation.h"
 #include "model/model.h"
-
-#define TEST_UNUSED __attribute__((unused))
-
-#define assert_below(value, bound)                                                                 \
-    do {                                                                                           \
-        double value_ = (value), bound_ = (bound);                                                 \
-        if (!(value_ <= bound_)) fail_msg("%s is %.6g, more than %.6g", #value, value_, bound_);   \
-    } while (0)
+#include "testing.h"
 
 /* Pseudo-random in [-1, 1), the same everywhere. */
 TEST_UNUSED static double noise(uint32_t n) {

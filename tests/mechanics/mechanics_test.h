@@ -7,28 +7,9 @@
 #ifndef LAR_TESTS_MECHANICS_TEST_H
 #define LAR_TESTS_MECHANICS_TEST_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "mechanics/law.h"
 #include "model/mesh.h"
-
-#define TEST_UNUSED __attribute__((unused))
-
-#define assert_below(value, bound)                                                                 \
-    do {                                                                                           \
-        double value_ = (value), bound_ = (bound);                                                 \
-        if (!(value_ <= bound_)) fail_msg("%s is %.6g, more than %.6g", #value, value_, bound_);   \
-    } while (0)
+#include "testing.h"
 
 typedef const double (*rows)[3]; /* what functions that take const double [][3] get */
 
