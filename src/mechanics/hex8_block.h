@@ -16,9 +16,9 @@
  *   boxes    edges along the axes: of the 18 modal gradients three are not zero, and the hourglass
  *            shapes vanish (112 bytes per element instead of 328).
  *
- * Forces are 64-bit integers in units of 2^-scale newton (DESIGN 5). The modal forces are rounded,
- * once each, and the transform back to the nodes is integer arithmetic: the forces of an element
- * add up to exactly zero, whatever the rounding.
+ * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
+ * modal forces are rounded, once each, and the transform back to the nodes is integer arithmetic:
+ * the forces of an element add up to exactly zero, whatever the rounding.
  *
  * The kernels are the same source, hex8_kernel.c, compiled once per instruction set.
  */
@@ -106,7 +106,6 @@ typedef bool (*lar_node_update)(const lar_motion *motion, int32_t first, int32_t
 
 /* The kernels of one instruction set. */
 typedef struct lar_kernels {
-    lar_isa isa;
     const char *name; /* as in LARIAT_ISA */
     bool (*available)(void);
     lar_hex8_recover recover;

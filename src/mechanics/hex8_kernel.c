@@ -361,22 +361,18 @@ static bool update(const lar_motion *motion, int32_t first, int32_t end, double 
 #if LAR_SIMD == LAR_SIMD_AVX512
 #define LAR_KERNELS_NAME   lar_kernels_avx512
 #define LAR_KERNELS_TEXT   "avx512"
-#define LAR_KERNELS_ISA    LAR_ISA_AVX512
 #define LAR_KERNELS_USABLE __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")
 #elif LAR_SIMD == LAR_SIMD_AVX2
 #define LAR_KERNELS_NAME   lar_kernels_avx2
 #define LAR_KERNELS_TEXT   "avx2"
-#define LAR_KERNELS_ISA    LAR_ISA_AVX2
 #define LAR_KERNELS_USABLE __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
 #elif LAR_SIMD == LAR_SIMD_NEON
 #define LAR_KERNELS_NAME   lar_kernels_neon
 #define LAR_KERNELS_TEXT   "neon"
-#define LAR_KERNELS_ISA    LAR_ISA_NEON
 #define LAR_KERNELS_USABLE true
 #else
 #define LAR_KERNELS_NAME   lar_kernels_c
 #define LAR_KERNELS_TEXT   "c"
-#define LAR_KERNELS_ISA    LAR_ISA_C
 #define LAR_KERNELS_USABLE true
 #endif
 
@@ -386,7 +382,6 @@ static bool available(void) {
 
 extern const lar_kernels LAR_KERNELS_NAME;
 const lar_kernels LAR_KERNELS_NAME = {
-    .isa = LAR_KERNELS_ISA,
     .name = LAR_KERNELS_TEXT,
     .available = available,
     .recover = recover,
