@@ -67,7 +67,7 @@ lar_status lar_bytes_read(const char *path, lar_bytes *out, lar_error *error) {
     }
     if (info.st_size == 0) {
         fclose(file);
-        return lar_fail(error, LAR_ERROR_FORMAT, "%s: the file is empty", path);
+        return lar_fail(error, LAR_ERROR_FORMAT, "%s: the file is empty; write it again", path);
     }
     size_t size = (size_t)info.st_size;
     unsigned char *data = malloc(size + 1);
@@ -80,8 +80,10 @@ lar_status lar_bytes_read(const char *path, lar_bytes *out, lar_error *error) {
     fclose(file);
     if (failed || got != size) {
         free(data);
-        return lar_fail(error, LAR_ERROR_IO, "%s: could be read only up to byte %zu of %zu", path,
-                        got, size);
+        return lar_fail(error, LAR_ERROR_IO,
+                        "%s: could be read only up to byte %zu of %zu; copy it to a disk that can "
+                        "be read and try again",
+                        path, got, size);
     }
     data[size] = 0;
     out->data = data;

@@ -61,6 +61,7 @@ lar_status lar_kernels_find(lar_isa isa, const lar_kernels **kernels, lar_error 
             }
     }
     if ((unsigned)isa >= sizeof names / sizeof names[0])
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_isa %d does not exist", (int)isa);
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_isa %d does not exist; use LAR_ISA_AUTO",
+                        (int)isa);
     return find_by_name(names[isa], kernels, error);
 }
