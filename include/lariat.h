@@ -86,6 +86,7 @@ typedef struct lar_model_info {
     double time_step;     /* what lar_options_default() will take [s] */
 } lar_model_info;
 
+/* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */
 LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
                                      lar_error *error);
 
@@ -114,6 +115,8 @@ typedef struct lar_set_info {
 /* Material `index` of lar_model_info.materials; LAR_ERROR_ARGUMENT beyond. */
 LAR_API lar_status lar_model_material(const lar_model *model, int32_t index,
                                       lar_material_info *info, lar_error *error);
+
+/* The named sets, as lar_material_info for materials: set `index` of the count. */
 LAR_API int32_t lar_model_set_count(const lar_model *model);
 LAR_API lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *info,
                                  lar_error *error);
@@ -151,6 +154,7 @@ typedef struct lar_options {
     double time_step; /* seconds; 0 takes the model's */
 } lar_options;
 
+/* hex8, the widest instruction set, the model's time step. Start from these: options may grow. */
 LAR_API lar_options lar_options_default(void);
 
 /* Compiles the model for this processor and sets the state to rest. `options` may be NULL. The
@@ -185,6 +189,8 @@ LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 typedef struct lar_energy {
     double kinetic, strain, hourglass, external, damping;
 } lar_energy;
+
+/* Goes through all nodes and elements: as long as many steps. Asks for no memory. */
 LAR_API void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy);
 
 /* ---- results on disk -------------------------------------------------------------------- */

@@ -5,6 +5,9 @@
  * Prescribed values are computed from the model's curves at the new time, the same on every
  * processor that has the node.
  *
+ * What the lists note within a step (forces, velocities before) means nothing between steps: it is
+ * no state.
+ *
  * Work. In the leapfrog scheme a force F_n held from v- to v+ does exactly the work
  * dt F_n (v- + v+)/2 on the half-step kinetic energy; the sums here use that, so the energy
  * balance has no error of first order in dt.

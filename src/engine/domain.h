@@ -5,7 +5,8 @@
  *     nodes 0..N-1                    ---->     local nodes, those of a row one after the other,
  *                                               and spare ones for even beginnings and empty lanes
  *
- * Constant once compiled; the state (engine/state.h) is separate. The element kinds that are not
+ * Constant once compiled, but for the scratch that the conditions need within one step; the state
+ * (engine/state.h) is separate. The element kinds that are not
  * hex8 keep their elements in the plain list `element` and go the slow way.
  */
 #ifndef LAR_ENGINE_DOMAIN_H

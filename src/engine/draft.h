@@ -20,9 +20,10 @@ typedef struct lar_kind {
 
 enum { LAR_KINDS = LAR_LAW_COUNT * 4 }; /* general, boxes in 3 turns */
 
-/* 0..LAR_KINDS-1 */
+/* A number for a kind, 0..LAR_KINDS-1. */
 int lar_kind_index(lar_kind kind);
 
+/* The law of an element's material. */
 lar_law lar_draft_law(const lar_draft *draft, lar_gid e);
 
 /* The kind of `count` elements of one law that will share a row; corner[k]: turned nodes. */

@@ -49,6 +49,9 @@ typedef enum lar_layout_style {
     LAR_LAYOUT_LOOSE /* the same turned elements, but in loose general blocks: for comparison */
 } lar_layout_style;
 
+/* Lays out a whole model; the caller destroys the layout. Fails for want of memory, and for models
+ * whose nodes or elements 32-bit offsets cannot number. The mesh must have passed lar_mesh_check.
+ * The second takes rows apart again on request. */
 lar_status lar_layout_create(const lar_model *model, lar_layout *layout, lar_error *error);
 lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style style,
                                     lar_layout *layout, lar_error *error);

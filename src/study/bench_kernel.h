@@ -46,6 +46,8 @@ typedef struct lar_bench_kernel_result {
     double scaled_jacobian_min;
 } lar_bench_kernel_result;
 
+/* Makes the block, runs and measures it on the calling thread, for some tenths of a second. Fails
+ * for options out of range, for want of memory, and for an instruction set that is not there. */
 lar_status lar_bench_kernel(const lar_bench_kernel_options *options,
                             lar_bench_kernel_result *result, lar_error *error);
 
