@@ -7,7 +7,9 @@ has_keys shape precision isa --numbers ns_per_element elements peak_gflops fract
     bytes_per_element scaled_jacobian_min ns_per_element_spread.min ns_per_element_spread.max \
     peak_gflops_spread.median samples steps_per_sample
 [ "$(value_of elements)$(value_of shape)" = '1840"general"' ] || fail "not 1840 general elements"
-value_of fraction_of_peak | awk '{ exit !($1 > 0 && $1 < 1.5) }' || fail "impossible share"
+# Steps and peak are timed in turns: what else runs on the machine may slow only the one, to several
+# times its share. A wrong unit would show as a factor of a thousand.
+value_of fraction_of_peak | awk '{ exit !($1 > 0.01 && $1 < 10) }' || fail "impossible share"
 value_of scaled_jacobian_min | awk '{ exit !($1 > 0.3 && $1 < 0.999) }' || fail "shapes"
 
 expect 0 "$LARIAT" bench kernel --elements 27 --shape box --isa c --repeat 1 --json
