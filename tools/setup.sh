@@ -5,7 +5,7 @@
 #   tools/setup.sh [build] [check] [fuzz]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
-#   check   what widens the tests: a second compiler, the cross compiler and emulator for NEON
+#   check   what widens the tests: a second compiler, METIS, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #
 # What belongs to `check` and `fuzz` is optional: without it the tests that need it are left out,
@@ -25,6 +25,8 @@ zlib1g-dev        m:zlib
 libcmocka-dev     m:cmocka"
 CLANG_PACKAGES="
 clang             c:clang"
+METIS_PACKAGES="
+libmetis-dev      -"
 NEON_PACKAGES="
 gcc-aarch64-linux-gnu  c:aarch64-linux-gnu-gcc
 qemu-user              c:qemu-aarch64
@@ -134,6 +136,7 @@ for group in "$@"; do
     build) need "$BUILD_PACKAGES" ;;
     check)
         want_clang "the sanitizers run with gcc instead of clang"
+        want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         ;;
     fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;

@@ -1,0 +1,127 @@
+#include "divide/traffic.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const lar_scheme_name[LAR_SCHEMES] = {"all", "local", "one", "two"};
+
+/* ---- messages of one node --------------------------------------------------------------- */
+
+typedef struct route {
+    const lar_grid *grid;
+    const int32_t *set;
+    int32_t count;
+    lar_message_visit *visit;
+    void *context;
+} route;
+
+static void send(const route *r, int32_t from, int32_t to, int stage, int what) {
+    const lar_message message = {from, to, stage, what};
+    r->visit(r->context, &message);
+}
+
+static void all_to_all(const route *r) {
+    for (int32_t i = 0; i < r->count; i++)
+        for (int32_t j = 0; j < r->count; j++)
+            if (i != j) send(r, r->set[i], r->set[j], 0, LAR_CARRIES_OWN);
+}
+
+/* Every processor exchanges with its partner across each axis that the box spans, one axis after
+ * the other. In `fixed` order x, y, z are stages 0, 1, 2 for all nodes, so that one packet per
+ * neighbour carries everything; otherwise a node begins at once. */
+static void along_axes(const route *r, int direction, bool fixed) {
+    int stage = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!(direction & 1 << axis)) continue;
+        for (int32_t i = 0; i < r->count; i++)
+            for (int32_t j = 0; j < r->count; j++)
+                if (lar_grid_neighbours_along(r->grid, axis, r->set[i], r->set[j]))
+                    send(r, r->set[i], r->set[j], fixed ? axis : stage, LAR_CARRIES_SUM);
+        stage++;
+    }
+}
+
+/* The lowest corner of a box has the smallest number, the highest the greatest. */
+static void through_one(const route *r) {
+    for (int32_t i = 1; i < r->count; i++) {
+        send(r, r->set[i], r->set[0], 0, LAR_CARRIES_OWN);
+        send(r, r->set[0], r->set[i], 1, LAR_CARRIES_ALL);
+    }
+}
+
+static void through_two(const route *r) {
+    int32_t low = r->set[0], high = r->set[r->count - 1];
+    send(r, low, high, 0, LAR_CARRIES_OWN);
+    send(r, high, low, 0, LAR_CARRIES_OWN);
+    for (int32_t i = 1; i < r->count - 1; i++) {
+        int32_t p = r->set[i];
+        send(r, p, low, 0, LAR_CARRIES_OWN);
+        send(r, p, high, 0, LAR_CARRIES_OWN);
+        send(r, lar_grid_neighbours(r->grid, p, low) ? low : high, p, 1, LAR_CARRIES_ALL);
+    }
+}
+
+void lar_scheme_messages(lar_scheme scheme, const lar_grid *grid, const int32_t *set, int32_t count,
+                         lar_message_visit *visit, void *context) {
+    const route r = {grid, set, count, visit, context};
+    if (count < 2) return;
+    int direction = lar_node_direction(grid, set, count);
+    if (scheme == LAR_SCHEME_ALL || lar_node_scattered(grid, set, count))
+        all_to_all(&r);
+    else if (scheme == LAR_SCHEME_LOCAL)
+        along_axes(&r, direction, true);
+    else if (count == 2)
+        all_to_all(&r);
+    else if (scheme == LAR_SCHEME_ONE)
+        through_one(&r);
+    else if (direction == 7)
+        through_two(&r);
+    else
+        along_axes(&r, direction, false);
+}
+
+/* ---- counts ----------------------------------------------------------------------------- */
+
+typedef struct meter {
+    const lar_grid *grid;
+    lar_traffic *traffic;
+    int64_t *packet; /* [processors][processors][LAR_STAGES] vectors */
+} meter;
+
+static void count_message(void *context, const lar_message *message) {
+    meter *m = context;
+    lar_traffic *t = &m->traffic[message->from];
+    bool local = lar_grid_neighbours(m->grid, message->from, message->to);
+    size_t pair = (size_t)message->from * (size_t)m->grid->count + (size_t)message->to;
+    int64_t *packet = &m->packet[pair * LAR_STAGES + (size_t)message->stage];
+    *(local ? &t->local : &t->global) += 1;
+    if (++*packet == 1) *(local ? &t->local_packets : &t->global_packets) += 1;
+    if (*packet > t->largest_packet) t->largest_packet = *packet;
+}
+
+lar_status lar_traffic_measure(const lar_sharing *sharing, lar_scheme scheme, lar_traffic *traffic,
+                               lar_error *error) {
+    size_t processors = (size_t)sharing->grid.count;
+    size_t packets = processors * processors * LAR_STAGES;
+    meter m = {&sharing->grid, traffic, lar_calloc(packets, sizeof *m.packet)};
+    if (!m.packet) return lar_fail_memory(error, packets * sizeof *m.packet, "packets");
+    memset(traffic, 0, processors * sizeof *traffic);
+    for (int32_t k = 0; k < sharing->node_count; k++) {
+        const int32_t *set;
+        int32_t count = lar_sharing_of(sharing, k, &set);
+        lar_scheme_messages(scheme, &sharing->grid, set, count, count_message, &m);
+    }
+    free(m.packet);
+    return LAR_OK;
+}
+
+void lar_traffic_formula(lar_scheme scheme, int64_t n, int64_t *local, int64_t *global) {
+    static const int64_t form[LAR_SCHEMES][2][3] = {/* n^2, n, 1 */
+                                                    {{6, 12, 6}, {0, 12, 20}},
+                                                    {{6, 12, 6}, {0, 0, 0}},
+                                                    {{6, 0, 0}, {0, 6, 2}},
+                                                    {{6, 12, -6}, {0, 0, 8}}};
+    const int64_t(*f)[3] = form[scheme];
+    *local = f[0][0] * n * n + f[0][1] * n + f[0][2];
+    *global = f[1][0] * n * n + f[1][1] * n + f[1][2];
+}
