@@ -5,7 +5,8 @@
 #include "cli/options.h"
 #include "lariat.h"
 
-extern const cli_command cli_info, cli_run, cli_demo_model, cli_bench, cli_bench_kernel;
+extern const cli_command cli_info, cli_run, cli_demo_model, cli_bench, cli_bench_kernel,
+    cli_bench_comm;
 
 /* Opens a model and prints its notices to standard error. Returns the exit status; messages are
  * printed. */

@@ -52,8 +52,9 @@ typedef struct lar_comm_backend {
     void *(*room)(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
     lar_status (*put)(lar_comm *comm, int32_t peer, size_t offset, const void *data, size_t bytes,
                       uint64_t step, lar_error *error);
-    /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. */
-    lar_status (*progress)(lar_comm *comm, int32_t peer, uint64_t step, lar_error *error);
+    /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. An error says
+     * that nothing more will come from it; what had come is stored. */
+    lar_status (*progress)(lar_comm *comm, int32_t peer);
     void (*close)(lar_comm *comm);
 } lar_comm_backend;
 

@@ -285,9 +285,11 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
     for (;;) {
         for (int i = 0; i < backend->polls; i++) {
             if (backend->progress) {
-                lar_status status = backend->progress(comm, peer, step, error);
+                lar_status status = backend->progress(comm, peer);
                 if (load_tail(tail) == step) return LAR_OK;
-                if (status) return status;
+                /* The peer may obey a verdict that has not come here yet: giving up waits for it.
+                 */
+                if (status) return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
             } else {
                 if (load_tail(tail) == step) return LAR_OK;
                 relax();
@@ -334,6 +336,6 @@ bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes,
     const uint64_t *tail = lar_comm_tail(comm->receive, half, offset, bytes, step);
     if (load_tail(tail) == step) return true;
     if (!comm->backend->progress) return false;
-    comm->backend->progress(comm, peer, step, NULL);
+    comm->backend->progress(comm, peer);
     return load_tail(tail) == step;
 }

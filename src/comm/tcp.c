@@ -213,34 +213,29 @@ static void read_peer(lar_comm *comm, int32_t p) {
     }
 }
 
-/* Reads from the awaited peer, now and then from all. False when another thread reads. */
-static bool read_some(lar_comm *comm, int32_t peer, bool all) {
+/* Reads from the awaited peer, now and then from all. The caller holds `reading`. */
+static void read_some(lar_comm *comm, int32_t peer, bool all) {
     tcp_state *state = comm->state;
-    if (atomic_flag_test_and_set_explicit(&state->reading, memory_order_acquire)) return false;
     if (peer != comm->options.self) read_peer(comm, peer);
     if (all || ++state->turn % ALL_EVERY == 0)
         for (int32_t p = 0; p < comm->options.count; p++) read_peer(comm, p);
-    atomic_flag_clear_explicit(&state->reading, memory_order_release);
-    return true;
 }
 
-/* A connection may end because the peer obeys a verdict that has not come here yet: giving up
- * waits for it. */
-static lar_status tcp_progress(lar_comm *comm, int32_t peer, uint64_t step, lar_error *error) {
+static lar_status tcp_progress(lar_comm *comm, int32_t peer) {
     tcp_state *state = comm->state;
-    if (!read_some(comm, peer, false)) return LAR_OK;
-    if (peer == comm->options.self) return LAR_OK;
     if (atomic_flag_test_and_set_explicit(&state->reading, memory_order_acquire)) return LAR_OK;
-    bool ended = state->links[peer].ended;
+    read_some(comm, peer, false);
+    bool ended = peer != comm->options.self && state->links[peer].ended;
     atomic_flag_clear_explicit(&state->reading, memory_order_release);
-    return ended && error ? lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error) : LAR_OK;
+    return ended ? LAR_ERROR_PEER : LAR_OK;
 }
 
 /* ---- writing ------------------------------------------------------------------------------- */
 
 static lar_status write_packet(lar_comm *comm, int32_t peer, struct iovec parts[2], uint64_t step,
                                lar_error *error) {
-    int socket = ((tcp_state *)comm->state)->links[peer].socket;
+    tcp_state *state = comm->state;
+    int socket = state->links[peer].socket;
     double deadline = 0;
     size_t left = parts[0].iov_len + parts[1].iov_len;
     while (left > 0) {
@@ -249,7 +244,10 @@ static lar_status write_packet(lar_comm *comm, int32_t peer, struct iovec parts[
         if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
             return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
         if (sent < 0) {
-            read_some(comm, peer, true);
+            if (!atomic_flag_test_and_set_explicit(&state->reading, memory_order_acquire)) {
+                read_some(comm, peer, true);
+                atomic_flag_clear_explicit(&state->reading, memory_order_release);
+            }
             sched_yield();
             lar_status status = lar_comm_check(comm, step, error);
             if (status) return status;

@@ -223,7 +223,8 @@ static void leftovers_of_a_crash_are_removed(void **state) {
     shm_unlink("/lariat-comm-test-owned");
 }
 
-int main(void) {
+int main(int argc, char **argv) {
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_killed_processor_is_named),
                                        cmocka_unit_test(a_stopped_processor_is_named),
                                        cmocka_unit_test(a_cut_processor_is_named),
