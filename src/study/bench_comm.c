@@ -89,8 +89,12 @@ static uint64_t *tail_at(unsigned char *buffer, size_t offset, size_t bytes, uin
 
 /* Polls; yields only when the other end seems to wait for this very core. */
 static void poll_for(const uint64_t *word, uint64_t value) {
-    for (int polls = 1; __atomic_load_n(word, __ATOMIC_ACQUIRE) != value; polls++)
+    for (int polls = 1; __atomic_load_n(word, __ATOMIC_ACQUIRE) != value; polls++) {
         if (polls % 10000 == 0) sched_yield();
+#if defined(__x86_64__)
+        __builtin_ia32_pause(); /* two threads of one core: leave it to the other */
+#endif
+    }
 }
 
 static lar_status put(pair *p, int end, size_t offset, size_t bytes, lar_error *error) {
