@@ -20,10 +20,10 @@
  * what is not complete locally is remembered per peer and parity and completed, with progress,
  * before room or put touches the same memory again. Several payloads to one neighbour may share
  * one fence: put may hold tails back until progress. Over TCP an active message whose handler
- * copies and stores the tail (lar_comm_store). progress: ucp_worker_progress.
+ * copies and stores the tail (lar_comm_tail). progress: ucp_worker_progress.
  *
  * A backend `mpi`: receives for every peer are posted in begin; put: MPI_Isend of header and
- * payload from memory of its own, reused after MPI_Test; progress: MPI_Testsome, lar_comm_store,
+ * payload from memory of its own, reused after MPI_Test; progress: MPI_Testsome, lar_comm_tail,
  * post again. Under mpirun the meeting goes through MPI_Allgather: such a backend sets `meets` and
  * fills all addresses in connect itself.
  */
