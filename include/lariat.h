@@ -49,7 +49,8 @@ typedef enum lar_status {
     LAR_ERROR_MODEL,       /* a readable model that cannot be simulated */
     LAR_ERROR_UNSUPPORTED, /* something sensible that Lariat does not do */
     LAR_ERROR_MEMORY,      /* the system refuses memory */
-    LAR_ERROR_UNSTABLE     /* a run that left the range in which its results mean something */
+    LAR_ERROR_UNSTABLE,    /* a run that left the range in which its results mean something */
+    LAR_ERROR_PEER         /* another processor that is lost, silent or does not fit */
 } lar_status;
 
 typedef struct lar_error {

@@ -103,16 +103,19 @@ const cli_command cli_bench_kernel = {
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
 static int bench_main(int argc, char **argv) {
-    static const char *const names[] = {"kernel", NULL};
+    static const char *const names[] = {"kernel", "comm", NULL};
+    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_comm};
     static const cli_option none[] = {CLI_END};
-    if (argc > 0 && strcmp(argv[0], "kernel") == 0) return kernel_main(argc - 1, argv + 1);
+    for (int i = 0; argc > 0 && names[i]; i++)
+        if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
     if (argc == 0 || argv[0][0] == '-') {
         const char *what;
         return cli_parse(&cli_bench, none, argc, argv, &what, 1);
     }
     const char *meant = cli_nearest_name(argv[0], names);
-    return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s", argv[0],
-                        meant ? "did you mean " : "there is: kernel", meant ? "kernel?" : "");
+    return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s%s", argv[0],
+                        meant ? "did you mean " : "there are: kernel, comm", meant ? meant : "",
+                        meant ? "?" : "");
 }
 
 const cli_command cli_bench = {
@@ -121,6 +124,8 @@ const cli_command cli_bench = {
     .arguments = "WHAT",
     .description = "WHAT is\n"
                    "  kernel    time of a step per element, and the share of the core's peak\n"
+                   "  comm      latency and bandwidth between processors, for every backend\n"
                    "and has options of its own: lariat bench kernel --help",
-    .examples = "  lariat bench kernel\n",
+    .examples = "  lariat bench kernel\n"
+                "  lariat bench comm\n",
     .main = bench_main};

@@ -17,4 +17,15 @@ expect 0 "$LARIAT" bench kernel --elements 27 --shape box --isa c --repeat 1 --j
 value_of scaled_jacobian_min | awk '{ exit !($1 > 0.999999) }' || fail "boxes are no boxes"
 expect 0 "$LARIAT" bench kernel --elements 1 --repeat 1
 says 'of the peak'
+
+expect 0 "$LARIAT" bench comm --repeat 2 --json
+has_keys packet_bytes samples cores rows
+[ "$(grep -c '"latency_ns":' "$SCRATCH/out")" -ge 5 ] || fail "fewer than five ways measured"
+grep '"[a-z_]*_\(ns\|mb_s\|bytes\)":' "$SCRATCH/out" | grep -v '{' |
+    awk -F': *' '!($2 + 0 > 0) { exit 1 }' || fail "a figure that is not positive"
+expect 0 "$LARIAT" bench comm --repeat 1 --bytes 1
+says 'by hand'
+expect 2 "$LARIAT" bench com
+complains 'did you mean comm'
+expect 2 "$LARIAT" bench comm --bytes 0
 finish "benchmark: keys and limits"

@@ -1,0 +1,201 @@
+#include "comm/socket.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "comm/backend.h"
+
+/* "host:port" or "[v6]:port" to addresses; the caller frees with freeaddrinfo. */
+static lar_status look_up(const char *address, bool passive, struct addrinfo **found,
+                          lar_error *error) {
+    char host[256];
+    const char *colon = strrchr(address, ':');
+    size_t length = colon ? (size_t)(colon - address) : 0;
+    const char *begin = address;
+    if (length >= 2 && begin[0] == '[' && begin[length - 1] == ']') begin++, length -= 2;
+    if (length == 0 || length >= sizeof host || !colon[1])
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is no address of processor 0; write host:port, as in localhost:7077",
+                        address);
+    memcpy(host, begin, length);
+    host[length] = '\0';
+    struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = passive ? AI_PASSIVE : 0};
+    int failed = getaddrinfo(host, colon + 1, &hints, found);
+    if (failed)
+        return lar_fail(error, LAR_ERROR_IO,
+                        "the address %s cannot be found: %s; check host and port", address,
+                        gai_strerror(failed));
+    return LAR_OK;
+}
+
+static void prepare(int socket) {
+    int on = 1;
+    fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
+    fcntl(socket, F_SETFD, FD_CLOEXEC);
+    setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+lar_status lar_socket_listen(const char *address, int *listener, lar_error *error) {
+    struct addrinfo *found;
+    lar_status status = look_up(address, true, &found, error);
+    if (status) return status;
+    int fd = socket(found->ai_family, found->ai_socktype, found->ai_protocol), on = 1;
+    bool good = fd >= 0;
+    if (good) {
+        prepare(fd);
+        setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+        good = bind(fd, found->ai_addr, found->ai_addrlen) == 0 &&
+               listen(fd, LAR_COMM_PROCESSORS_MOST) == 0;
+    }
+    freeaddrinfo(found);
+    if (good) {
+        *listener = fd;
+        return LAR_OK;
+    }
+    status = lar_fail(error, LAR_ERROR_IO,
+                      "cannot listen at %s: %s; take another port (0: a free one) or an address of "
+                      "this machine",
+                      address, strerror(errno));
+    if (fd >= 0) close(fd);
+    return status;
+}
+
+int lar_socket_port(int listener) {
+    struct sockaddr_storage at;
+    socklen_t length = sizeof at;
+    if (getsockname(listener, (struct sockaddr *)&at, &length)) return 0;
+    if (at.ss_family == AF_INET6)
+        return ntohs(((const struct sockaddr_in6 *)(const void *)&at)->sin6_port);
+    return ntohs(((const struct sockaddr_in *)(const void *)&at)->sin_port);
+}
+
+void lar_socket_peer_host(int socket, char *host) {
+    struct sockaddr_storage at;
+    socklen_t length = sizeof at;
+    host[0] = '\0';
+    if (getpeername(socket, (struct sockaddr *)&at, &length) == 0 &&
+        getnameinfo((struct sockaddr *)&at, length, host, LAR_COMM_HOST_BYTES, NULL, 0,
+                    NI_NUMERICHOST) != 0)
+        host[0] = '\0';
+}
+
+void lar_socket_poll(int socket, short events, double deadline) {
+    double left = deadline - lar_comm_now();
+    struct pollfd one = {.fd = socket, .events = events};
+    if (left > 0) poll(&one, 1, left > 60 ? 60000 : (int)(1e3 * left) + 1);
+}
+
+/* One attempt at one address. */
+static int connect_once(const struct addrinfo *to, double deadline) {
+    int fd = socket(to->ai_family, to->ai_socktype, to->ai_protocol);
+    if (fd < 0) return -1;
+    prepare(fd);
+    int broken = 0;
+    socklen_t length = sizeof broken;
+    if (connect(fd, to->ai_addr, to->ai_addrlen) != 0) {
+        if (errno != EINPROGRESS) {
+            broken = errno;
+        } else {
+            lar_socket_poll(fd, POLLOUT, deadline);
+            struct pollfd one = {.fd = fd, .events = POLLOUT};
+            if (poll(&one, 1, 0) != 1)
+                broken = ETIMEDOUT;
+            else
+                getsockopt(fd, SOL_SOCKET, SO_ERROR, &broken, &length);
+        }
+    }
+    if (!broken) return fd;
+    close(fd);
+    errno = broken;
+    return -1;
+}
+
+lar_status lar_socket_connect(const char *address, double deadline, int *connected,
+                              lar_error *error) {
+    struct addrinfo *found;
+    lar_status status = look_up(address, false, &found, error);
+    if (status) return status;
+    int fd = -1, reason = 0;
+    while (fd < 0) {
+        for (const struct addrinfo *to = found; to && fd < 0; to = to->ai_next)
+            if ((fd = connect_once(to, deadline)) < 0) reason = errno;
+        if (fd >= 0 || lar_comm_now() > deadline) break;
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    }
+    freeaddrinfo(found);
+    if (fd < 0)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "nobody answers at %s: %s; start processor 0 and check the address",
+                        address, strerror(reason));
+    *connected = fd;
+    return LAR_OK;
+}
+
+int lar_socket_accept(int listener, double deadline) {
+    for (;;) {
+        int fd = accept(listener, NULL, NULL);
+        if (fd >= 0) {
+            prepare(fd);
+            return fd;
+        }
+        if (lar_comm_now() > deadline) return -1;
+        if (errno == EAGAIN || errno == EWOULDBLOCK)
+            lar_socket_poll(listener, POLLIN, deadline);
+        else if (errno != EINTR && errno != ECONNABORTED)
+            nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    }
+}
+
+lar_socket_end lar_socket_send(int socket, const void *data, size_t bytes, double deadline) {
+    const char *at = data;
+    while (bytes > 0) {
+        ssize_t sent = send(socket, at, bytes, MSG_NOSIGNAL);
+        if (sent > 0) {
+            at += sent;
+            bytes -= (size_t)sent;
+            continue;
+        }
+        if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
+            return LAR_SOCKET_CLOSED;
+        if (lar_comm_now() > deadline) return LAR_SOCKET_LATE;
+        lar_socket_poll(socket, POLLOUT, deadline);
+    }
+    return LAR_SOCKET_DONE;
+}
+
+lar_socket_end lar_socket_receive(int socket, void *data, size_t bytes, double deadline) {
+    char *at = data;
+    while (bytes > 0) {
+        ssize_t got = recv(socket, at, bytes, 0);
+        if (got > 0) {
+            at += got;
+            bytes -= (size_t)got;
+            continue;
+        }
+        if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR))
+            return LAR_SOCKET_CLOSED;
+        if (lar_comm_now() > deadline) return LAR_SOCKET_LATE;
+        lar_socket_poll(socket, POLLIN, deadline);
+    }
+    return LAR_SOCKET_DONE;
+}
+
+lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_COMM_ADDRESS_TEXT],
+                           lar_error *error) {
+    lar_status status = lar_socket_listen(address, listener, error);
+    if (status) return status;
+    const char *colon = strrchr(address, ':');
+    int length = (int)(colon - address);
+    snprintf(bound, LAR_COMM_ADDRESS_TEXT, "%.*s:%d", length < 70 ? length : 70, address,
+             lar_socket_port(*listener));
+    return LAR_OK;
+}

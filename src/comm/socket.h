@@ -1,0 +1,32 @@
+/* Stream sockets with deadlines. All sockets are non-blocking, closed on exec, and never raise
+ * SIGPIPE; times are those of lar_comm_now. */
+#ifndef LAR_COMM_SOCKET_H
+#define LAR_COMM_SOCKET_H
+
+#include "comm/comm.h"
+
+typedef enum lar_socket_end {
+    LAR_SOCKET_DONE,
+    LAR_SOCKET_CLOSED, /* by the other side, or broken */
+    LAR_SOCKET_LATE    /* the deadline has passed */
+} lar_socket_end;
+
+/* Listens at host:port; port 0 takes a free one. */
+lar_status lar_socket_listen(const char *address, int *listener, lar_error *error);
+/* The port that a listener got. */
+int lar_socket_port(int listener);
+/* Host of the other side, numeric, into host[LAR_COMM_HOST_BYTES]; "" when unknown. */
+void lar_socket_peer_host(int socket, char *host);
+
+/* Connects, again and again while nobody listens there, until the deadline. */
+lar_status lar_socket_connect(const char *address, double deadline, int *socket, lar_error *error);
+/* Next connection, or -1 at the deadline. */
+int lar_socket_accept(int listener, double deadline);
+
+lar_socket_end lar_socket_send(int socket, const void *data, size_t bytes, double deadline);
+lar_socket_end lar_socket_receive(int socket, void *data, size_t bytes, double deadline);
+
+/* Waits until the socket can be read or written (POLLIN, POLLOUT) or the deadline. */
+void lar_socket_poll(int socket, short events, double deadline);
+
+#endif
