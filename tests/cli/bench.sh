@@ -10,6 +10,10 @@ has_keys shape precision isa --numbers ns_per_element elements peak_gflops fract
 # Steps and peak are timed in turns: what else runs on the machine may slow only the one, to several
 # times its share. A wrong unit would show as a factor of a thousand.
 value_of fraction_of_peak | awk '{ exit !($1 > 0.01 && $1 < 10) }' || fail "impossible share"
+# What does not depend on the machine is held exactly: the share follows from the two figures beside it.
+echo "$(value_of fraction_of_peak) $(value_of ns_per_element) $(value_of peak_gflops)" |
+    awk '{ d = $1 * $2 * $3 / 816 - 1; exit !(d < 1e-12 && d > -1e-12) }' ||
+    fail "the share is not 816 operations in that time over that peak"
 value_of scaled_jacobian_min | awk '{ exit !($1 > 0.3 && $1 < 0.999) }' || fail "shapes"
 
 expect 0 "$LARIAT" bench kernel --elements 27 --shape box --isa c --repeat 1 --json
