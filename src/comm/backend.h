@@ -108,7 +108,7 @@ static inline bool lar_comm_fits(size_t half, size_t offset, size_t bytes) {
 double lar_comm_now(void);
 
 /* Gives a processor up for everyone; the first verdict stands. Returns LAR_ERROR_PEER with the
- * message of the verdict that stands. `step` is the one that cannot be completed. */
+ * message of the verdict that stands. `step` is the one that cannot be completed; 0: none. */
 lar_status lar_comm_give_up(lar_comm *comm, int32_t processor, lar_comm_loss loss, uint64_t step,
                             lar_error *error);
 

@@ -1,6 +1,7 @@
 #include "comm/comm.h"
 
 #include <sched.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -179,16 +180,19 @@ lar_status lar_comm_check(lar_comm *comm, uint64_t step, lar_error *error) {
         "", "its process or its connection ended", "it gives no sign of life",
         "it lives but does not send what is waited for", "it stopped with a failure of its own"};
     int lost = (int)(verdict & 0xffffffffu) - 1;
-    unsigned long long complete = step ? step - 1 : 0;
+    char complete[80] = "";
+    if (step)
+        snprintf(complete, sizeof complete, "the last complete step of processor %d is %llu; ",
+                 (int)comm->options.self, (unsigned long long)step - 1);
     if (lost == comm->options.self)
         return lar_fail(error, LAR_ERROR_PEER,
-                        "the others have given up processor %d, which is this one (%s), after "
-                        "step %llu; look for what held it up and start all processors again",
+                        "the others have given up processor %d, which is this one (%s); %slook for "
+                        "what held it up and start all processors again",
                         lost, reasons[verdict >> 32], complete);
     return lar_fail(error, LAR_ERROR_PEER,
-                    "processor %d is lost: %s; the last complete step of processor %d is %llu; "
-                    "see what processor %d says itself and start all processors again",
-                    lost, reasons[verdict >> 32], (int)comm->options.self, complete, lost);
+                    "processor %d is lost: %s; %ssee what processor %d says itself and start all "
+                    "processors again",
+                    lost, reasons[verdict >> 32], complete, lost);
 }
 
 /* Who is waited for may wait himself: the one at the end of the chain holds up all. */
@@ -306,29 +310,69 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
     }
 }
 
+/* Without a limit: who lives may take its time. */
+static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
+                                 lar_error *error) {
+    static const double POLLING = 100e-6; /* [s]; commands often follow each other */
+    enum { SLEEP_LEAST = 50000, SLEEP_MOST = 1000000 /* [ns] */ };
+    struct timespec sleep = {.tv_nsec = SLEEP_LEAST};
+    const lar_comm_backend *backend = comm->backend;
+    double until = lar_comm_now() + POLLING;
+    for (;;) {
+        lar_status ended = backend->progress ? backend->progress(comm, peer) : LAR_OK;
+        uint64_t there = load_tail(tail);
+        if (there == step) return LAR_OK;
+        if (there > step) return complain(comm, peer, there, step, error);
+        if (ended) return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, 0, error);
+        lar_status status = lar_comm_check(comm, 0, error);
+        if (status) return status;
+        if (lar_comm_now() < until) {
+            sched_yield();
+            continue;
+        }
+        nanosleep(&sleep, NULL);
+        sleep.tv_nsec = 2 * sleep.tv_nsec < SLEEP_MOST ? 2 * sleep.tv_nsec : SLEEP_MOST;
+    }
+}
+
+typedef lar_status (*wait_way)(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
+                               lar_error *error);
+
 static lar_status wait_long(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
-                            lar_error *error) {
+                            wait_way way, lar_error *error) {
     int32_t *waiting = comm->waiting ? &comm->waiting[comm->options.self] : NULL;
     if (waiting) __atomic_store_n(waiting, peer + 1, __ATOMIC_RELEASE);
-    lar_status status = poll_and_yield(comm, peer, tail, step, error);
+    lar_status status = way(comm, peer, tail, step, error);
     if (waiting) __atomic_store_n(waiting, 0, __ATOMIC_RELEASE);
     return status;
 }
 
-lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
-                         const void **payload, lar_error *error) {
+static inline lar_status wait_for(lar_comm *comm, int32_t peer, size_t offset, size_t bytes,
+                                  uint64_t step, const void **payload, wait_way way,
+                                  lar_error *error) {
     size_t half = comm->options.receive_bytes;
     if (step == 0 || !peer_exists(comm, peer) || !lar_comm_fits(half, offset, bytes))
         return refuse_packet(half, peer, offset, bytes, step, error);
     /* Also while all packets come in time: a processor that is cut off may go on sending. */
-    if (__atomic_load_n(comm->verdict, __ATOMIC_RELAXED)) return lar_comm_check(comm, step, error);
+    if (__atomic_load_n(comm->verdict, __ATOMIC_RELAXED))
+        return lar_comm_check(comm, way == poll_and_sleep ? 0 : step, error);
     const uint64_t *tail = lar_comm_tail(comm->receive, half, offset, bytes, step);
     if (load_tail(tail) != step) {
-        lar_status status = wait_long(comm, peer, tail, step, error);
+        lar_status status = wait_long(comm, peer, tail, step, way, error);
         if (status) return status;
     }
     if (payload) *payload = comm->receive + (step & 1 ? half : 0) + offset;
     return LAR_OK;
+}
+
+lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
+                         const void **payload, lar_error *error) {
+    return wait_for(comm, peer, offset, bytes, step, payload, poll_and_yield, error);
+}
+
+lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
+                          const void **payload, lar_error *error) {
+    return wait_for(comm, peer, offset, bytes, step, payload, poll_and_sleep, error);
 }
 
 bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step) {

@@ -118,6 +118,13 @@ void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, u
 lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                          const void **payload, lar_error *error);
 
+/* The same for the quiet time between commands: no limit while everyone lives (a loss ends it as
+ * above), and after a short while of polling it sleeps, 50 us at first, 1 ms at last, so that
+ * waiting costs no processor time and an answer may come up to 1 ms late. `step` counts the packets
+ * at this offset, which need not be steps of a simulation: the message of a loss names no step. */
+lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
+                          const void **payload, lar_error *error);
+
 /* Whether it is there, without waiting; lets the backend work once. */
 bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
 

@@ -1,0 +1,107 @@
+/* Waiting between commands: as long as it takes, without processor time, but not for the dead. */
+#include "fleet.h"
+
+#include <time.h>
+
+static double clock_of(clockid_t id) {
+    struct timespec at;
+    clock_gettime(id, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+/* Processor 0 lets the others wait for several times their patience. */
+static const char *quiet_time(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
+    (void)context;
+    lar_error error;
+    int32_t count = lar_comm_count(comm), self = lar_comm_self(comm);
+    for (uint64_t command = 1; command <= 3; command++) {
+        if (self == 0) {
+            usleep(command == 2 ? 400000 : 1000);
+            for (int32_t p = 1; p < count; p++)
+                if (lar_comm_put(comm, p, 8, &command, 8, command, &error))
+                    return fleet_say(text, "%s", error.message);
+            for (int32_t p = 1; p < count; p++)
+                if (lar_comm_await(comm, p, 32 * (size_t)p, 0, command, NULL, &error))
+                    return fleet_say(text, "%s", error.message);
+            continue;
+        }
+        const void *payload;
+        double begin = clock_of(CLOCK_MONOTONIC), busy = clock_of(CLOCK_THREAD_CPUTIME_ID);
+        if (lar_comm_await(comm, 0, 8, 8, command, &payload, &error))
+            return fleet_say(text, "%s", error.message);
+        begin = clock_of(CLOCK_MONOTONIC) - begin;
+        busy = clock_of(CLOCK_THREAD_CPUTIME_ID) - busy;
+        if (*(const uint64_t *)payload != command) return "another command";
+        if (command == 2 && !(busy < 0.5 * begin))
+            return fleet_say(text, "busy for %g s of %g s", busy, begin);
+        if (lar_comm_put(comm, 0, 32 * (size_t)self, NULL, 0, command, &error))
+            return fleet_say(text, "%s", error.message);
+    }
+    return NULL;
+}
+
+static void quiet_time_may_be_long(void **state) {
+    (void)state;
+    fleet_everywhere("quiet time",
+                     (fleet){.count = 3, .bytes = 256, .body = quiet_time, .patience = 0.1});
+}
+
+/* Everyone else awaits what never comes; the victim goes after a while. */
+static const char *await_for_ever(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
+    int32_t victim = *(const int32_t *)context, self = lar_comm_self(comm);
+    lar_error error;
+    if (self == victim) {
+        usleep(50000);
+        if (strcmp(lar_comm_backend_name(comm), "threads") != 0) kill(getpid(), SIGKILL);
+        lar_comm_abort(comm);
+        return NULL;
+    }
+    /* The lost one itself, or another who lives. */
+    int32_t peer = self == 0 ? 1 : 0;
+    lar_status status = lar_comm_await(comm, peer, 0, 8, 1, NULL, &error);
+    return status == LAR_ERROR_PEER ? fleet_say(text, "%s", error.message) : "no failure";
+}
+
+static void the_dead_are_not_awaited(void **state) {
+    (void)state;
+    static const char *const backends[] = {"threads", "shm", "tcp"};
+    for (int32_t victim = 0; victim < 3; victim++)
+        for (int i = 0; i < 3; i++) {
+            char texts[3][FLEET_TEXT], expected[40];
+            fleet f = {.backend = backends[i],
+                       .count = 3,
+                       .bytes = 64,
+                       .body = await_for_ever,
+                       .context = &victim};
+            (i == 0 ? fleet_threads : fleet_fork)(f, texts);
+            snprintf(expected, sizeof expected, "processor %d is lost", (int)victim);
+            for (int p = 0; p < 3; p++) {
+                if (p == victim) continue;
+                if (!strstr(texts[p], expected))
+                    print_error("%s, %d: %s\n", backends[i], p, texts[p]);
+                assert_non_null(strstr(texts[p], expected));
+                assert_null(strstr(texts[p], "step"));
+            }
+        }
+}
+
+static const char *nonsense(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
+    (void)context, (void)text;
+    lar_error e;
+    if (lar_comm_await(comm, 2, 0, 8, 1, NULL, &e) != LAR_ERROR_ARGUMENT) return "nobody";
+    if (lar_comm_await(comm, 1, 0, 64, 1, NULL, &e) != LAR_ERROR_ARGUMENT) return "beyond";
+    if (lar_comm_await(comm, 1, 0, 8, 0, NULL, &e) != LAR_ERROR_ARGUMENT) return "step 0";
+    return NULL;
+}
+
+static void nonsense_is_refused(void **state) {
+    (void)state;
+    fleet_everywhere("nonsense", (fleet){.count = 2, .bytes = 64, .body = nonsense});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(quiet_time_may_be_long),
+                                       cmocka_unit_test(the_dead_are_not_awaited),
+                                       cmocka_unit_test(nonsense_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
