@@ -44,6 +44,7 @@ typedef struct lar_comm_address {
 
 typedef struct lar_comm_backend {
     const char *name, *summary, *missing; /* as in lar_comm_backend_info */
+    lar_comm_start start;
     bool meets; /* open and connect bring the processors together; otherwise meeting.h does */
     int polls;  /* before yielding */
     lar_status (*open)(lar_comm *comm, lar_error *error);

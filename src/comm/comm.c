@@ -24,6 +24,7 @@ static const lar_comm_backend missing_ucx = {
 static const lar_comm_backend missing_mpi = {
     .name = "mpi",
     .summary = "anywhere MPI runs",
+    .start = LAR_COMM_BY_LAUNCHER,
     .missing =
         "this version of Lariat does not have it yet; use tcp between machines and shm on one",
 };
@@ -34,7 +35,7 @@ enum { BACKENDS = sizeof table / sizeof table[0] };
 bool lar_comm_backend_list(int index, lar_comm_backend_info *info) {
     if (index < 0 || index >= BACKENDS) return false;
     const lar_comm_backend *b = table[index];
-    *info = (lar_comm_backend_info){b->name, b->summary, b->missing};
+    *info = (lar_comm_backend_info){b->name, b->summary, b->missing, b->start};
     return true;
 }
 
@@ -47,9 +48,14 @@ static lar_status find_backend(const char *name, const lar_comm_backend **found,
         *found = table[i];
         return LAR_OK;
     }
+    char names[100] = "";
+    for (int i = 0, used = 0; i < BACKENDS; i++)
+        if (!table[i]->missing)
+            used += snprintf(names + used, sizeof names - (size_t)used, "%s%s", used ? ", " : "",
+                             table[i]->name);
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "there is no communication backend %s; there are threads, shm and tcp",
-                    name ? name : "(none)");
+                    "there is no communication backend %s; take one of these: %s",
+                    name ? name : "(none)", names);
 }
 
 /* ---- opening and closing ----------------------------------------------------------------- */
@@ -76,11 +82,12 @@ static lar_status check_options(const lar_comm_options *o, const lar_comm_backen
                         "a receive buffer of %zu bytes; take a multiple of 8", o->receive_bytes);
     if (!(o->start_timeout > 0 && o->timeout > 0 && o->patience > 0))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "time limits must be greater than 0 s");
-    if (backend->meets && !o->team)
+    if (backend->start == LAR_COMM_BY_TEAM && !o->team)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "communication by %s needs the team that all processors share",
                         backend->name);
-    if (!backend->meets && !o->master && o->count > 1 && !(o->self == 0 && o->listener >= 0))
+    if (backend->start == LAR_COMM_BY_ADDRESS && !o->master && o->count > 1 &&
+        !(o->self == 0 && o->listener >= 0))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "communication by %s needs the address of processor 0 (host:port)",
                         backend->name);

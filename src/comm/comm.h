@@ -130,10 +130,18 @@ bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes,
 
 /* ---- the backends of this build ---------------------------------------------------------- */
 
+/* How its processors are started, and by what they find each other. */
+typedef enum lar_comm_start {
+    LAR_COMM_BY_ADDRESS, /* as processes (or threads) that know options.master */
+    LAR_COMM_BY_TEAM,    /* as threads of one process that share options.team */
+    LAR_COMM_BY_LAUNCHER /* as processes of mpirun or srun, which say who is who */
+} lar_comm_start;
+
 typedef struct lar_comm_backend_info {
     const char *name;
     const char *summary;
     const char *missing; /* NULL: it is there; otherwise how to get it */
+    lar_comm_start start;
 } lar_comm_backend_info;
 
 /* Row `index` of the table, default first; false beyond the last. */

@@ -113,6 +113,7 @@ static lar_status threads_connect(lar_comm *comm, lar_error *error) {
 
 const lar_comm_backend lar_comm_threads = {.name = "threads",
                                            .summary = "processors are threads of one process",
+                                           .start = LAR_COMM_BY_TEAM,
                                            .meets = true,
                                            .polls = 50,
                                            .open = threads_open,

@@ -1,5 +1,6 @@
-/* Processors for the tests of comm: as threads of this process (every backend) or as processes
- * (shm, tcp). A body returns NULL or says what is wrong; assertions stay with the caller. */
+/* Processors for the tests of comm: as threads of this process or as forked processes, over every
+ * backend of this build that can be started so. A body returns NULL or says what is wrong;
+ * assertions stay with the caller. */
 #ifndef LAR_TESTS_COMM_FLEET_H
 #define LAR_TESTS_COMM_FLEET_H
 
@@ -36,6 +37,21 @@ typedef struct fleet {
     int listener;
     char master[LAR_COMM_ADDRESS_TEXT];
 } fleet;
+
+/* Backend `index` of those whose processors a test can start itself (not by mpirun); false beyond
+ * the last. */
+static inline bool fleet_backend(int index, lar_comm_backend_info *info) {
+    for (int row = 0; lar_comm_backend_list(row, info); row++)
+        if (!info->missing && info->start != LAR_COMM_BY_LAUNCHER && index-- == 0) return true;
+    return false;
+}
+
+static inline bool fleet_is_team(const char *backend) {
+    lar_comm_backend_info info;
+    for (int row = 0; lar_comm_backend_list(row, &info); row++)
+        if (strcmp(info.name, backend) == 0) return info.start == LAR_COMM_BY_TEAM;
+    return false;
+}
 
 typedef struct fleet_member {
     fleet *of;
@@ -85,7 +101,7 @@ static inline void *fleet_thread(void *member) {
 static inline void fleet_prepare(fleet *f) {
     lar_error error;
     f->listener = -1;
-    if (strcmp(f->backend, "threads") == 0)
+    if (fleet_is_team(f->backend))
         assert_int_equal(lar_comm_team_create(f->count, &f->team, &error), LAR_OK);
     else
         assert_int_equal(lar_comm_listen("127.0.0.1:0", &f->listener, f->master, &error), LAR_OK);
@@ -171,14 +187,14 @@ static inline void fleet_expect_good(const char *what, const fleet *f, char (*te
 
 /* Every backend with threads, and those for processes with processes too. */
 static inline void fleet_everywhere(const char *what, fleet f) {
-    static const char *const backends[] = {"threads", "shm", "tcp"};
+    lar_comm_backend_info info;
     char(*texts)[FLEET_TEXT] = calloc((size_t)f.count, FLEET_TEXT);
     assert_non_null(texts);
-    for (size_t i = 0; i < sizeof backends / sizeof backends[0]; i++) {
-        f.backend = backends[i];
+    for (int i = 0; fleet_backend(i, &info); i++) {
+        f.backend = info.name;
         fleet_threads(f, texts);
         fleet_expect_good(what, &f, texts);
-        if (i == 0) continue;
+        if (info.start == LAR_COMM_BY_TEAM) continue;
         fleet_fork(f, texts);
         fleet_expect_good(what, &f, texts);
     }

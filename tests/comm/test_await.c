@@ -52,7 +52,7 @@ static const char *await_for_ever(lar_comm *comm, void *context, char text[FLEET
     lar_error error;
     if (self == victim) {
         usleep(50000);
-        if (strcmp(lar_comm_backend_name(comm), "threads") != 0) kill(getpid(), SIGKILL);
+        if (!fleet_is_team(lar_comm_backend_name(comm))) kill(getpid(), SIGKILL);
         lar_comm_abort(comm);
         return NULL;
     }
@@ -64,21 +64,21 @@ static const char *await_for_ever(lar_comm *comm, void *context, char text[FLEET
 
 static void the_dead_are_not_awaited(void **state) {
     (void)state;
-    static const char *const backends[] = {"threads", "shm", "tcp"};
+    lar_comm_backend_info info;
     for (int32_t victim = 0; victim < 3; victim++)
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; fleet_backend(i, &info); i++) {
             char texts[3][FLEET_TEXT], expected[40];
-            fleet f = {.backend = backends[i],
+            fleet f = {.backend = info.name,
                        .count = 3,
                        .bytes = 64,
                        .body = await_for_ever,
                        .context = &victim};
-            (i == 0 ? fleet_threads : fleet_fork)(f, texts);
+            (info.start == LAR_COMM_BY_TEAM ? fleet_threads : fleet_fork)(f, texts);
             snprintf(expected, sizeof expected, "processor %d is lost", (int)victim);
             for (int p = 0; p < 3; p++) {
                 if (p == victim) continue;
                 if (!strstr(texts[p], expected))
-                    print_error("%s, %d: %s\n", backends[i], p, texts[p]);
+                    print_error("%s, %d: %s\n", info.name, p, texts[p]);
                 assert_non_null(strstr(texts[p], expected));
                 assert_null(strstr(texts[p], "step"));
             }
