@@ -40,22 +40,38 @@ lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const in
     return common;
 }
 
-bool lar_draft_begin(lar_draft *draft, const lar_model *model, lar_layout *layout) {
+bool lar_draft_joins(const lar_draft *draft, lar_gid e, lar_gid other) {
+    const lar_part *part = draft->part;
+    if (lar_draft_law(draft, e) != lar_draft_law(draft, other)) return false;
+    if (!part) return true;
+    return part->thread[e] == part->thread[other] &&
+           (!part->rows_within_batches || part->batch[e] == part->batch[other]);
+}
+
+bool lar_draft_begin(lar_draft *draft, const lar_model *model, const lar_layout *whole,
+                     const lar_part *part, const lar_gid *order, int32_t count,
+                     lar_layout *layout) {
     const lar_mesh *mesh = &model->mesh;
     size_t elements = (size_t)mesh->element_count, nodes = (size_t)mesh->node_count;
-    *layout = (lar_layout){0};
-    *draft = (lar_draft){.model = model, .layout = layout};
+    *layout = (lar_layout){.corner_lent = part, .corner = part ? whole->corner : NULL};
+    *draft = (lar_draft){.model = model,
+                         .part = part,
+                         .layout = layout,
+                         .threads = part ? part->threads : 1,
+                         .count = count,
+                         .order = order};
     draft->open = lar_calloc(elements, sizeof *draft->open);
-    layout->corner = lar_calloc(elements, sizeof *layout->corner);
     layout->local = lar_calloc(nodes, sizeof *layout->local);
+    if (!part) layout->corner = lar_calloc(elements, sizeof *layout->corner);
     if (!draft->open || !layout->corner || !layout->local) return false;
-    memcpy(layout->corner, mesh->element, elements * sizeof *mesh->element);
-    for (size_t e = 0; e < elements; e++) draft->open[e] = true;
+    if (!part) memcpy(layout->corner, mesh->element, elements * sizeof *mesh->element);
+    for (int32_t i = 0; i < count; i++) draft->open[order[i]] = true;
     for (size_t n = 0; n < nodes; n++) layout->local[n] = -1;
     return true;
 }
 
 void lar_draft_end(lar_draft *draft) {
+    for (int t = 0; t < LAR_LAYOUT_THREADS; t++) free(draft->range[t].node);
     free(draft->open);
     *draft = (lar_draft){0};
 }
@@ -64,15 +80,24 @@ lar_lanes *lar_draft_block(lar_draft *draft, lar_kind kind, lar_block_rows rows)
     lar_layout *layout = draft->layout;
     if (!LAR_GROW(layout->block, draft->block_room, layout->block_count)) return NULL;
     lar_lanes *block = &layout->block[layout->block_count++];
-    *block = (lar_lanes){.law = kind.law, .shape = kind.shape, .turn = kind.turn, .rows = rows};
+    *block = (lar_lanes){
+        .law = kind.law, .shape = kind.shape, .turn = kind.turn, .rows = rows, .batch = INT32_MAX};
     for (int i = 0; i < LAR_BLOCK; i++) block->element[i] = -1;
     return block;
 }
 
-bool lar_draft_number(lar_draft *draft, lar_gid node) {
-    lar_layout *layout = draft->layout;
-    if (!LAR_GROW(layout->global, draft->node_room, layout->node_count)) return false;
-    if (node >= 0) layout->local[node] = layout->node_count;
-    layout->global[layout->node_count++] = node;
+void lar_draft_put(lar_draft *draft, lar_lanes *block, int lane, lar_gid e) {
+    int32_t batch = lar_draft_batch(draft, e);
+    block->element[lane] = e;
+    block->thread = lar_draft_thread(draft, e);
+    if (batch < block->batch) block->batch = batch;
+    draft->open[e] = false;
+}
+
+bool lar_draft_number(lar_draft *draft, int32_t owner, lar_gid node) {
+    lar_draft_range *range = &draft->range[owner];
+    if (!LAR_GROW(range->node, range->room, range->count)) return false;
+    if (node >= 0) draft->layout->local[node] = range->count;
+    range->node[range->count++] = node;
     return true;
 }

@@ -25,23 +25,31 @@
 
 typedef int32_t lar_lid; /* node of one domain */
 
+enum { LAR_LAYOUT_THREADS = 16 }; /* that may share a layout */
+
 /* Eight lanes that one block will hold. */
 typedef struct lar_lanes {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
     int turn;                   /* of boxes (mechanics/hex8_block.h) */
+    int32_t thread, batch;      /* who recovers it, and with which batch; 0 in a whole layout */
     lar_gid element[LAR_BLOCK]; /* by lane; -1: none */
 } lar_lanes;
 
 typedef struct lar_layout {
     lar_gid (*corner)[8]; /* [elements of the model] nodes, turned along the row */
+    bool corner_lent;     /* `corner` belongs to the whole layout (part_layout.h) */
     int32_t block_count;
-    lar_lanes *block;    /* sorted: equal law, shape, turn and rows stand together */
+    lar_lanes *block;    /* sorted by thread and batch; then equal law, shape, turn and rows */
     int32_t node_count;  /* local nodes, spare ones among them, without the padding at the end */
     int32_t node_padded; /* even, with at least one spare node at the end */
     lar_gid *global;     /* [node_padded] node of the model, -1: spare */
-    lar_lid *local;      /* [nodes of the model] */
+    lar_lid *local;      /* [nodes of the model], -1: not in this layout */
+    int32_t thread_count;
+    /* Nodes first_node[t] .. first_node[t + 1] - 1 are moved by thread t, all even; node_padded
+     * from thread_count on. */
+    lar_lid first_node[LAR_LAYOUT_THREADS + 1];
 } lar_layout;
 
 typedef enum lar_layout_style {

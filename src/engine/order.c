@@ -32,9 +32,9 @@ static void center_of(const lar_mesh *mesh, lar_gid e, double center[3]) {
     }
 }
 
-lar_status lar_order_elements(const lar_model *model, lar_gid *order, lar_error *error) {
+lar_status lar_order_elements(const lar_model *model, lar_gid *order, int32_t count,
+                              lar_error *error) {
     const lar_mesh *mesh = &model->mesh;
-    int32_t count = mesh->element_count;
     ranked *rank = lar_calloc((size_t)count, sizeof *rank);
     if (!rank) return lar_fail_memory(error, (size_t)count * sizeof *rank, "the element order");
 
@@ -45,13 +45,14 @@ lar_status lar_order_elements(const lar_model *model, lar_gid *order, lar_error 
         for (int i = 0; i < 3; i++) upper = fmax(upper, mesh->position[n][i] - lower[i]);
 
     const double cells = 0xfffff; /* 2^20 - 1 per axis */
-    for (lar_gid e = 0; e < count; e++) {
+    for (int32_t i = 0; i < count; i++) {
+        lar_gid e = order[i];
         double center[3];
         center_of(mesh, e, center);
         uint64_t key = (uint64_t)lar_model_material_of(model, e)->law << 60;
-        for (int i = 0; i < 3; i++)
-            key |= spread_bits((uint64_t)(cells * (center[i] - lower[i]) / upper)) << i;
-        rank[e] = (ranked){key, e};
+        for (int k = 0; k < 3; k++)
+            key |= spread_bits((uint64_t)(cells * (center[k] - lower[k]) / upper)) << k;
+        rank[i] = (ranked){key, e};
     }
     qsort(rank, (size_t)count, sizeof *rank, compare_ranked);
     for (int32_t i = 0; i < count; i++) order[i] = rank[i].element;

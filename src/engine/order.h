@@ -9,7 +9,8 @@
 
 #include "model/model.h"
 
-/* Fills order[element_count] with the global elements, law by law. */
-lar_status lar_order_elements(const lar_model *model, lar_gid *order, lar_error *error);
+/* Sorts the elements order[0..count) of a model, law by law. */
+lar_status lar_order_elements(const lar_model *model, lar_gid *order, int32_t count,
+                              lar_error *error);
 
 #endif

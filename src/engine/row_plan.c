@@ -9,30 +9,45 @@
 enum { LONGEST_RUN = 1024, BEYOND = LONGEST_RUN, ROW = LAR_BLOCK, HALF_ROW = LAR_BLOCK / 2 };
 enum { PASSES = 4 };
 
-/* The nodes of a turned element on the four lines along xi, at its left and right end. */
-static const int line_left[4] = {0, 3, 4, 7}, line_right[4] = {1, 2, 5, 6};
-
 typedef struct planner {
     lar_draft *draft;
-    const int32_t *neighbour;
+    const lar_row_ways *ways;
     int32_t *run;             /* [LONGEST_RUN] */
     int32_t (*run_corner)[8]; /* [LONGEST_RUN] */
     lar_gid *beyond[2];       /* [BEYOND] nodes before and behind a line, going outwards */
     int32_t *stamp;           /* [nodes] the last check that met the node */
     int32_t stamp_now;
-    uint8_t *hopeless;          /* [elements] a bit per face by which no row can leave any more */
-    int32_t waiting[LAR_KINDS]; /* by kind: block with one row of four, -1: none */
+    uint8_t *hopeless; /* [elements] a bit per face by which no row can leave any more */
 } planner;
 
 typedef const int32_t (*corners)[8];
 
+/* ---- ways through a mesh ----------------------------------------------------------------------
+ */
+
+static int trace_faces(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front,
+                       int most, int32_t *run, int32_t (*corner)[8]) {
+    return lar_rows_trace(&draft->model->mesh, ways->map, draft->open, e, front, most, run, corner);
+}
+
+static lar_gid beyond_faces(const lar_row_ways *ways, const lar_draft *draft, lar_gid *e,
+                            lar_gid from, lar_gid to) {
+    return lar_rows_beyond(&draft->model->mesh, ways->map, e, from, to);
+}
+
+lar_row_ways lar_row_ways_all(const int32_t *neighbour) {
+    return (lar_row_ways){.map = neighbour, .trace = trace_faces, .beyond = beyond_faces};
+}
+
+/* ---- lines of nodes ------------------------------------------------------------------------- */
+
 /* The node at place k of a line: the left end of element k, or the right end of the last. */
 static lar_gid line_node(corners corner, int length, int line, int k) {
-    return k < length ? corner[k][line_left[line]] : corner[length - 1][line_right[line]];
+    return k < length ? corner[k][lar_line_left[line]] : corner[length - 1][lar_line_right[line]];
 }
 
 static bool line_is_numbered(const planner *plan, corners corner, int line) {
-    return plan->draft->layout->local[corner[0][line_left[line]]] >= 0;
+    return plan->draft->layout->local[corner[0][lar_line_left[line]]] >= 0;
 }
 
 /* From here on no node has been met. Checks are counted, billions of them for a large model: before
@@ -47,8 +62,8 @@ static void begin_check(planner *plan) {
 }
 
 /* Longest part of the run from `from`, a multiple of four, whose lines can be consecutive: no node
- * has a number yet, or they are numbered one after the other. A run that closes on itself or
- * crosses itself must not give a node two numbers or an element two lanes. */
+ * has a number yet, or they are numbered one after the other, by one owner. A run that closes on
+ * itself or crosses itself must not give a node two numbers or an element two lanes. */
 static int feasible_length(planner *plan, int from, int length) {
     corners corner = (corners)plan->run_corner + from;
     const lar_lid *local = plan->draft->layout->local;
@@ -58,8 +73,10 @@ static int feasible_length(planner *plan, int from, int length) {
         if (k < most && !plan->draft->open[plan->run[from + k]]) most = k;
         for (int line = 0; line < 4; line++) {
             lar_gid node = line_node(corner, length - from, line, k);
-            lar_lid first = local[corner[0][line_left[line]]];
-            if (local[node] != (first < 0 ? -1 : first + k) || plan->stamp[node] == plan->stamp_now)
+            lar_gid begin = corner[0][lar_line_left[line]];
+            if (local[node] != (local[begin] < 0 ? -1 : local[begin] + k) ||
+                lar_draft_owner(plan->draft, node) != lar_draft_owner(plan->draft, begin) ||
+                plan->stamp[node] == plan->stamp_now)
                 return fits / HALF_ROW * HALF_ROW;
             plan->stamp[node] = plan->stamp_now;
         }
@@ -68,14 +85,15 @@ static int feasible_length(planner *plan, int from, int length) {
     return fits / HALF_ROW * HALF_ROW;
 }
 
-/* The nodes that continue an edge of element e, from node to node, as long as they have no number.
- * Returns how many were put into out[]. */
+/* The nodes that continue an edge of element e, from node to node, as long as they have no number
+ * and one owner. Returns how many were put into out[]. */
 static int nodes_beyond(planner *plan, lar_gid e, lar_gid from, lar_gid to, lar_gid *out) {
+    const lar_draft *draft = plan->draft;
     int count = 0;
     while (count < BEYOND) {
-        lar_gid next = lar_rows_beyond(&plan->draft->model->mesh, plan->neighbour, &e, from, to);
-        if (next < 0 || plan->stamp[next] == plan->stamp_now ||
-            plan->draft->layout->local[next] >= 0)
+        lar_gid next = plan->ways->beyond(plan->ways, draft, &e, from, to);
+        if (next < 0 || plan->stamp[next] == plan->stamp_now || draft->layout->local[next] >= 0 ||
+            lar_draft_owner(draft, next) != lar_draft_owner(draft, to))
             break;
         plan->stamp[next] = plan->stamp_now;
         out[count++] = next;
@@ -94,43 +112,34 @@ static bool number_line(planner *plan, int from, int length, int line) {
     begin_check(plan);
     for (int k = 0; k <= length; k++)
         plan->stamp[line_node(corner, length, line, k)] = plan->stamp_now;
-    int ahead = nodes_beyond(plan, run[length - 1], corner[length - 1][line_left[line]],
-                             corner[length - 1][line_right[line]], behind);
-    int back =
-        nodes_beyond(plan, run[0], corner[0][line_right[line]], corner[0][line_left[line]], before);
-    bool good =
-        (plan->draft->layout->node_count + back) % 2 == 0 || lar_draft_number(plan->draft, -1);
-    while (good && back > 0) good = lar_draft_number(plan->draft, before[--back]);
+    int ahead = nodes_beyond(plan, run[length - 1], corner[length - 1][lar_line_left[line]],
+                             corner[length - 1][lar_line_right[line]], behind);
+    int back = nodes_beyond(plan, run[0], corner[0][lar_line_right[line]],
+                            corner[0][lar_line_left[line]], before);
+    lar_draft *draft = plan->draft;
+    int32_t owner = lar_draft_owner(draft, corner[0][lar_line_left[line]]);
+    bool good = (draft->range[owner].count + back) % 2 == 0 || lar_draft_number(draft, owner, -1);
+    while (good && back > 0) good = lar_draft_number(draft, owner, before[--back]);
     for (int k = 0; good && k <= length; k++)
-        good = lar_draft_number(plan->draft, line_node(corner, length, line, k));
-    for (int k = 0; good && k < ahead; k++) good = lar_draft_number(plan->draft, behind[k]);
+        good = lar_draft_number(draft, owner, line_node(corner, length, line, k));
+    for (int k = 0; good && k < ahead; k++) good = lar_draft_number(draft, owner, behind[k]);
     return good;
 }
 
-/* Puts run[from..from+count) into a block: eight into a new one, four beside four others. */
+/* ---- runs of elements ----------------------------------------------------------------------- */
+
+/* Puts run[from..from+count) into a block of its own. */
 static bool place_row(planner *plan, int from, int count) {
-    lar_layout *layout = plan->draft->layout;
-    lar_kind own =
-        lar_draft_kind(plan->draft, plan->run + from, (corners)plan->run_corner + from, count);
-    int32_t *waiting = &plan->waiting[lar_kind_index(own)];
-    lar_lanes *block;
-    int offset = 0;
-    if (count == ROW) {
-        block = lar_draft_block(plan->draft, own, LAR_ROWS_EIGHT);
-    } else if (*waiting >= 0) {
-        block = &layout->block[*waiting];
-        *waiting = -1;
-        offset = HALF_ROW;
-    } else {
-        block = lar_draft_block(plan->draft, own, LAR_ROWS_FOUR);
-        *waiting = layout->block_count - 1;
-    }
+    lar_draft *draft = plan->draft;
+    const int32_t *run = plan->run + from;
+    lar_kind own = lar_draft_kind(draft, run, (corners)plan->run_corner + from, count);
+    lar_lanes *block = lar_draft_block(draft, own, count == ROW ? LAR_ROWS_EIGHT : LAR_ROWS_FOUR);
     if (!block) return false;
     for (int k = 0; k < count; k++) {
-        lar_gid e = plan->run[from + k];
-        block->element[LAR_ROW_LANES[offset + k]] = e;
-        memcpy(layout->corner[e], plan->run_corner[from + k], sizeof plan->run_corner[0]);
-        plan->draft->open[e] = false;
+        lar_draft_put(draft, block, LAR_ROW_LANES[k], run[k]);
+        if (!plan->ways->turned)
+            memcpy(draft->layout->corner[run[k]], plan->run_corner[from + k],
+                   sizeof plan->run_corner[0]);
     }
     return true;
 }
@@ -157,17 +166,16 @@ static bool place_run(planner *plan, int length) {
     return true;
 }
 
-/* The run that leaves e by a face, as far as its law goes. Returns the length. */
+/* The run that leaves e by a face, as far as its elements join. Returns the length. */
 static int trace(planner *plan, lar_gid e, int front) {
     const lar_draft *draft = plan->draft;
-    int length = lar_rows_trace(&draft->model->mesh, plan->neighbour, draft->open, e, front,
-                                LONGEST_RUN, plan->run, plan->run_corner);
-    lar_law law = lar_draft_law(draft, e);
+    int length =
+        plan->ways->trace(plan->ways, draft, e, front, LONGEST_RUN, plan->run, plan->run_corner);
     int at = 0;
     while (at < length - 1 && plan->run[at] != e) at++;
     int begin = at, end = at + 1;
-    while (begin > 0 && lar_draft_law(draft, plan->run[begin - 1]) == law) begin--;
-    while (end < length && lar_draft_law(draft, plan->run[end]) == law) end++;
+    while (begin > 0 && lar_draft_joins(draft, e, plan->run[begin - 1])) begin--;
+    while (end < length && lar_draft_joins(draft, e, plan->run[end])) end++;
     memmove(plan->run, plan->run + begin, (size_t)(end - begin) * sizeof *plan->run);
     memmove(plan->run_corner, plan->run_corner + begin,
             (size_t)(end - begin) * sizeof *plan->run_corner);
@@ -219,33 +227,40 @@ static int best_front(planner *plan, lar_gid e, int first_axis, double wanted) {
     return best;
 }
 
-static bool place_rows(planner *plan, const lar_gid *order, lar_row_habit habit) {
+/* Settled turns leave one way through an element. */
+static void close_other_ways(planner *plan) {
+    const lar_draft *draft = plan->draft;
+    for (int32_t i = 0; i < draft->count; i++) {
+        lar_gid e = draft->order[i];
+        const lar_gid *node = draft->layout->corner[e];
+        int front = lar_rows_face(draft->model->mesh.element[e], node[0], node[1]);
+        plan->hopeless[e] = (uint8_t) ~(1u << front);
+    }
+}
+
+static bool place_rows(planner *plan, lar_row_habit habit) {
     lar_draft *draft = plan->draft;
+    if (plan->ways->turned) close_other_ways(plan);
     for (int pass = PASSES - 1; pass >= 0; pass--)
-        for (int32_t i = 0; i < draft->model->mesh.element_count; i++) {
-            lar_gid e = order[i];
+        for (int32_t i = 0; i < draft->count; i++) {
+            lar_gid e = draft->order[i];
             if (!draft->open[e]) continue;
             int front = best_front(plan, e, habit.axis, habit.patience * pass);
             if (front >= 0 && !place_run(plan, trace(plan, e, front))) return false;
         }
-    /* A row of four that stayed alone becomes a loose block. */
-    for (int k = 0; k < LAR_KINDS; k++)
-        if (plan->waiting[k] >= 0) draft->layout->block[plan->waiting[k]].rows = LAR_ROWS_NONE;
     return true;
 }
 
-bool lar_row_plan(lar_draft *draft, const lar_gid *order, const int32_t *neighbour,
-                  lar_row_habit habit) {
+bool lar_row_plan(lar_draft *draft, const lar_row_ways *ways, lar_row_habit habit) {
     const lar_mesh *mesh = &draft->model->mesh;
-    planner plan = {.draft = draft, .neighbour = neighbour};
+    planner plan = {.draft = draft, .ways = ways};
     plan.run = lar_calloc(LONGEST_RUN, sizeof *plan.run);
     plan.run_corner = lar_calloc(LONGEST_RUN, sizeof *plan.run_corner);
     for (int end = 0; end < 2; end++) plan.beyond[end] = lar_calloc(BEYOND, sizeof(lar_gid));
     plan.stamp = lar_calloc((size_t)mesh->node_count, sizeof *plan.stamp);
     plan.hopeless = lar_calloc((size_t)mesh->element_count, sizeof *plan.hopeless);
-    memset(plan.waiting, -1, sizeof plan.waiting);
     bool good = plan.run && plan.run_corner && plan.beyond[0] && plan.beyond[1] && plan.stamp &&
-                plan.hopeless && place_rows(&plan, order, habit);
+                plan.hopeless && place_rows(&plan, habit);
     free(plan.run);
     free(plan.run_corner);
     for (int end = 0; end < 2; end++) free(plan.beyond[end]);
