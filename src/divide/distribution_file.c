@@ -1,258 +1,151 @@
 /* The distribution file, in and out; what it looks like is in distribution.h. */
 #include "divide/distribution.h"
 
-#include <errno.h>
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "divide/text_file.h"
 
-static const char magic[] = "lariat-distribution";
+static const char kind[] = "distribution";
 enum { VERSION = 1, MINIMUM_LINE = 4 }; /* the shortest line of an element: "0 0\n" */
 
 /* ---- writing ---------------------------------------------------------------------------- */
 
-static bool print_all(FILE *file, const lar_mesh *mesh, const lar_distribution *d) {
+typedef struct content {
+    const lar_mesh *mesh;
+    const lar_distribution *distribution;
+} content;
+
+static void print_all(FILE *file, const void *context) {
+    const content *c = context;
+    const lar_distribution *d = c->distribution;
     char grid[LAR_GRID_TEXT];
     lar_grid_format(&d->grid, grid);
-    bool good = fprintf(file, "%s %d\ngrid %s\nelements %d\nmesh %016" PRIx64 "\n", magic, VERSION,
-                        grid, (int)d->element_count, lar_mesh_fingerprint(mesh)) > 0;
-    for (int32_t e = 0; e < d->element_count && good; e++)
-        good = fprintf(file, "%d %d\n", (int)e, (int)d->processor[e]) > 0;
-    return good && fputs("end\n", file) >= 0 && fflush(file) == 0;
+    fprintf(file, "lariat-%s %d\ngrid %s\nelements %d\nmesh %016" PRIx64 "\n", kind, VERSION, grid,
+            (int)d->element_count, lar_mesh_fingerprint(c->mesh));
+    for (int32_t e = 0; e < d->element_count && !ferror(file); e++)
+        fprintf(file, "%d %d\n", (int)e, (int)d->processor[e]);
+    fputs("end\n", file);
 }
 
 lar_status lar_distribution_write(const char *path, const lar_mesh *mesh,
                                   const lar_distribution *distribution, lar_error *error) {
-    size_t size = strlen(path) + sizeof ".part";
-    char *part = malloc(size);
-    if (!part) return lar_fail_memory(error, size, path);
-    snprintf(part, size, "%s.part", path);
-    errno = 0;
-    FILE *file = fopen(part, "wb");
-    bool good = file && print_all(file, mesh, distribution);
-    int cause = errno;
-    if (file && fclose(file) != 0 && good) {
-        good = false;
-        cause = errno;
-    }
-    if (good && rename(part, path) != 0) {
-        good = false;
-        cause = errno;
-    }
-    if (file && !good) remove(part);
-    free(part);
-    if (good) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause ? cause : EIO));
+    return lar_text_file_write(path, print_all, &(content){mesh, distribution}, error);
 }
 
 /* ---- reading ---------------------------------------------------------------------------- */
 
-typedef struct reader {
-    const char *path;
-    const lar_mesh *mesh;
-    lar_error *error;
-    lar_text text;
-    lar_span line; /* without comment and outer blanks */
-    int number;    /* of that line */
-} reader;
-
 /* One sentence with file and line. */
-#define REFUSE(r, ...) lar_fail((r)->error, LAR_ERROR_FORMAT, __VA_ARGS__)
+#define REFUSE(f, ...) lar_text_file_refuse(f, (f)->number, __VA_ARGS__)
 
-/* Next line that says something. False at the end of the file. A line must end: a file cut off
- * within its last number must not look like another number. */
-static bool next_line(reader *r, bool *whole) {
-    lar_span line;
-    *whole = true;
-    for (;;) {
-        r->number = r->text.line;
-        if (!lar_text_line(&r->text, &line)) return false;
-        *whole = line.at + line.length < r->text.end;
-        lar_span rest;
-        lar_span_split(line, '#', &line, &rest);
-        r->line = lar_span_trim(line);
-        if (r->line.length > 0) return true;
-    }
-}
-
-static lar_status cut_off(const reader *r) {
-    return REFUSE(r,
-                  "%s:%d: the file ends before its line 'end'; it was cut off, write it again with "
-                  "lariat partition",
-                  r->path, r->number);
-}
-
-/* A line "KEY VALUE"; the value goes to *value. */
-static lar_status expect_key(reader *r, const char *key, lar_span *value) {
-    bool whole;
-    if (!next_line(r, &whole) || !whole) return cut_off(r);
-    lar_span head;
-    if (!lar_span_split(r->line, ' ', &head, value) || !lar_span_equal(head, key))
-        return REFUSE(r, "%s:%d: here must stand '%s' and its value; see docs/formats.md", r->path,
-                      r->number, key);
-    *value = lar_span_trim(*value);
-    return LAR_OK;
-}
-
-static lar_status read_magic(reader *r) {
-    bool whole;
-    lar_span head = {0}, value = {0};
-    int64_t version;
-    if (!next_line(r, &whole) || !lar_span_split(r->line, ' ', &head, &value) ||
-        !lar_span_equal(head, magic) || !lar_span_int64(lar_span_trim(value), &version))
-        return REFUSE(r,
-                      "%s:%d: this is no distribution file, which begins with '%s %d'; make one "
-                      "with lariat partition",
-                      r->path, r->number, magic, VERSION);
-    if (version != VERSION)
-        return REFUSE(r,
-                      "%s:%d: version %" PRId64 " of the distribution file is not known here, only "
-                      "%d; make it anew with lariat partition",
-                      r->path, r->number, version, VERSION);
-    return whole ? LAR_OK : cut_off(r);
-}
-
-static lar_status read_grid(reader *r, lar_grid *grid) {
-    lar_span value;
-    lar_status status = expect_key(r, "grid", &value);
-    if (status) return status;
-    char text[LAR_GRID_TEXT] = {0};
-    if (value.length < sizeof text && !memchr(value.at, 0, value.length))
-        memcpy(text, value.at, value.length);
-    lar_error why = {0};
-    if (lar_grid_parse(text, grid, &why))
-        return REFUSE(r, "%s:%d: %s", r->path, r->number, why.message);
-    return LAR_OK;
-}
-
-static lar_status read_elements(reader *r) {
-    lar_span value;
+static lar_status read_elements(lar_text_file *f, const lar_mesh *mesh) {
     int64_t count;
-    lar_status status = expect_key(r, "elements", &value);
+    lar_status status = lar_text_file_key(f, "elements");
     if (status) return status;
-    if (!lar_span_int64(value, &count) || count < 1)
-        return REFUSE(r, "%s:%d: '%.*s' is no number of elements; write how many the model has",
-                      r->path, r->number, (int)(value.length < 60 ? value.length : 60), value.at);
-    if (count != r->mesh->element_count)
-        return REFUSE(r,
-                      "%s:%d: the file is for %" PRId64 " elements, the model has %d; it belongs "
-                      "to another model, make one for this with lariat partition",
-                      r->path, r->number, count, (int)r->mesh->element_count);
-    if (!lar_claim_fits((unsigned long long)count, MINIMUM_LINE,
-                        (size_t)(r->text.end - r->text.at)))
-        return cut_off(r);
+    if (!lar_text_file_int64(f, &count) || count < 1)
+        return REFUSE(f, "'%.*s' is no number of elements; write how many the model has",
+                      lar_text_file_shown(f->word_length), f->word);
+    if (count != mesh->element_count)
+        return REFUSE(f,
+                      "the file is for %" PRId64 " elements, the model has %d; it belongs to "
+                      "another model, make one for this with lariat partition",
+                      count, (int)mesh->element_count);
+    if (!lar_claim_fits((unsigned long long)count, MINIMUM_LINE, (size_t)(f->end - f->at)))
+        return lar_text_file_cut_off(f);
     return LAR_OK;
 }
 
-static bool hexadecimal(lar_span span, uint64_t *value) {
-    *value = 0;
-    for (size_t i = 0; i < span.length; i++) {
-        char c = span.at[i];
-        int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-        if (digit < 0) return false;
-        *value = *value << 4 | (uint64_t)digit;
-    }
-    return span.length == 16;
-}
-
-static lar_status check_fingerprint(const reader *r, lar_span value) {
+static lar_status check_fingerprint(const lar_text_file *f, const lar_mesh *mesh) {
     uint64_t claimed;
-    if (!hexadecimal(lar_span_trim(value), &claimed))
-        return REFUSE(r,
-                      "%s:%d: behind 'mesh' stand 16 hexadecimal digits; in a file written by hand "
-                      "leave the line out",
-                      r->path, r->number);
-    if (claimed != lar_mesh_fingerprint(r->mesh))
-        return REFUSE(r,
-                      "%s:%d: the file was made for a mesh with other elements than %s; make one "
-                      "for this with lariat partition",
-                      r->path, r->number, r->mesh->source ? r->mesh->source : "this model");
-    return LAR_OK;
+    if (!lar_text_file_hexadecimal(f, &claimed))
+        return REFUSE(f, "behind 'mesh' stand 16 hexadecimal digits; in a file written by hand "
+                         "leave the line out");
+    return lar_text_file_mesh(f, claimed, mesh);
 }
 
 /* One line "ELEMENT PROCESSOR" into processor[], where -1 means not given yet. */
-static lar_status read_pair(const reader *r, lar_distribution *d) {
+static lar_status read_pair(const lar_text_file *f, lar_distribution *d) {
     lar_span first, second;
     int64_t e, p;
-    if (!lar_span_split(r->line, ' ', &first, &second) || !lar_span_int64(first, &e) ||
-        !lar_span_int64(lar_span_trim(second), &p))
-        return REFUSE(r, "%s:%d: '%.*s' is not an element and a processor; write e.g. '17 3'",
-                      r->path, r->number, (int)(r->line.length < 60 ? r->line.length : 60),
-                      r->line.at);
+    if (!lar_span_split((lar_span){f->line, f->line_length}, ' ', &first, &second) ||
+        !lar_span_int64(first, &e) || !lar_span_int64(lar_span_trim(second), &p))
+        return REFUSE(f, "'%.*s' is not an element and a processor; write e.g. '17 3'",
+                      lar_text_file_shown(f->line_length), f->line);
     if (e < 0 || e >= d->element_count)
-        return REFUSE(r, "%s:%d: there is no element %" PRId64 "; they count from 0 to %d", r->path,
-                      r->number, e, (int)d->element_count - 1);
+        return REFUSE(f, "there is no element %" PRId64 "; they count from 0 to %d", e,
+                      (int)d->element_count - 1);
     if (p < 0 || p >= d->grid.count)
-        return REFUSE(r, "%s:%d: the grid has no processor %" PRId64 "; they count from 0 to %d",
-                      r->path, r->number, p, (int)d->grid.count - 1);
+        return REFUSE(f, "the grid has no processor %" PRId64 "; they count from 0 to %d", p,
+                      (int)d->grid.count - 1);
     if (d->processor[e] >= 0)
-        return REFUSE(r, "%s:%d: element %" PRId64 " has a processor already; remove one of both",
-                      r->path, r->number, e);
+        return REFUSE(f, "element %" PRId64 " has a processor already; remove one of both", e);
     d->processor[e] = (int32_t)p;
     return LAR_OK;
 }
 
-static lar_status read_pairs(reader *r, lar_distribution *d) {
+static lar_status read_pairs(lar_text_file *f, const lar_mesh *mesh, lar_distribution *d) {
     for (int64_t given = 0;;) {
-        bool whole;
-        lar_span head = {0}, value = {0};
-        if (!next_line(r, &whole) || (!whole && !lar_span_equal(r->line, "end"))) return cut_off(r);
-        if (lar_span_equal(r->line, "end")) return LAR_OK;
+        if (!lar_text_file_line(f)) return lar_text_file_cut_off(f);
+        lar_span line = {f->line, f->line_length}, head = {0}, value = {0};
+        bool last = lar_span_equal(line, "end");
+        if (!f->whole && !last) return lar_text_file_cut_off(f);
+        f->word = f->line;
+        f->word_length = f->line_length;
+        if (last) return LAR_OK;
         lar_status status;
-        if (given++ == 0 && lar_span_split(r->line, ' ', &head, &value) &&
-            lar_span_equal(head, "mesh"))
-            status = check_fingerprint(r, value);
-        else
-            status = read_pair(r, d);
+        if (given++ == 0 && lar_span_split(line, ' ', &head, &value) &&
+            lar_span_equal(head, "mesh")) {
+            value = lar_span_trim(value);
+            f->word = value.at;
+            f->word_length = value.length;
+            status = check_fingerprint(f, mesh);
+        } else {
+            status = read_pair(f, d);
+        }
         if (status) return status;
     }
 }
 
 /* Every element has a processor, every processor an element, and nothing follows. */
-static lar_status check_complete(reader *r, const lar_distribution *d) {
-    bool whole;
-    int end = r->number;
-    if (next_line(r, &whole))
-        return REFUSE(r, "%s:%d: nothing may follow the line 'end'; remove it", r->path, r->number);
+static lar_status check_complete(lar_text_file *f, const lar_distribution *d) {
+    int end = f->number;
+    lar_status status = lar_text_file_done(f);
+    if (status) return status;
     for (int32_t e = 0; e < d->element_count; e++)
         if (d->processor[e] < 0)
-            return REFUSE(r, "%s:%d: element %d has no processor; add the line '%d PROCESSOR'",
-                          r->path, end, (int)e, (int)e);
+            return lar_text_file_refuse(
+                f, end, "element %d has no processor; add the line '%d PROCESSOR'", (int)e, (int)e);
     int32_t *count = lar_calloc((size_t)d->grid.count, sizeof *count);
-    if (!count) return lar_fail_memory(r->error, 4 * (size_t)d->grid.count, r->path);
+    if (!count) return lar_fail_memory(f->error, 4 * (size_t)d->grid.count, f->path);
     lar_distribution_load(d, count);
     int32_t idle = 0;
     while (idle < d->grid.count && count[idle] > 0) idle++;
     free(count);
     if (idle < d->grid.count)
-        return REFUSE(r,
-                      "%s:%d: processor %d has no element; give it some or choose a smaller grid",
-                      r->path, end, (int)idle);
+        return lar_text_file_refuse(
+            f, end, "processor %d has no element; give it some or choose a smaller grid",
+            (int)idle);
     return LAR_OK;
 }
 
 lar_status lar_distribution_parse(const char *path, const lar_bytes *bytes, const lar_mesh *mesh,
                                   lar_distribution *out, lar_error *error) {
-    reader r = {.path = path, .mesh = mesh, .error = error, .text = lar_text_from(bytes)};
+    lar_text_file f = lar_text_file_from(kind, path, bytes, error);
     lar_distribution d = {0};
     lar_grid grid;
-    lar_status status = read_magic(&r);
-    if (!status) status = read_grid(&r, &grid);
-    if (!status) status = read_elements(&r);
+    lar_status status = lar_text_file_version(&f, VERSION);
+    if (!status) status = lar_text_file_grid(&f, &grid);
+    if (!status) status = read_elements(&f, mesh);
     if (!status) {
         lar_error why = {0};
         status = lar_distribution_create(mesh, &grid, &d, &why);
-        if (status) lar_fail(error, status, "%s:%d: %s", path, r.number, why.message);
+        if (status) lar_fail(error, status, "%s:%d: %s", path, f.number, why.message);
     }
     if (!status) memset(d.processor, 0xff, (size_t)d.element_count * sizeof *d.processor);
-    if (!status) status = read_pairs(&r, &d);
-    if (!status) status = check_complete(&r, &d);
+    if (!status) status = read_pairs(&f, mesh, &d);
+    if (!status) status = check_complete(&f, &d);
     if (status)
         lar_distribution_clear(&d);
     else
