@@ -1,11 +1,12 @@
 /* What can be proved from the schedules of all processors alone, before anything runs.
  *
- *   fit        every processor recovers the elements that the distribution gives it, each once, and
- *              moves each of its nodes once
+ *   fit        every element is recovered by one processor, once; every processor moves each node
+ *              of its elements once, and exchanges no others
  *   sums       played through symbolically, every node of every processor is moved with the forces
  *              of exactly its elements E_k, each once; what is sent holds what its stage says
- *   races      two batches of different threads that touch the same sum (schedule.h, "for one
- *              node") are ordered by waits; nodes move after everyone has read them
+ *   races      whatever happens to a node has the order of schedule.h, "for one node": within a
+ *              thread as it stands there, between threads by waits; nobody begins the next step
+ *              before all nodes have moved
  *   deadlock   no cycle over batches, threads, waits and messages (T 7.5.8)
  *   buffers    a packet that is sent is received, with the same nodes, once; its place in the
  *              receiver's buffer is its own; packets do not overlap and stay inside
@@ -21,7 +22,7 @@
 #include "divide/schedule.h"
 
 typedef struct lar_schedule_proof {
-    int64_t batches, waits, packets, empty_packets, vectors; /* of all processors */
+    int64_t batches, waits, packets, empty_packets, vectors; /* sent by all; `packets` have some */
     int64_t sums;                                            /* nodes of processors proved */
     bool balanced;                                           /* eq. 6.7 */
     int32_t spread; /* steps that two processors can be apart; -1: some never hear of each other */
