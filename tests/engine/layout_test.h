@@ -1,0 +1,240 @@
+/* What the tests of layouts share: what must hold of every layout, looked at from the outside only
+ * (blocks, corners and numbers), and meshes to try them on. */
+#ifndef LAR_TESTS_LAYOUT_TEST_H
+#define LAR_TESTS_LAYOUT_TEST_H
+
+#include "base/simd.h"
+#include "engine/row_plan.h"
+#include "engine_test.h"
+
+/* ---- what must hold ------------------------------------------------------------------------- */
+
+/* `turned` is `node` seen from another side: the same nodes, edges and handedness. */
+TEST_UNUSED static bool is_turn(const int32_t node[8], const int32_t turned[8]) {
+    int old[8];
+    for (int a = 0; a < 8; a++) {
+        old[a] = 0;
+        while (old[a] < 8 && node[old[a]] != turned[a]) old[a]++;
+        if (old[a] == 8) return false;
+    }
+    double axis[3][3]; /* old natural directions of the new xi, eta, zeta */
+    static const int end[3] = {1, 3, 4};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            axis[i][k] = 0.5 * (lar_node_sign[old[end[i]]][k] - lar_node_sign[old[0]][k]);
+    for (int a = 0; a < 8; a++)
+        for (int k = 0; k < 3; k++) {
+            double sign = 0;
+            for (int i = 0; i < 3; i++) sign += lar_node_sign[a][i] * axis[i][k];
+            if (sign != lar_node_sign[old[a]][k]) return false;
+        }
+    double det = 0;
+    for (int k = 0; k < 3; k++)
+        det += axis[0][k] * (axis[1][(k + 1) % 3] * axis[2][(k + 2) % 3] -
+                             axis[1][(k + 2) % 3] * axis[2][(k + 1) % 3]);
+    return det == 1;
+}
+
+TEST_UNUSED static bool is_box(const lar_mesh *mesh, const lar_gid corner[8], int turn) {
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) {
+            int axis = (i + turn) % 3;
+            double x = mesh->position[corner[a]][axis];
+            if (x != mesh->position[corner[lar_node_sign[a][i] < 0 ? 0 : 6]][axis]) return false;
+        }
+    for (int i = 0; i < 3; i++)
+        if (!(mesh->position[corner[0]][i] < mesh->position[corner[6]][i])) return false;
+    return true;
+}
+
+/* The ranges of the threads, one behind the other. */
+TEST_UNUSED static void check_ranges(const lar_layout *layout) {
+    assert_in_range(layout->thread_count, 1, LAR_LAYOUT_THREADS);
+    assert_int_equal(layout->first_node[0], 0);
+    for (int t = 0; t < LAR_LAYOUT_THREADS; t++) {
+        assert_true(layout->first_node[t] % 2 == 0);
+        assert_true(layout->first_node[t] <= layout->first_node[t + 1]);
+    }
+    for (int t = layout->thread_count; t <= LAR_LAYOUT_THREADS; t++)
+        assert_int_equal(layout->first_node[t], layout->node_padded);
+}
+
+/* `owner`: thread that moves a node of the model, -1: not in the layout; NULL: all thread 0. */
+TEST_UNUSED static void check_nodes(const lar_mesh *mesh, const lar_layout *layout,
+                                    const int32_t *owner) {
+    int32_t real = 0;
+    assert_true(layout->node_padded % 2 == 0);
+    assert_in_range(layout->node_padded, layout->node_count + 1, layout->node_count + 2);
+    check_ranges(layout);
+    for (lar_gid n = 0; n < mesh->node_count; n++) {
+        int32_t thread = owner ? owner[n] : 0;
+        if (thread < 0) {
+            assert_int_equal(layout->local[n], -1);
+            continue;
+        }
+        real++;
+        assert_true(layout->local[n] >= layout->first_node[thread]);
+        assert_true(layout->local[n] < layout->first_node[thread + 1]);
+        assert_true(layout->local[n] < layout->node_count);
+        assert_int_equal(layout->global[layout->local[n]], n);
+    }
+    int32_t spare = 0;
+    for (lar_lid n = 0; n < layout->node_padded; n++) {
+        assert_in_range(layout->global[n] + 1, 0, mesh->node_count);
+        spare += layout->global[n] < 0;
+        if (n >= layout->node_count) assert_int_equal(layout->global[n], -1);
+        bool begins = false; /* here a range ends with a spare node and another may begin so */
+        for (int t = 0; t < layout->thread_count; t++) begins |= layout->first_node[t] == n;
+        if (!begins && n < layout->node_count)
+            assert_false(layout->global[n] < 0 && layout->global[n - 1] < 0);
+    }
+    assert_int_equal(spare, layout->node_padded - real);
+}
+
+TEST_UNUSED static void check_row(const lar_layout *layout, const lar_lanes *block, int first,
+                                  int length) {
+    for (int line = 0; line < 4; line++) {
+        lar_lid begin =
+            layout
+                ->local[layout->corner[block->element[LAR_ROW_LANES[first]]][lar_line_left[line]]];
+        for (int k = 0; k < length; k++) {
+            const lar_gid *node = layout->corner[block->element[LAR_ROW_LANES[first + k]]];
+            assert_int_equal(layout->local[node[lar_line_left[line]]], begin + k);
+            assert_int_equal(layout->local[node[lar_line_right[line]]], begin + k + 1);
+        }
+    }
+}
+
+TEST_UNUSED static void check_block(const lar_model *model, const lar_layout *layout,
+                                    const lar_lanes *block, bool *seen) {
+    int elements = 0;
+    for (int lane = 0; lane < LAR_BLOCK; lane++) {
+        lar_gid e = block->element[lane];
+        if (e < 0) continue;
+        assert_in_range(e, 0, model->mesh.element_count - 1);
+        assert_false(seen[e]);
+        seen[e] = true;
+        elements++;
+        assert_int_equal(model->material[model->element_material[e]].law, block->law);
+        if (block->shape == LAR_SHAPE_BOX)
+            assert_true(is_box(&model->mesh, layout->corner[e], block->turn));
+        else
+            assert_int_equal(block->turn, 0);
+    }
+    assert_true(elements > 0);
+    if (block->rows == LAR_ROWS_NONE) return;
+    assert_int_equal(elements, LAR_BLOCK);
+    if (block->rows == LAR_ROWS_EIGHT) {
+        check_row(layout, block, 0, 8);
+    } else {
+        check_row(layout, block, 0, 4);
+        check_row(layout, block, 4, 4);
+    }
+}
+
+/* Threads and batches one after the other; within, equal kinds stand together. */
+TEST_UNUSED static void check_order(const lar_layout *layout) {
+    bool met[LAR_LAW_COUNT][LAR_SHAPE_COUNT][3][LAR_ROWS_COUNT];
+    for (int32_t b = 0; b < layout->block_count; b++) {
+        const lar_lanes *block = &layout->block[b], *last = block - 1;
+        bool together = b > 0 && last->thread == block->thread && last->batch == block->batch;
+        if (!together) {
+            memset(met, 0, sizeof met);
+            assert_true(b == 0 || last->thread < block->thread ||
+                        (last->thread == block->thread && last->batch < block->batch));
+        }
+        bool *here = &met[block->law][block->shape][block->turn][block->rows];
+        bool same = together && last->law == block->law && last->shape == block->shape &&
+                    last->turn == block->turn && last->rows == block->rows;
+        assert_int_equal(*here, same);
+        *here = true;
+    }
+}
+
+typedef struct share {
+    int32_t elements, loose, boxes;
+} share;
+
+TEST_UNUSED static share what_is_in(const lar_layout *layout, int32_t elements) {
+    share in = {elements, 0, 0};
+    for (int32_t b = 0; b < layout->block_count; b++)
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            if (layout->block[b].element[lane] >= 0) {
+                in.loose += layout->block[b].rows == LAR_ROWS_NONE;
+                in.boxes += layout->block[b].shape == LAR_SHAPE_BOX;
+            }
+    return in;
+}
+
+/* ---- meshes -----------------------------------------------------------------------------------
+ */
+
+TEST_UNUSED static uint32_t chance_state;
+
+TEST_UNUSED static int chance(int below) {
+    chance_state = chance_state * 1664525u + 1013904223u;
+    return (int)(chance_state >> 8) % below;
+}
+
+TEST_UNUSED static lar_model *boxes(int nx, int ny, int nz, double shift) {
+    brick b = {{nx, ny, nz}, 0.01, shift, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    return brick_model(&b);
+}
+
+/* Leaves only the elements with keep[e], and their nodes. */
+TEST_UNUSED static void keep_elements(lar_mesh *mesh, const bool *keep) {
+    int32_t *number = lar_calloc((size_t)mesh->node_count, sizeof *number), nodes = 0, kept = 0;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (keep[e]) memcpy(mesh->element[kept++], mesh->element[e], sizeof *mesh->element);
+    mesh->element_count = kept;
+    for (int32_t e = 0; e < kept; e++)
+        for (int a = 0; a < 8; a++) number[mesh->element[e][a]] = 1;
+    for (int32_t n = 0; n < mesh->node_count; n++) {
+        if (!number[n]) continue;
+        memcpy(mesh->position[nodes], mesh->position[n], sizeof mesh->position[n]);
+        number[n] = nodes++;
+    }
+    mesh->node_count = nodes;
+    for (int32_t e = 0; e < kept; e++)
+        for (int a = 0; a < 8; a++) mesh->element[e][a] = number[mesh->element[e][a]];
+    free(number);
+}
+
+/* Numbers the nodes of every element from another of its 24 sides. */
+TEST_UNUSED static void turn_elements(lar_mesh *mesh) {
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        int32_t node[8], turned[8];
+        memcpy(node, mesh->element[e], sizeof node);
+        do { /* any of the 48 ways until it is right-handed */
+            int first = chance(3), second = (first + 1 + chance(2)) % 3;
+            int axis[3] = {first, second, 3 - first - second};
+            int flip[3] = {chance(2), chance(2), chance(2)};
+            for (int a = 0; a < 8; a++)
+                for (int b = 0; b < 8; b++) {
+                    bool same = true;
+                    for (int i = 0; i < 3; i++)
+                        same = same && lar_node_sign[b][axis[i]] ==
+                                           (flip[i] ? -1 : 1) * lar_node_sign[a][i];
+                    if (same) turned[a] = node[b];
+                }
+        } while (!is_turn(node, turned));
+        memcpy(mesh->element[e], turned, sizeof turned);
+    }
+}
+
+/* Three laws: in layers along x where `layers`, else at random. */
+TEST_UNUSED static void mix_laws(lar_model *model, bool layers) {
+    for (int law = 1; law < LAR_LAW_COUNT; law++) {
+        lar_material *material = LAR_MODEL_APPEND(model, material);
+        material->law = (lar_law)law;
+        material->density = 1000;
+        lar_material_from_shear_bulk(material, 2e3, 2e4);
+    }
+    for (int32_t e = 0; e < model->mesh.element_count; e++)
+        model->element_material[e] =
+            layers ? (int)(model->mesh.position[model->mesh.element[e][0]][0] / 0.05) %
+                         model->material_count
+                   : chance(model->material_count);
+}
+
+#endif

@@ -1,0 +1,360 @@
+/* Layouts of parts of models: what must hold of every layout, and beyond it threads, batches,
+ * owners and the corners of the whole. At last how many blocks the demonstration organ needs when
+ * it is cut (printed), since a part may not cost much more than its share. */
+#include "divide/distribution.h"
+#include "engine/finish.h"
+#include "layout_test.h"
+#include "model/demo/demo.h"
+
+/* ---- parts ---------------------------------------------------------------------------------- */
+
+/* The arrays of a part that may be written. */
+typedef struct slice {
+    lar_part part;
+    int32_t *thread, *batch, *owner;
+} slice;
+
+static slice new_slice(const lar_mesh *mesh, int32_t threads, bool within) {
+    slice s = {.thread = lar_calloc((size_t)mesh->element_count, sizeof(int32_t)),
+               .batch = lar_calloc((size_t)mesh->element_count, sizeof(int32_t)),
+               .owner = lar_calloc((size_t)mesh->node_count, sizeof(int32_t))};
+    s.part = (lar_part){threads, s.thread, s.batch, s.owner, within};
+    return s;
+}
+
+static void free_slice(slice *s) {
+    free(s->thread);
+    free(s->batch);
+    free(s->owner);
+}
+
+/* Every node is moved by a thread that has an element there, the first one or any. */
+static void give_nodes(const lar_mesh *mesh, slice *s, bool any) {
+    for (int32_t n = 0; n < mesh->node_count; n++) s->owner[n] = -1;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 0; s->thread[e] >= 0 && a < 8; a++) {
+            int32_t *owner = &s->owner[mesh->element[e][a]];
+            if (*owner < 0 || (any ? chance(2) == 0 : s->thread[e] < *owner)) *owner = s->thread[e];
+        }
+}
+
+/* Batch 0 at the border to other processors, 1 behind it, and so on. */
+static void batches_from_border(const lar_mesh *mesh, slice *s, int32_t most) {
+    int32_t *depth = lar_calloc((size_t)mesh->node_count, sizeof *depth);
+    for (int32_t n = 0; n < mesh->node_count; n++) depth[n] = most;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 0; s->thread[e] < 0 && a < 8; a++) depth[mesh->element[e][a]] = 0;
+    for (int32_t e = 0; e < mesh->element_count; e++) s->batch[e] = most;
+    for (int32_t layer = 0; layer < most; layer++) {
+        for (int32_t e = 0; e < mesh->element_count; e++)
+            for (int a = 0; s->thread[e] >= 0 && s->batch[e] == most && a < 8; a++)
+                if (depth[mesh->element[e][a]] == layer) s->batch[e] = layer;
+        for (int32_t e = 0; e < mesh->element_count; e++)
+            for (int a = 0; s->batch[e] == layer && a < 8; a++)
+                if (depth[mesh->element[e][a]] == most) depth[mesh->element[e][a]] = layer + 1;
+    }
+    free(depth);
+}
+
+/* ---- what must hold ------------------------------------------------------------------------- */
+
+static void check_lanes(const lar_part *part, const lar_lanes *block) {
+    int32_t earliest = INT32_MAX;
+    int row = block->rows == LAR_ROWS_FOUR ? 4 : 8;
+    for (int k = 0; k < LAR_BLOCK; k++) {
+        lar_gid e = block->element[LAR_ROW_LANES[k]];
+        if (e < 0) continue;
+        assert_int_equal(part->thread[e], block->thread);
+        if (part->batch[e] < earliest) earliest = part->batch[e];
+        if (part->rows_within_batches && block->rows != LAR_ROWS_NONE)
+            assert_int_equal(part->batch[e],
+                             part->batch[block->element[LAR_ROW_LANES[k / row * row]]]);
+    }
+    assert_int_equal(block->batch, earliest);
+}
+
+static void check_part(const lar_model *model, const lar_layout *whole, const lar_part *part,
+                       const lar_layout *layout) {
+    const lar_mesh *mesh = &model->mesh;
+    bool *seen = lar_calloc((size_t)mesh->element_count, sizeof *seen);
+    assert_ptr_equal(layout->corner, whole->corner);
+    assert_int_equal(layout->thread_count, part->threads);
+    check_nodes(mesh, layout, part->owner);
+    for (int32_t b = 0; b < layout->block_count; b++) {
+        check_block(model, layout, &layout->block[b], seen);
+        check_lanes(part, &layout->block[b]);
+    }
+    for (lar_gid e = 0; e < mesh->element_count; e++)
+        assert_int_equal(seen[e], part->thread[e] >= 0);
+    check_order(layout);
+    free(seen);
+}
+
+/* Lays out a part and checks it; the cost. */
+static double cost_of_part(const lar_model *model, const lar_layout *whole, const lar_part *part) {
+    lar_layout layout;
+    lar_error error;
+    if (lar_layout_create_part(model, whole, part, &layout, &error)) fail_msg("%s", error.message);
+    check_part(model, whole, part, &layout);
+    double cost = lar_layout_cost(&layout);
+    lar_layout_destroy(&layout);
+    lar_layout_destroy(&layout); /* idempotent, and the whole keeps its corners */
+    return cost;
+}
+
+/* ---- tests --------------------------------------------------------------------------------------
+ */
+
+/* Threads in slabs or at random, some elements elsewhere, batches at random. */
+static void fill_at_random(const lar_mesh *mesh, slice *s) {
+    int32_t slab = 1 + chance(mesh->element_count), elsewhere = chance(3) * 20;
+    int32_t batches = 1 + chance(5), way = chance(3);
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        s->thread[e] = way == 0   ? chance(s->part.threads)
+                       : way == 1 ? e / slab % s->part.threads
+                                  : s->part.threads / 2;
+        s->batch[e] = way == 0 ? chance(batches) : e / (1 + slab / 2) % batches;
+        if (chance(100) < elsewhere) s->thread[e] = -1;
+    }
+    s->thread[0] = 0;
+    give_nodes(mesh, s, chance(2));
+}
+
+static void parts_of_bricks(void **unused) {
+    (void)unused;
+    chance_state = 11;
+    for (int n = 0; n < 120; n++) {
+        brick b = {{1 + chance(14), 1 + chance(9), 1 + chance(7)},
+                   0.01,
+                   n % 2 ? 0.1 : 0,
+                   LAR_LAW_neo_hookean,
+                   2e3,
+                   2e4,
+                   1000};
+        lar_model *model = brick_model(&b);
+        if (n % 3 == 0) mix_laws(model, n % 2);
+        if (n % 5 == 0) turn_elements(&model->mesh);
+        lar_layout whole;
+        assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+        for (int i = 0; i < 4; i++) {
+            slice s = new_slice(&model->mesh, 1 + chance(i < 3 ? 4 : LAR_LAYOUT_THREADS), i % 2);
+            fill_at_random(&model->mesh, &s);
+            cost_of_part(model, &whole, &s.part);
+            free_slice(&s);
+        }
+        lar_layout_destroy(&whole);
+        lar_model_destroy(model);
+    }
+}
+
+/* A row of eight needs its lines in one hand. */
+static void owners_end_rows(void **unused) {
+    (void)unused;
+    brick b = {{16, 1, 1}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = brick_model(&b);
+    lar_layout whole;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    slice s = new_slice(&model->mesh, 2, false);
+    assert_true(cost_of_part(model, &whole, &s.part) == 2);
+    for (int32_t n = 0; n < model->mesh.node_count; n++)
+        s.owner[n] = 1; /* another thread's: fine */
+    assert_true(cost_of_part(model, &whole, &s.part) == 2);
+    for (int i = 0; i < 4; i++) s.owner[brick_node(&b, 8, i % 2, i / 2)] = 0;
+    assert_true(cost_of_part(model, &whole, &s.part) > 2); /* rows 0..3 and 9..12 */
+    s.owner[brick_node(&b, 8, 0, 0)] = 1;
+    free_slice(&s);
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
+/* With rows within batches nothing is early; else a row is as early as its first element. */
+static void batches_and_rows(void **unused) {
+    (void)unused;
+    brick b = {{8, 4, 1}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = brick_model(&b);
+    lar_layout whole;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    for (int within = 0; within < 2; within++) {
+        slice s = new_slice(&model->mesh, 1, within);
+        for (int e = 0; e < 32; e++) s.batch[e] = e % 8 < 4 ? 3 : 7;
+        double cost = cost_of_part(model, &whole, &s.part);
+        assert_true(within ? cost > 4 : cost == 4);
+        free_slice(&s);
+    }
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
+static void one_element_and_idle_threads(void **unused) {
+    (void)unused;
+    brick b = {{5, 2, 2}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = brick_model(&b);
+    lar_layout whole, layout;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    for (int32_t thread = 0; thread < 4; thread++) {
+        slice s = new_slice(&model->mesh, 4, false);
+        for (int e = 0; e < 20; e++) s.thread[e] = e == 7 ? thread : -1;
+        give_nodes(&model->mesh, &s, false);
+        cost_of_part(model, &whole, &s.part);
+        assert_int_equal(lar_layout_create_part(model, &whole, &s.part, &layout, NULL), LAR_OK);
+        assert_int_equal(layout.block_count, 1);
+        assert_int_equal(layout.node_count, 8);
+        assert_int_equal(layout.node_padded, 10);
+        assert_int_equal(layout.first_node[thread], 0);
+        assert_int_equal(layout.first_node[thread + 1], thread == 3 ? 10 : 8);
+        lar_layout_destroy(&layout);
+        s.owner[0] = (thread + 1) % 4; /* moved here, though no element here has it */
+        cost_of_part(model, &whole, &s.part);
+        free_slice(&s);
+    }
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
+static void what_is_not_there_is_refused(void **unused) {
+    (void)unused;
+    brick b = {{3, 1, 1}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = brick_model(&b);
+    lar_layout whole, layout;
+    lar_error error;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    for (int fault = 0; fault < 6; fault++) {
+        slice s = new_slice(&model->mesh, 2, false);
+        if (fault == 0) s.part.threads = 0;
+        if (fault == 1) s.part.threads = LAR_LAYOUT_THREADS + 1;
+        if (fault == 2) s.thread[1] = 2;
+        if (fault == 3) s.batch[1] = -1;
+        if (fault == 4) s.owner[3] = -1;
+        if (fault == 5) s.owner[3] = 2;
+        assert_int_equal(lar_layout_create_part(model, &whole, &s.part, &layout, &error),
+                         LAR_ERROR_ARGUMENT);
+        assert_non_null(strstr(error.message, fault < 2   ? "threads in a processor"
+                                              : fault < 4 ? "element 2 is given to"
+                                                          : "node 4 of element 3"));
+        assert_null(layout.block);
+        free_slice(&s);
+    }
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
+/* ---- the organ ------------------------------------------------------------------------------ */
+
+static lar_model *organ(void) {
+    brick b = soft_brick;
+    lar_model *model = brick_model(&b);
+    lar_mesh_clear(&model->mesh);
+    assert_int_equal(lar_demo_mesh(&model->mesh, NULL), LAR_OK);
+    free(model->element_material);
+    model->element_material = lar_calloc(LAR_DEMO_ELEMENTS, sizeof(int32_t));
+    return model;
+}
+
+typedef struct tally {
+    int32_t blocks[LAR_ROWS_COUNT], odd;
+    double cost;
+} tally;
+
+static void count_blocks(const lar_layout *layout, tally *in) {
+    for (int32_t b = 0; b < layout->block_count; b++) {
+        const lar_lanes *block = &layout->block[b];
+        in->blocks[block->rows]++;
+        for (int half = 0; half < 2; half++)
+            for (int line = 0; line < 4 && block->rows; line++)
+                if (!half || block->rows == LAR_ROWS_FOUR)
+                    in->odd += layout->local[layout->corner[block->element[LAR_ROW_LANES[4 * half]]]
+                                                           [lar_line_left[line]]] %
+                               2;
+    }
+    in->cost += lar_layout_cost(layout);
+}
+
+static void print_tally(const char *what, const tally *in) {
+    print_message("%-44s %4d eights %3d pairs of fours %3d loose, cost %.2f (ideal %.2f) odd %d\n",
+                  what, in->blocks[LAR_ROWS_EIGHT], in->blocks[LAR_ROWS_FOUR],
+                  in->blocks[LAR_ROWS_NONE], in->cost, LAR_DEMO_ELEMENTS / 8.0, in->odd);
+}
+
+/* One processor with one thread may lose next to nothing against the plain loop. */
+static void all_of_the_organ_in_one_part(void **unused) {
+    (void)unused;
+    lar_model *model = organ();
+    lar_layout whole, layout;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    tally before = {0}, after = {0};
+    count_blocks(&whole, &before);
+    slice s = new_slice(&model->mesh, 1, false);
+    assert_int_equal(lar_layout_create_part(model, &whole, &s.part, &layout, NULL), LAR_OK);
+    check_part(model, &whole, &s.part, &layout);
+    count_blocks(&layout, &after);
+    print_tally("whole layout", &before);
+    print_tally("the same as a part", &after);
+    assert_true(after.cost <= 1.03 * before.cost);
+    lar_layout_destroy(&layout);
+    lar_layout_destroy(&whole);
+    free_slice(&s);
+    lar_model_destroy(model);
+}
+
+/* The organ cut for a grid, each processor again into threads. */
+static void cut_organ(const lar_model *model, const lar_layout *whole, const int grid[3],
+                      int32_t threads, int32_t batches, bool within) {
+    const lar_mesh *mesh = &model->mesh;
+    lar_distribution cut, finer;
+    lar_grid places, workers;
+    lar_error error;
+    assert_int_equal(lar_grid_make(grid[0], grid[1], grid[2], &places, &error), LAR_OK);
+    assert_int_equal(lar_grid_make(grid[0], grid[1], grid[2] * threads, &workers, &error), LAR_OK);
+    assert_int_equal(lar_distribution_cut(mesh, &places, &cut, &error), LAR_OK);
+    assert_int_equal(lar_distribution_cut(mesh, &workers, &finer, &error), LAR_OK);
+    tally in = {0};
+    for (int32_t p = 0; p < places.count; p++) {
+        slice s = new_slice(mesh, threads, within);
+        for (int32_t e = 0; e < mesh->element_count; e++) {
+            int32_t place[3];
+            lar_grid_place(&workers, finer.processor[e], place);
+            s.thread[e] = cut.processor[e] == p ? place[2] % threads : -1;
+        }
+        batches_from_border(mesh, &s, batches);
+        give_nodes(mesh, &s, false);
+        lar_layout layout;
+        assert_int_equal(lar_layout_create_part(model, whole, &s.part, &layout, NULL), LAR_OK);
+        check_part(model, whole, &s.part, &layout);
+        count_blocks(&layout, &in);
+        lar_layout_destroy(&layout);
+        free_slice(&s);
+    }
+    char what[80];
+    snprintf(what, sizeof what, "%dx%dx%d, %d threads, batches %d%s", grid[0], grid[1], grid[2],
+             threads, batches + 1, within ? ", rows within" : "");
+    print_tally(what, &in);
+    lar_distribution_clear(&cut);
+    lar_distribution_clear(&finer);
+}
+
+static void the_organ_cut(void **unused) {
+    (void)unused;
+    static const int grids[][3] = {{2, 1, 1}, {2, 2, 1}, {2, 2, 3}};
+    lar_model *model = organ();
+    lar_layout whole;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    for (int32_t threads = 1; threads < 4; threads++)
+        for (int g = 0; g < 3; g++)
+            for (int within = 0; within < 2; within++)
+                cut_organ(model, &whole, grids[g], threads, 3, within);
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_of_bricks),
+        cmocka_unit_test(owners_end_rows),
+        cmocka_unit_test(batches_and_rows),
+        cmocka_unit_test(one_element_and_idle_threads),
+        cmocka_unit_test(what_is_not_there_is_refused),
+        cmocka_unit_test(all_of_the_organ_in_one_part),
+        cmocka_unit_test(the_organ_cut),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
