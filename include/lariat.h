@@ -153,9 +153,30 @@ typedef struct lar_options {
     lar_element_kind element;
     lar_isa isa;
     double time_step; /* seconds; 0 takes the model's */
+
+    /* The parallel computer: processors in a grid, each with its part of the model. The state and
+     * its hash are the same with all of these (docs/parallel.md). Strings are read by
+     * lar_simulation_create only. */
+    const char *grid;         /* processors along x, y and z, "2x2x3"; NULL: no division */
+    int32_t threads;          /* of every processor; 0: one */
+    const char *scheme;       /* who sends to whom: "all" (NULL), "local", "one", "two" */
+    const char *channels;     /* of scheme local: "sequential" (NULL) or "concurrent" */
+    const char *distribution; /* "cut" (NULL), "genetic", "metis", "random", or a file's path */
+    const char *schedules;    /* a folder of schedule files, instead of all these */
+    const char *comm;         /* "threads" (NULL); "shm", "ucx", "mpi", "tcp": other processes */
+    uint64_t delays;          /* seed of random delays, to test with; 0: none */
+    int verify;               /* not 0: steps verify the schedules instead of moving (T 6.9) */
+    int pin;                  /* not 0: bind threads to cores where there are enough */
+
+    /* When processors are processes: which one this is, and how they find each other. Processor 0
+     * is the one that is talked to; the others call lar_simulation_serve. */
+    int32_t processor;
+    const char *master; /* "host:port" where processor 0 listens */
+    int listener;       /* processor 0: a socket that listens already, taken over; -1: none */
 } lar_options;
 
-/* hex8, the widest instruction set, the model's time step. Start from these: options may grow. */
+/* hex8, the widest instruction set, the model's time step, one processor. Start from these: options
+ * may grow. */
 LAR_API lar_options lar_options_default(void);
 
 /* Compiles the model for this processor and sets the state to rest. `options` may be NULL. The
@@ -170,6 +191,23 @@ LAR_API void lar_simulation_destroy(lar_simulation *simulation);
  * calls fail with the same message. */
 LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
                                           lar_error *error);
+
+/* Called after every step with the number of steps done, by the thread that advances; 0 ends the
+ * advance: at once, or, with several processors, some steps later in the same step on all. */
+typedef int lar_watch(void *context, uint64_t step);
+
+/* The same, watched. Ask lar_simulation_steps where it ended. */
+LAR_API lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
+                                                  lar_watch *watch, void *context,
+                                                  lar_error *error);
+
+/* For processes other than processor 0: computes what processor 0 asks for, and returns when it
+ * destroys its simulation, or with LAR_ERROR_PEER when a processor is lost. */
+LAR_API lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error);
+
+/* Processors and threads of each, as they are. */
+LAR_API int32_t lar_simulation_processors(const lar_simulation *simulation);
+LAR_API int32_t lar_simulation_threads(const lar_simulation *simulation);
 
 LAR_API uint64_t lar_simulation_steps(const lar_simulation *simulation);
 LAR_API double lar_simulation_time(const lar_simulation *simulation);      /* [s] */

@@ -21,10 +21,12 @@ static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints, 
 
 /* Sets overlap at edges and corners: what is held already is not held again, or its reaction would
  * count twice. (Whatever is moved is held by nothing else: lar_model_check.) */
-static void add_constraints(lar_conditions *c, const int32_t *local, const lar_node_list *nodes,
+static void add_constraints(lar_conditions *c, const int32_t *local,
+                            const lar_condition_share *share, const lar_node_list *nodes,
                             unsigned axes, double by, int curve) {
     for (int32_t i = 0; i < nodes->count; i++) {
         int32_t node = nodes->node[i];
+        if (share && share->holds[node] != share->thread) continue;
         unsigned fresh = axes & ~(unsigned)c->held[node];
         for (int axis = 0; axis < 3; axis++)
             if (fresh & (1u << axis))
@@ -45,7 +47,19 @@ static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t 
     }
 }
 
-lar_status lar_conditions_create(const lar_model *model, const int32_t *local, lar_conditions *c,
+static void add_forces(lar_conditions *c, const int32_t *local, const lar_condition_share *share,
+                       const lar_nodal_load *load) {
+    for (int32_t k = 0; k < load->nodes.count; k++) {
+        int32_t node = load->nodes.node[k];
+        if (share && share->loads[node] != share->thread) continue;
+        lar_point_force *f = &c->force[c->force_count++];
+        *f = (lar_point_force){.node = 4 * local[node], .curve = load->curve};
+        memcpy(f->force, load->force, sizeof f->force);
+    }
+}
+
+lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, lar_conditions *c,
                                  lar_error *error) {
     *c = (lar_conditions){0};
     size_t constraints = 0, forces = 0, pressures = 0;
@@ -60,23 +74,23 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local, l
     if (status) return status;
 
     for (int i = 0; i < model->fix_count; i++)
-        add_constraints(c, local, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
+        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
     for (int i = 0; i < model->move_count; i++)
-        add_constraints(c, local, &model->move[i].nodes, model->move[i].axes, model->move[i].by,
-                        model->move[i].curve);
-    for (int i = 0; i < model->load_count; i++) {
-        const lar_nodal_load *load = &model->load[i];
-        for (int32_t k = 0; k < load->nodes.count; k++) {
-            lar_point_force *f = &c->force[c->force_count++];
-            *f = (lar_point_force){.node = 4 * local[load->nodes.node[k]], .curve = load->curve};
-            memcpy(f->force, load->force, sizeof f->force);
-        }
-    }
+        add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
+                        model->move[i].by, model->move[i].curve);
+    for (int i = 0; i < model->load_count; i++) add_forces(c, local, share, &model->load[i]);
     for (int i = 0; i < model->pressure_count; i++)
-        for (int32_t k = 0; k < model->pressure[i].count; k++)
-            add_pressure(c, &model->mesh, local, model->pressure[i].face[k], &model->pressure[i]);
+        for (int32_t k = 0; k < model->pressure[i].count; k++) {
+            int32_t face = model->pressure[i].face[k];
+            if (share && share->presses[face / 6] != share->thread) continue;
+            add_pressure(c, &model->mesh, local, face, &model->pressure[i]);
+        }
     for (int axis = 0; axis < 3; axis++)
         if (model->gravity_curve[axis] >= 0) c->gravity_varies = true;
+    if (share) {
+        free(c->held);
+        c->held = NULL;
+    }
     return LAR_OK;
 }
 
@@ -145,8 +159,8 @@ static double gravity_half_work(const lar_condition_context *context, double tim
                                 const lar_state *state) {
     double gravity[3], momentum[3] = {0};
     lar_gravity_at(context->model, time, gravity);
-    for (int32_t n = 0; n < state->node_count; n++)
-        for (int i = 0; i < 3; i++) momentum[i] += context->mass[n] * state->v[4 * n + i];
+    for (int32_t n = context->first; n < context->end; n++)
+        for (int i = 0; i < 3; i++) momentum[i] += context->weight[n] * state->v[4 * n + i];
     return half_work(gravity, momentum, context->time_step);
 }
 
@@ -212,9 +226,10 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         const lar_constraint *constraint = &c->constraint[i];
         double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
         double mass = context->mass[constraint->value / 4];
+        double weight = context->weight[constraint->value / 4];
         /* The kernel moved this value as if it were free and counted that as damped motion. */
         double before = constraint->curve < 0 ? 0 : constraint->before;
-        state->damped -= mass * (before + *v) * (before + *v);
+        state->damped -= weight * (before + *v) * (before + *v);
         if (constraint->curve < 0) {
             *u = 0;
             *v = 0;
@@ -224,13 +239,13 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
-        state->damped += mass * (before + *v) * (before + *v);
+        state->damped += weight * (before + *v) * (before + *v);
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / dt;
         double reaction =
             mass * (acceleration + model->damping * mean - gravity[constraint->value % 4]) +
             constraint->force;
-        work += reaction * mean * dt;
+        if (weight > 0) work += reaction * mean * dt;
     }
     return work;
 }

@@ -49,21 +49,33 @@ typedef struct lar_conditions {
     lar_constraint *constraint;
     lar_point_force *force;
     lar_face_pressure *pressure;
-    uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint` */
+    uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
     bool gravity_varies;
 } lar_conditions;
 
 /* Everything a step needs to know besides the lists. */
 typedef struct lar_condition_context {
     const lar_model *model;
-    double scale;       /* force units per newton */
-    double time_step;   /* [s] */
-    const double *mass; /* by local node */
+    double scale;         /* force units per newton */
+    double time_step;     /* [s] */
+    const double *mass;   /* by local node */
+    const double *weight; /* the same, 0 for nodes that another processor accounts for */
+    int32_t first, end;   /* local nodes that the thread moves */
 } lar_condition_context;
 
-/* `local` maps global to local nodes. An axis that several entries hold is held once. */
+/* The thread of one processor that the conditions are for. */
+typedef struct lar_condition_share {
+    int32_t thread;
+    const int32_t *holds;   /* [nodes of the model] thread that moves it: supports go there */
+    const int32_t *loads;   /* [nodes of the model] thread that applies the loads of the node */
+    const int32_t *presses; /* [elements of the model] thread that applies pressures on its faces */
+} lar_condition_share;
+
+/* `local` maps global to local nodes. An axis that several entries hold is held once. With a share
+ * (NULL: all) only the conditions of one thread, and no `held`. */
 lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
-                                 lar_conditions *conditions, lar_error *error);
+                                 const lar_condition_share *share, lar_conditions *conditions,
+                                 lar_error *error);
 void lar_conditions_destroy(lar_conditions *conditions); /* idempotent */
 
 /* Adds the loads at `time` to state->force. Returns a node (local) whose loads are too large for

@@ -110,31 +110,40 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
  * of the third. Decides about prefetching only. */
 enum { CACHED_BYTES = 12 << 20 };
 
+static bool same_run(const lar_lanes *a, const lar_lanes *b) {
+    return a->thread == b->thread && a->batch == b->batch && a->law == b->law &&
+           a->shape == b->shape && a->turn == b->turn && a->rows == b->rows;
+}
+
 /* The runs of equal blocks, and the memory they need. */
-static void list_runs(lar_domain *domain) {
+static lar_status list_runs(lar_domain *domain, lar_error *error) {
     const lar_layout *layout = &domain->layout;
+    int32_t runs = 0;
+    for (int32_t b = 0; b < layout->block_count; b++)
+        runs += b == 0 || !same_run(&layout->block[b - 1], &layout->block[b]);
+    domain->run = lar_calloc((size_t)runs, sizeof *domain->run);
+    domain->run_first = lar_calloc((size_t)runs, sizeof *domain->run_first);
+    if (!domain->run || !domain->run_first)
+        return lar_fail_memory(error, (size_t)runs * sizeof *domain->run, "the runs of elements");
     for (int32_t b = 0; b < layout->block_count; b++) {
         const lar_lanes *lanes = &layout->block[b];
-        lar_block_run *run = domain->run_count ? &domain->run[domain->run_count - 1] : NULL;
-        if (!run || run->law != lanes->law || run->shape != lanes->shape ||
-            run->turn != lanes->turn || run->rows != lanes->rows) {
+        if (b == 0 || !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
-            run = &domain->run[domain->run_count++];
-            *run =
+            domain->run[domain->run_count++] =
                 (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL};
         }
-        run->count++;
+        domain->run[domain->run_count - 1].count++;
         domain->block_bytes += lar_block_size(lanes->shape);
     }
+    return LAR_OK;
 }
 
 static lar_status build_blocks(lar_domain *domain, lar_error *error) {
-    list_runs(domain);
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
     if (!domain->blocks) return lar_fail_memory(error, domain->block_bytes, "the elements");
     double steepest = 0;
     char *memory = domain->blocks;
-    for (int r = 0; r < domain->run_count; r++) {
+    for (int32_t r = 0; r < domain->run_count; r++) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
         run->streamed = domain->block_bytes > CACHED_BYTES;
@@ -182,6 +191,7 @@ static lar_status spread_mass(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
     domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
     domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
+    domain->weight = domain->mass;
     if (!domain->mass || !domain->push)
         return lar_fail_memory(error, 2 * nodes * sizeof *domain->mass, "the masses");
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
@@ -228,13 +238,15 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
+    if (!status) status = list_runs(domain, error);
     if (!status) {
         choose_scale(domain);
         prepare_motion(domain);
         if (domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     }
     if (!status)
-        status = lar_conditions_create(model, domain->layout.local, &domain->conditions, error);
+        status =
+            lar_conditions_create(model, domain->layout.local, NULL, &domain->conditions, error);
     double largest = status ? 0 : lar_conditions_largest(&domain->conditions);
     if (!status && largest * domain->scale > 0x1p58)
         status = lar_fail(error, LAR_ERROR_MODEL,
@@ -245,11 +257,55 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     return status;
 }
 
+/* Masses and pushes of a part are those of the whole: a node's mass is that of all its elements. */
+static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_domain *domain,
+                             lar_error *error) {
+    size_t nodes = (size_t)domain->layout.node_padded;
+    domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
+    domain->weight = lar_calloc_aligned(nodes, sizeof *domain->weight);
+    domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
+    if (!domain->mass || !domain->weight || !domain->push)
+        return lar_fail_memory(error, 3 * nodes * sizeof *domain->mass, "the masses");
+    for (size_t n = 0; n < nodes; n++) {
+        lar_gid g = domain->layout.global[n];
+        if (g < 0) continue;
+        lar_lid there = whole->layout.local[g];
+        domain->mass[n] = whole->mass[there];
+        domain->push[n] = whole->push[there];
+        if (counted[g]) domain->weight[n] = domain->mass[n];
+    }
+    return LAR_OK;
+}
+
+lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
+                                  const bool *counted, lar_domain *domain, lar_error *error) {
+    *domain = (lar_domain){.model = whole->model,
+                           .kernels = whole->kernels,
+                           .kind = whole->kind,
+                           .scale = whole->scale,
+                           .time_step = whole->time_step,
+                           .stable_step = whole->stable_step,
+                           .stable_worst = whole->stable_worst,
+                           .motion = whole->motion};
+    lar_status status =
+        lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
+    if (!status) status = list_spares(domain, error);
+    if (!status) status = copy_nodes(whole, counted, domain, error);
+    if (!status) status = list_runs(domain, error);
+    if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+    domain->limits = whole->limits; /* a run stops for the same reason on any grid */
+    if (status) lar_domain_destroy(domain);
+    return status;
+}
+
 void lar_domain_destroy(lar_domain *domain) {
     lar_conditions_destroy(&domain->conditions);
     lar_layout_destroy(&domain->layout);
+    free(domain->run);
+    free(domain->run_first);
     free(domain->blocks);
     free(domain->spare);
+    if (domain->weight != domain->mass) free(domain->weight);
     free(domain->mass);
     free(domain->push);
     *domain = (lar_domain){0};

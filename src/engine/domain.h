@@ -13,11 +13,9 @@
 #define LAR_ENGINE_DOMAIN_H
 
 #include "engine/conditions.h"
-#include "engine/layout.h"
+#include "engine/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
-
-enum { LAR_RUNS_MAX = LAR_LAW_COUNT * 4 * LAR_ROWS_COUNT }; /* general, boxes in 3 turns */
 
 typedef struct lar_domain {
     const lar_model *model;
@@ -25,14 +23,16 @@ typedef struct lar_domain {
     lar_element_kind kind;
 
     lar_layout layout;
-    int run_count;
-    lar_block_run run[LAR_RUNS_MAX]; /* hex8 only */
-    int32_t run_first[LAR_RUNS_MAX]; /* the run's first block in layout.block */
-    void *blocks;                    /* all blocks of all runs */
+    int32_t run_count;
+    lar_block_run *run; /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
+    int32_t *run_first; /* [run_count] the run's first block in layout.block */
+    void *blocks;       /* all blocks of all runs */
     size_t block_bytes;
     int32_t spare_count;
-    lar_lid *spare; /* nodes without mass */
+    lar_lid *spare; /* nodes without mass, ascending */
     double *mass;   /* [layout.node_padded] kg; spare nodes 0 */
+    double *weight; /* the same, 0 where another processor accounts for the node; in a whole model
+                       `mass` itself */
     double *push;   /* [layout.node_padded] see lar_node_update */
 
     double scale;       /* force units per newton, a power of two */
@@ -53,6 +53,13 @@ lar_status lar_domain_create(const lar_model *model, const lar_options *options,
 lar_status lar_domain_create_styled(const lar_model *model, const lar_options *options,
                                     lar_layout_style style, lar_domain *domain, lar_error *error);
 void lar_domain_destroy(lar_domain *domain); /* idempotent */
+
+/* The domain of one processor of several: the same scale, step, limits and turned corners as the
+ * whole, which must outlive it. counted[node of the model]: whether this processor accounts for the
+ * node's energies, for one of several has to. Conditions are left to the caller: they belong to
+ * threads. */
+lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
+                                  const bool *counted, lar_domain *domain, lar_error *error);
 
 /* The elements' bound of the time step at rest and the element that sets it. */
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,

@@ -246,6 +246,7 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
     if (!results || !simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_results_add needs results and a simulation; neither may be NULL");
+    lar_simulation_state(simulation);
     lar_status status = check_finite(simulation, error);
     if (!status) status = add_frame(results, simulation, error);
     if (!status && results->count - results->listed > results->count / 1000)

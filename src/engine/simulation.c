@@ -7,7 +7,7 @@
 #include "engine/measure.h"
 
 lar_options lar_options_default(void) {
-    return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO};
+    return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO, .listener = -1};
 }
 
 /* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
@@ -62,6 +62,23 @@ static lar_status check_damping(const lar_domain *domain, lar_error *error) {
                     2 / domain->time_step, 2 / model->damping);
 }
 
+static bool is_parallel(const lar_options *options) {
+    return options->grid || options->threads > 1 || options->schedules || options->distribution ||
+           options->comm || options->verify;
+}
+
+static lar_status check_options(const lar_options *options, lar_error *error) {
+    if ((unsigned)options->element > LAR_ELEMENT_HEX8_MATRIX)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
+                        (int)options->element);
+    if (options->threads < 0 || options->threads > LAR_THREADS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%d threads of a processor; there can be 1 to %d, and more processors",
+                        (int)options->threads, LAR_THREADS_MOST);
+    return LAR_OK;
+}
+
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
                                  lar_simulation **simulation, lar_error *error) {
     if (!model || !simulation)
@@ -69,13 +86,11 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
                         "lar_simulation_create needs a model and a "
                         "place for the simulation");
     lar_options chosen = options ? *options : lar_options_default();
-    if ((unsigned)chosen.element > LAR_ELEMENT_HEX8_MATRIX)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
-                        (int)chosen.element);
+    lar_status status = check_options(&chosen, error);
+    if (status) return status;
     lar_simulation *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
-    lar_status status = lar_domain_create(model, &chosen, &made->domain, error);
+    status = lar_domain_create(model, &chosen, &made->domain, error);
     if (!status) status = check_damping(&made->domain, error);
     if (!status) status = lar_state_create(&made->state, made->domain.layout.node_padded, error);
     if (status) {
@@ -84,33 +99,96 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
     }
     set_initial_displacements(made);
     set_initial_velocities(made);
+    if (is_parallel(&chosen))
+        status = lar_computer_create(&made->domain, &made->state, &chosen, &made->computer, error);
+    if (status) {
+        lar_simulation_destroy(made);
+        return status;
+    }
+    made->gathered = true;
     *simulation = made;
     return LAR_OK;
 }
 
 void lar_simulation_destroy(lar_simulation *simulation) {
     if (!simulation) return;
+    lar_computer_destroy(simulation->computer);
     lar_state_destroy(&simulation->state);
     lar_domain_destroy(&simulation->domain);
     free(simulation);
 }
 
-lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
+/* In one process gathering cannot fail and waits until somebody looks; between processes it can. */
+static lar_status advance_computer(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                                   void *context, lar_error *error) {
+    lar_computer *computer = simulation->computer;
+    lar_status status =
+        lar_computer_advance(computer, steps, watch, context, &simulation->trip, error);
+    simulation->gathered = false;
+    if (!status && computer->control) {
+        status = lar_computer_gather(computer, &simulation->state, error);
+        simulation->gathered = true;
+    }
+    return status;
+}
+
+lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
+                                          lar_watch *watch, void *context, lar_error *error) {
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
     lar_trip *trip = &simulation->trip;
-    for (uint64_t i = 0; i < steps && !trip->kind; i++)
-        lar_step(&simulation->domain, &simulation->state, trip);
-    return lar_trip_report(&simulation->domain, &simulation->state, trip, error);
+    lar_state *state = &simulation->state;
+    lar_status status = LAR_OK;
+    if (simulation->computer && !trip->kind)
+        status = advance_computer(simulation, steps, watch, context, error);
+    else
+        for (uint64_t i = 0; i < steps && !trip->kind; i++) {
+            lar_step(&simulation->domain, state, trip);
+            if (watch && !watch(context, state->step)) break;
+        }
+    if (status || !trip->kind) return status;
+    lar_simulation_state(simulation);
+    return lar_trip_report(&simulation->domain, state, trip, error);
+}
+
+lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
+    return lar_simulation_advance_watched(simulation, steps, NULL, NULL, error);
+}
+
+lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {
+    if (!simulation || !simulation->computer || simulation->computer->first == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_serve is for processes other than that of processor 0; "
+                        "give options.processor and options.comm");
+    return lar_computer_serve(simulation->computer, error);
+}
+
+const lar_state *lar_simulation_state(const lar_simulation *simulation) {
+    /* What the caller sees stays the same: the copy is brought up to date. */
+    lar_simulation *own = (lar_simulation *)simulation;
+    if (own->computer && !own->gathered) {
+        lar_computer_gather(own->computer, &own->state, NULL);
+        own->gathered = true;
+    }
+    return &own->state;
+}
+
+int32_t lar_simulation_processors(const lar_simulation *simulation) {
+    return simulation->computer ? simulation->computer->division.grid.count : 1;
+}
+
+int32_t lar_simulation_threads(const lar_simulation *simulation) {
+    return simulation->computer ? simulation->computer->threads : 1;
 }
 
 uint64_t lar_simulation_steps(const lar_simulation *simulation) {
-    return simulation->state.step;
+    return simulation->computer ? simulation->computer->processor[0].worker[0].state.step
+                                : simulation->state.step;
 }
 
 double lar_simulation_time(const lar_simulation *simulation) {
-    return lar_state_time(&simulation->domain, &simulation->state);
+    return (double)lar_simulation_steps(simulation) * simulation->domain.time_step;
 }
 
 double lar_simulation_time_step(const lar_simulation *simulation) {
@@ -127,16 +205,16 @@ static void copy_nodes(const lar_domain *domain, const double *values, double (*
 }
 
 void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {
-    copy_nodes(&simulation->domain, simulation->state.u, out);
+    copy_nodes(&simulation->domain, lar_simulation_state(simulation)->u, out);
 }
 
 void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]) {
-    copy_nodes(&simulation->domain, simulation->state.v, out);
+    copy_nodes(&simulation->domain, lar_simulation_state(simulation)->v, out);
 }
 
 uint64_t lar_simulation_hash(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
-    const lar_state *state = &simulation->state;
+    const lar_state *state = lar_simulation_state(simulation);
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         size_t node = (size_t)domain->layout.local[g];
@@ -152,6 +230,7 @@ uint64_t lar_simulation_hash(const lar_simulation *simulation) {
 void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {
     /* The force array is scratch between steps: the state that the caller sees stays the same. */
     lar_simulation *scratch = (lar_simulation *)simulation;
+    lar_simulation_state(simulation);
     lar_measure_energy(&scratch->domain, &scratch->state, energy);
 }
 

@@ -10,9 +10,10 @@ static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
     if (!trip->kind) *trip = (lar_trip){LAR_TRIP_ELEMENT, e, state->step};
 }
 
-static void recover_blocks(const lar_domain *domain, lar_state *state, lar_trip *trip) {
+static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
+                           lar_trip *trip) {
     bool watch = state->step % LAR_WATCH_INTERVAL == 0;
-    for (int r = 0; r < domain->run_count; r++) {
+    for (int32_t r = first; r < first + count; r++) {
         int64_t lane = domain->kernels->recover(&domain->run[r], state->u, state->force,
                                                 &domain->limits, watch);
         if (lane < 0) continue;
@@ -22,87 +23,114 @@ static void recover_blocks(const lar_domain *domain, lar_state *state, lar_trip 
 }
 
 /* The oracle elements, one at a time: slow is fine. */
-static void recover_slowly(const lar_domain *domain, lar_state *state, lar_trip *trip) {
+static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state, lar_trip *trip) {
     const lar_model *model = domain->model;
-    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        double corner[8][3], u[8][3], f[8][3];
-        const lar_material *material = lar_model_material_of(model, e);
-        lar_mesh_corners(&model->mesh, e, corner);
-        lar_domain_corners(domain, state->u, e, u);
-        double J = domain->kind == LAR_ELEMENT_HEX8_FULL
-                       ? lar_hex8_full_force(corner, material, u, f)
-                       : lar_hex8_matrix_force(corner, material, u, f);
-        bool fits = J > domain->limits.least_volume;
-        for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
-        if (!fits) {
-            trip_element(trip, state, e);
-            continue;
-        }
-        for (int a = 0; a < 8; a++)
-            for (int k = 0; k < 3; k++)
-                state->force[4 * domain->layout.local[model->mesh.element[e][a]] + k] +=
-                    llrint(f[a][k] * domain->scale);
+    double corner[8][3], u[8][3], f[8][3];
+    const lar_material *material = lar_model_material_of(model, e);
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    double J = domain->kind == LAR_ELEMENT_HEX8_FULL
+                   ? lar_hex8_full_force(corner, material, u, f)
+                   : lar_hex8_matrix_force(corner, material, u, f);
+    bool fits = J > domain->limits.least_volume;
+    for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
+    if (!fits) {
+        trip_element(trip, state, e);
+        return;
     }
+    for (int a = 0; a < 8; a++)
+        for (int k = 0; k < 3; k++)
+            state->force[4 * domain->layout.local[model->mesh.element[e][a]] + k] +=
+                llrint(f[a][k] * domain->scale);
 }
 
-static void recover_elements(const lar_domain *domain, lar_state *state, lar_trip *trip) {
-    if (domain->kind == LAR_ELEMENT_HEX8)
-        recover_blocks(domain, state, trip);
-    else
-        recover_slowly(domain, state, trip);
+void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
+                      lar_trip *trip) {
+    if (domain->kind == LAR_ELEMENT_HEX8) {
+        recover_blocks(domain, first, count, state, trip);
+        return;
+    }
+    for (int32_t r = first; r < first + count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++)
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                lar_gid e = domain->layout.block[domain->run_first[r] + b].element[lane];
+                if (e >= 0) recover_slowly(domain, e, state, trip);
+            }
 }
 
 /* Spare nodes fall with gravity like any other; now and then they are put back. */
-static void park_spares(const lar_domain *domain, lar_state *state) {
+static void park_spares(const lar_domain *domain, const lar_condition_context *context,
+                        lar_state *state) {
     for (int32_t i = 0; i < domain->spare_count; i++) {
-        memset(state->u + 4 * domain->spare[i], 0, 4 * sizeof *state->u);
-        memset(state->v + 4 * domain->spare[i], 0, 4 * sizeof *state->v);
+        lar_lid n = domain->spare[i];
+        if (n < context->first || n >= context->end) continue;
+        memset(state->u + 4 * n, 0, 4 * sizeof *state->u);
+        memset(state->v + 4 * n, 0, 4 * sizeof *state->v);
     }
 }
 
-static void move_nodes(const lar_domain *domain, double time, lar_state *state, lar_trip *trip) {
+static void move_nodes(const lar_domain *domain, const lar_condition_context *context,
+                       bool gravity_varies, double time, lar_state *state, lar_trip *trip) {
     const lar_model *model = domain->model;
     lar_motion motion = domain->motion;
-    if (domain->conditions.gravity_varies) {
+    if (gravity_varies) {
         double gravity[3];
         lar_gravity_at(model, time, gravity);
         for (int i = 0; i < 3; i++)
             motion.drift[i] = gravity[i] * motion.dt / (1 + 0.5 * model->damping * motion.dt);
     }
-    if (state->step % LAR_WATCH_INTERVAL == 0) park_spares(domain, state);
-    const double *mass = model->damping > 0 ? domain->mass : NULL;
-    if (!domain->kernels->update(&motion, 0, domain->layout.node_padded, state->u, state->v,
-                                 state->force, domain->push, mass, &state->damped) &&
+    if (state->step % LAR_WATCH_INTERVAL == 0) park_spares(domain, context, state);
+    const double *weight = model->damping > 0 ? domain->weight : NULL;
+    if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
+                                 state->force, domain->push, weight, &state->damped) &&
         !trip->kind)
         *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
 }
 
-static void apply_loads(lar_domain *domain, double time, lar_state *state, lar_trip *trip) {
-    lar_condition_context context = lar_domain_context(domain);
-    int32_t beyond = lar_conditions_load(&domain->conditions, &context, time, state);
+static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
+                        const lar_condition_context *context, double time, lar_state *state,
+                        lar_trip *trip) {
+    int32_t beyond = lar_conditions_load(conditions, context, time, state);
     if (beyond >= 0 && !trip->kind)
         *trip = (lar_trip){LAR_TRIP_LOAD, domain->layout.global[beyond], state->step};
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
-    apply_loads(domain, lar_state_time(domain, state), state, trip);
-    recover_elements(domain, state, trip);
+    lar_condition_context context = lar_domain_context(domain);
+    apply_loads(domain, &domain->conditions, &context, lar_state_time(domain, state), state, trip);
+    lar_step_recover(domain, 0, domain->run_count, state, trip);
+}
+
+void lar_step_begin(const lar_domain *domain, lar_conditions *conditions,
+                    const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    double time = lar_state_time(domain, state);
+    apply_loads(domain, conditions, context, time, state, trip);
+    state->external += lar_conditions_half_work(conditions, context, time, state);
+}
+
+void lar_step_move(const lar_domain *domain, lar_conditions *conditions,
+                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    double time = lar_state_time(domain, state);
+    lar_conditions_observe(conditions, context, state);
+    move_nodes(domain, context, conditions->gravity_varies, time, state, trip);
+    state->external += lar_conditions_impose(conditions, context, time, state);
+}
+
+void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
+                  const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    state->external +=
+        lar_conditions_half_work(conditions, context, lar_state_time(domain, state), state);
+    /* The watch over speeds does not see nodes that are moved. */
+    if (!isfinite(state->external) && !trip->kind)
+        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
+    state->step++;
 }
 
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_conditions *conditions = &domain->conditions;
     lar_condition_context context = lar_domain_context(domain);
-    double time = lar_state_time(domain, state);
-
-    apply_loads(domain, time, state, trip);
-    state->external += lar_conditions_half_work(conditions, &context, time, state);
-    recover_elements(domain, state, trip);
-    lar_conditions_observe(conditions, &context, state);
-    move_nodes(domain, time, state, trip);
-    state->external += lar_conditions_impose(conditions, &context, time, state);
-    state->external += lar_conditions_half_work(conditions, &context, time, state);
-    /* The watch over speeds does not see nodes that are moved. */
-    if (!isfinite(state->external) && !trip->kind)
-        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
-    state->step++;
+    lar_step_begin(domain, conditions, &context, state, trip);
+    lar_step_recover(domain, 0, domain->run_count, state, trip);
+    lar_step_move(domain, conditions, &context, state, trip);
+    lar_step_end(domain, conditions, &context, state, trip);
 }

@@ -1,6 +1,9 @@
-/* One time step of one processor: the loop that everything else is built around.
+/* One time step: the loop that everything else is built around.
  *
  *     loads -> elements -> nodes -> supports
+ *
+ * lar_step takes them in this order for a whole model. Processors of several go through the same
+ * parts batch by batch, and exchange force sums in between (engine/batch.h).
  *
  * Leapfrog form of the central differences of T 2.2.5: forces at u_n turn v_(n-1/2) into
  * v_(n+1/2), which turns u_n into u_(n+1). No allocation, lock, system call or printing happens in
@@ -25,6 +28,22 @@ enum { LAR_WATCH_INTERVAL = 32 };
 /* Advances the state by one step. */
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
 
+/* The parts of a step. The conditions' lists and the state's sums (force, damped, external) are one
+ * thread's; u and v may be shared with the threads that move other nodes. */
+
+/* Loads, and the first half of their work. */
+void lar_step_begin(const lar_domain *domain, lar_conditions *conditions,
+                    const lar_condition_context *context, lar_state *state, lar_trip *trip);
+/* The elements of runs first .. first + count - 1 of the domain. */
+void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
+                      lar_trip *trip);
+/* Moves the context's nodes, whose force sums are complete, and clears the sums. */
+void lar_step_move(const lar_domain *domain, lar_conditions *conditions,
+                   const lar_condition_context *context, lar_state *state, lar_trip *trip);
+/* All nodes have moved: the second half of the work; the step is done. */
+void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
+                  const lar_condition_context *context, lar_state *state, lar_trip *trip);
+
 /* Adds loads and internal forces at the present displacements to state->force (which is zero
  * between steps): the residual internal - external. */
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip);
@@ -34,9 +53,20 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
     return (double)state->step * domain->time_step;
 }
 
-/* What the conditions need of a domain. */
+/* What the conditions need of a domain, for the nodes first .. end - 1. */
+static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
+                                                          lar_lid end) {
+    return (lar_condition_context){.model = domain->model,
+                                   .scale = domain->scale,
+                                   .time_step = domain->time_step,
+                                   .mass = domain->mass,
+                                   .weight = domain->weight,
+                                   .first = first,
+                                   .end = end};
+}
+
 static inline lar_condition_context lar_domain_context(const lar_domain *domain) {
-    return (lar_condition_context){domain->model, domain->scale, domain->time_step, domain->mass};
+    return lar_domain_context_of(domain, 0, domain->layout.node_padded);
 }
 
 /* The sentence for a trip: element or node, place, time, cause and remedy. */

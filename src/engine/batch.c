@@ -1,0 +1,173 @@
+/* The step of one thread over its batches (T 6.6.1, fig. 6.15): recover, wait, receive, positions,
+ * send. See divide/schedule.h for what makes this order safe. */
+#include <sched.h>
+#include <string.h>
+#include <time.h>
+
+#include "engine/processor.h"
+
+/* ---- force sums, or lists of elements ------------------------------------------------------ */
+
+static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_t *part) {
+    if (p->check) {
+        lar_list_join(sum, part);
+        return;
+    }
+    /* Unsigned: a run that is about to be stopped may wrap around. */
+    for (int i = 0; i < 3; i++) sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)part[i]);
+}
+
+/* What all threads of the processor together have at a value. */
+static inline void sum_of_threads(const lar_processor *p, int32_t value, int64_t sum[3]) {
+    memcpy(sum, p->worker[0].state.force + value, LAR_VECTOR_BYTES);
+    for (int32_t t = 1; t < p->thread_count; t++)
+        add_vector(p, sum, p->worker[t].state.force + value);
+}
+
+/* Takes the sums of the other threads over into the one that moves the nodes. */
+static void join_sums(lar_worker *worker) {
+    const lar_processor *p = worker->processor;
+    for (int32_t i = 0; i < worker->joint_count; i++) {
+        int32_t value = worker->joint[i];
+        for (int32_t t = 0; t < p->thread_count; t++) {
+            if (t == worker->thread) continue;
+            int64_t *other = p->worker[t].state.force + value;
+            add_vector(p, worker->state.force + value, other);
+            memset(other, 0, LAR_VECTOR_BYTES);
+        }
+    }
+}
+
+/* ---- packets ------------------------------------------------------------------------------- */
+
+static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uint64_t step,
+                          lar_error *error) {
+    lar_processor *p = worker->processor;
+    const void *payload;
+    lar_status status =
+        lar_comm_wait(p->comm, packet->peer, packet->offset, packet->bytes, step, &payload, error);
+    if (status) return status;
+    uint64_t stop;
+    memcpy(&stop, payload, sizeof stop);
+    if (stop) lar_processor_ask_stop(p, stop);
+    const int64_t *vector =
+        (const int64_t *)(const void *)((const char *)payload + LAR_SIGNAL_BYTES);
+    const int32_t *value = p->value + packet->first;
+    int64_t *force = worker->state.force;
+    for (int32_t i = 0; i < packet->added; i++) add_vector(p, force + value[i], vector + 3 * i);
+    for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
+        for (int32_t t = 0; t < p->thread_count; t++)
+            memset(p->worker[t].state.force + value[i], 0, LAR_VECTOR_BYTES);
+        memcpy(force + value[i], vector + 3 * i, LAR_VECTOR_BYTES);
+    }
+    return LAR_OK;
+}
+
+static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64_t step,
+                       lar_error *error) {
+    const lar_processor *p = worker->processor;
+    unsigned char *bytes =
+        lar_comm_room(p->comm, packet->peer, packet->offset, packet->bytes, step);
+    if (!bytes) bytes = worker->gather;
+    uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
+    memcpy(bytes, &stop, sizeof stop);
+    int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
+    const int32_t *value = p->value + packet->first;
+    int32_t count = packet->added + packet->whole;
+    for (int32_t i = 0; i < count; i++) sum_of_threads(p, value[i], vector + 3 * i);
+    return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, step, error);
+}
+
+/* ---- waiting for the other threads --------------------------------------------------------- */
+
+static lar_status wait_for_batch(lar_processor *p, const lar_batch_mark *mark, uint64_t step,
+                                 lar_error *error) {
+    enum { POLLS = 50 };
+    for (;;) {
+        for (int i = 0; i < POLLS; i++)
+            if (__atomic_load_n(&mark->step, __ATOMIC_ACQUIRE) >= step) return LAR_OK;
+        /* The other thread itself has a deadline in everything that it waits for. */
+        if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
+            return lar_fail(error, LAR_ERROR_PEER,
+                            "another thread of processor %d has given up in step %llu; see what "
+                            "it says",
+                            (int)p->self, (unsigned long long)step - 1);
+        sched_yield();
+    }
+}
+
+/* Random delays, to see that nothing depends on who is first (T 6.9): mostly none, sometimes a few
+ * microseconds, now and then long enough for others to run ahead as far as they can. */
+static void dawdle(lar_worker *worker) {
+    if (!worker->random) return;
+    worker->random ^= worker->random << 13;
+    worker->random ^= worker->random >> 7;
+    worker->random ^= worker->random << 17;
+    uint64_t dice = worker->random >> 40;
+    if (dice % 8 == 0) sched_yield();
+    if (dice % 128 != 1) return;
+    struct timespec nap = {0, (long)(dice / 128 % 60000)};
+    nanosleep(&nap, NULL);
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
+static void recover(lar_worker *worker, const lar_batch_plan *batch) {
+    lar_processor *p = worker->processor;
+    if (p->check)
+        lar_verification_recover(p->check, &p->domain, batch->run_first, batch->run_count,
+                                 &worker->state);
+    else
+        lar_step_recover(&p->domain, batch->run_first, batch->run_count, &worker->state,
+                         &worker->trip);
+}
+
+static lar_status move(lar_worker *worker, lar_error *error) {
+    lar_processor *p = worker->processor;
+    join_sums(worker);
+    if (p->check)
+        return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
+                                        worker->context.end, &worker->state, error);
+    lar_step_move(&p->domain, &worker->conditions, &worker->context, &worker->state, &worker->trip);
+    return LAR_OK;
+}
+
+static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t step, lar_error *error) {
+    lar_processor *p = worker->processor;
+    const lar_batch_plan *batch = &p->batch[b];
+    lar_status status = LAR_OK;
+    dawdle(worker);
+    recover(worker, batch);
+    for (int32_t i = 0; i < batch->waits.count && !status; i++)
+        status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], step, error);
+    dawdle(worker);
+    for (int32_t i = 0; i < batch->receives.count && !status; i++)
+        status = receive(worker, &p->packet[batch->receives.first + i], step, error);
+    if (batch->moves && !status) status = move(worker, error);
+    if (batch->sends.count) dawdle(worker);
+    for (int32_t i = 0; i < batch->sends.count && !status; i++)
+        status = send(worker, &p->packet[batch->sends.first + i], step, error);
+    if (!status) __atomic_store_n(&p->mark[b].step, step, __ATOMIC_RELEASE);
+    return status;
+}
+
+lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
+    lar_processor *p = worker->processor;
+    uint64_t step = worker->state.step + 1; /* comm and marks count from 1 */
+    lar_status status = LAR_OK;
+    if (!p->check)
+        lar_step_begin(&p->domain, &worker->conditions, &worker->context, &worker->state,
+                       &worker->trip);
+    for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
+        status = run_batch(worker, b, step, error);
+    if (status) {
+        __atomic_store_n(&p->failed, 1, __ATOMIC_RELEASE);
+        return status;
+    }
+    if (p->check)
+        worker->state.step++;
+    else
+        lar_step_end(&p->domain, &worker->conditions, &worker->context, &worker->state,
+                     &worker->trip);
+    return LAR_OK;
+}

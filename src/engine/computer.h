@@ -1,0 +1,76 @@
+/* The parallel computer: processors, the threads they run on, and how they are told what to do
+ * (T 5.3.1, 6.1).
+ *
+ *     one process (threads)               several processes (shm, tcp, ucx, mpi)
+ *       caller   processor 0, thread 0      process 0: caller, processor 0     \  control.h:
+ *       crew     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
+ *
+ * The caller belongs to processor zero and computes with it. The whole model's domain and state
+ * stay beside the parts: the state of the parts is gathered into it on demand, and everything that
+ * looks at a simulation (hash, energies, results) looks there.
+ *
+ * Stopping early. Processors are a step apart from their neighbours, so they cannot simply stop.
+ * Who wants to stop (an element turned inside out, the caller was interrupted) names a step that
+ * all can hear of in time, and packets carry that number on from neighbour to neighbour: a step
+ * later they know it, and so on, for `spread` steps. All stop before the same step, as the thesis's
+ * snapshots are taken in the same one (T 6.5.1).
+ */
+#ifndef LAR_ENGINE_COMPUTER_H
+#define LAR_ENGINE_COMPUTER_H
+
+#include "base/crew.h"
+#include "engine/control.h"
+#include "engine/division.h"
+#include "engine/processor.h"
+
+/* One thread of one processor of this process: seat = processor * threads + thread. */
+typedef struct lar_seat {
+    lar_status status;
+    lar_error error;
+} lar_seat;
+
+typedef struct lar_computer {
+    lar_division division;
+    lar_verification check;
+    bool checking;
+    int32_t threads;       /* of a processor */
+    int32_t first, hosted; /* the processors of this process */
+    lar_processor *processor;
+    lar_comm_team *team;  /* comm threads only */
+    lar_control *control; /* several processes only */
+    lar_crew *crew;
+    lar_seat *seat;  /* [hosted * threads] */
+    size_t *shift;   /* [processors] what control needs of their buffers */
+    uint64_t *clock; /* [processors] atomic: steps done, of those in this process */
+    uint64_t until;  /* the step before which this advance ends */
+    lar_watch *watch;
+    void *watch_context;
+    bool broken; /* a processor failed: nothing goes on */
+    /* for opening */
+    const lar_options *options;
+    const lar_domain *whole;
+    const lar_state *start;
+    uint64_t identity;
+} lar_computer;
+
+/* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
+ * the whole model at the start; `whole` must outlive the computer. Takes options->listener over,
+ * whatever it returns. */
+lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
+                               const lar_options *options, lar_computer **computer,
+                               lar_error *error);
+void lar_computer_destroy(
+    lar_computer *computer); /* accepts NULL; ends the other processes' serve */
+
+/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
+ * stopped everyone: *trip is then the first one. Processor zero only. */
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
+                                void *context, lar_trip *trip, lar_error *error);
+
+/* The state of all processors into that of the whole model. Processor zero only. */
+lar_status lar_computer_gather(lar_computer *computer, lar_state *state, lar_error *error);
+
+/* Every other process: does what processor zero says until it ends. */
+lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
+
+#endif

@@ -1,0 +1,293 @@
+#include "engine/processor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Who does what, by global element and node, while a schedule is compiled. */
+typedef struct assignment {
+    int32_t *thread, *batch; /* [elements] */
+    int32_t *owner, *loads;  /* [nodes] */
+    bool *counted;           /* [nodes] */
+} assignment;
+
+static void clear_assignment(assignment *a) {
+    free(a->thread);
+    free(a->batch);
+    free(a->owner);
+    free(a->loads);
+    free(a->counted);
+}
+
+static int32_t thread_of_batch(const lar_schedule *schedule, int32_t batch) {
+    int32_t thread = 0;
+    while (batch >= schedule->thread_first[thread + 1]) thread++;
+    return thread;
+}
+
+static lar_status allocate_assignment(assignment *a, const lar_mesh *mesh, lar_error *error) {
+    size_t elements = (size_t)mesh->element_count, nodes = (size_t)mesh->node_count;
+    *a = (assignment){.thread = lar_calloc(elements, sizeof *a->thread),
+                      .batch = lar_calloc(elements, sizeof *a->batch),
+                      .owner = lar_calloc(nodes, sizeof *a->owner),
+                      .loads = lar_calloc(nodes, sizeof *a->loads),
+                      .counted = lar_calloc(nodes, sizeof *a->counted)};
+    if (!a->thread || !a->batch || !a->owner || !a->loads || !a->counted)
+        return lar_fail_memory(error, 8 * elements + 9 * nodes, "the work of a processor");
+    memset(a->thread, -1, elements * sizeof *a->thread);
+    memset(a->owner, -1, nodes * sizeof *a->owner);
+    memset(a->loads, -1, nodes * sizeof *a->loads);
+    return LAR_OK;
+}
+
+/* Loads act before a thread's first batch, like elements: with the first element that has the node,
+ * so that whoever waits for the elements of a node waits for its loads too. Of several processors
+ * the one that accounts for the node applies them. */
+static lar_status assign(const lar_schedule *schedule, const lar_processor_setting *setting,
+                         assignment *a, lar_error *error) {
+    const lar_mesh *mesh = &setting->whole->model->mesh;
+    lar_status status = allocate_assignment(a, mesh, error);
+    if (status) return status;
+    for (int32_t b = 0; b < schedule->batch_count; b++) {
+        const lar_batch *batch = &schedule->batch[b];
+        int32_t thread = thread_of_batch(schedule, b);
+        for (int32_t i = 0; i < batch->elements.count; i++) {
+            int32_t e = schedule->element[batch->elements.first + i];
+            a->thread[e] = thread;
+            a->batch[e] = b - schedule->thread_first[thread];
+        }
+        for (int32_t i = 0; i < batch->positions.count; i++)
+            a->owner[schedule->node[batch->positions.first + i]] = thread;
+    }
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int k = 0; a->thread[e] >= 0 && k < 8; k++) {
+            int32_t node = mesh->element[e][k];
+            a->counted[node] = setting->reporter[node] == schedule->processor;
+            if (a->counted[node] && a->loads[node] < 0) a->loads[node] = a->thread[e];
+        }
+    return LAR_OK;
+}
+
+/* ---- batches and packets ------------------------------------------------------------------ */
+
+static lar_status compile_batches(const lar_schedule *schedule, lar_processor *p,
+                                  lar_error *error) {
+    size_t batches = (size_t)schedule->batch_count, waits = (size_t)schedule->wait_count;
+    p->batch = lar_calloc(batches, sizeof *p->batch);
+    p->mark = lar_calloc_aligned(batches, sizeof *p->mark);
+    p->wait = lar_calloc(waits, sizeof *p->wait);
+    if (!p->batch || !p->mark || !p->wait)
+        return lar_fail_memory(error, batches * sizeof *p->batch, "the batches of a processor");
+    p->batch_count = schedule->batch_count;
+    if (waits) memcpy(p->wait, schedule->wait, waits * sizeof *p->wait);
+    for (int32_t b = 0; b < p->batch_count; b++) {
+        const lar_batch *from = &schedule->batch[b];
+        p->batch[b] = (lar_batch_plan){.waits = from->waits,
+                                       .receives = from->receives,
+                                       .sends = from->sends,
+                                       .moves = from->positions.count > 0};
+    }
+    /* Runs are sorted by thread and batch: each batch has one stretch of them. */
+    const lar_domain *domain = &p->domain;
+    for (int32_t r = 0; r < domain->run_count; r++) {
+        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r]];
+        lar_batch_plan *batch = &p->batch[schedule->thread_first[lanes->thread] + lanes->batch];
+        if (batch->run_count++ == 0) batch->run_first = r;
+    }
+    return LAR_OK;
+}
+
+static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p,
+                                  lar_error *error) {
+    size_t packets = (size_t)schedule->transfer_count, values = (size_t)schedule->vector_count;
+    p->packet = lar_calloc(packets, sizeof *p->packet);
+    p->value = lar_calloc(values, sizeof *p->value);
+    if (!p->packet || !p->value)
+        return lar_fail_memory(error, packets * sizeof *p->packet + 4 * values, "packets");
+    p->packet_count = schedule->transfer_count;
+    for (size_t i = 0; i < values; i++) {
+        lar_lid local = p->domain.layout.local[schedule->vector[i]];
+        if (local < 0)
+            return lar_fail(error, LAR_ERROR_FORMAT,
+                            "the schedule of processor %d exchanges a node that it does not have "
+                            "(number %d from 0); make the schedules anew with lariat partition",
+                            (int)p->self, (int)schedule->vector[i]);
+        p->value[i] = 4 * local;
+    }
+    for (int32_t b = 0; b < schedule->batch_count; b++)
+        for (int direction = 0; direction < 2; direction++) {
+            lar_span span = direction ? schedule->batch[b].sends : schedule->batch[b].receives;
+            for (int32_t i = span.first; i < span.first + span.count; i++) {
+                const lar_transfer *t = &schedule->transfer[i];
+                p->packet[i] = (lar_packet_plan){
+                    .peer = t->peer,
+                    .added = t->vectors.count - t->whole,
+                    .whole = t->whole,
+                    .first = t->vectors.first,
+                    .offset = p->shift[direction ? t->peer : p->self] + (size_t)t->offset,
+                    .bytes = (size_t)lar_packet_payload(t->vectors.count)};
+            }
+        }
+    return LAR_OK;
+}
+
+/* ---- threads ------------------------------------------------------------------------------ */
+
+/* The nodes that a thread moves and others add to. adds[local node]: a bit for each thread that
+ * recovers an element there or receives for it. */
+static lar_status list_joints(lar_processor *p, const uint16_t *adds, lar_worker *worker,
+                              lar_error *error) {
+    const lar_condition_context *context = &worker->context;
+    unsigned own = 1u << worker->thread;
+    worker->joint = lar_calloc((size_t)(context->end - context->first), sizeof *worker->joint);
+    if (!worker->joint)
+        return lar_fail_memory(error, 4 * (size_t)p->domain.layout.node_padded, "joint nodes");
+    for (lar_lid n = context->first; n < context->end; n++)
+        if (adds[n] & ~own) worker->joint[worker->joint_count++] = 4 * n;
+    return LAR_OK;
+}
+
+static uint16_t *list_adders(const lar_schedule *schedule, const assignment *a,
+                             const lar_processor *p) {
+    const lar_layout *layout = &p->domain.layout;
+    const lar_mesh *mesh = &p->domain.model->mesh;
+    uint16_t *adds = lar_calloc((size_t)layout->node_padded, sizeof *adds);
+    if (!adds) return NULL;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int k = 0; a->thread[e] >= 0 && k < 8; k++)
+            adds[layout->local[mesh->element[e][k]]] |= (uint16_t)(1u << a->thread[e]);
+    for (int32_t b = 0; b < schedule->batch_count; b++) {
+        lar_span receives = schedule->batch[b].receives;
+        for (int32_t i = receives.first; i < receives.first + receives.count; i++) {
+            lar_span vectors = schedule->transfer[i].vectors;
+            for (int32_t v = vectors.first; v < vectors.first + vectors.count; v++)
+                adds[p->value[v] / 4] |= (uint16_t)(1u << thread_of_batch(schedule, b));
+        }
+    }
+    return adds;
+}
+
+/* Thread 0 has the processor's state; the others see its u and v and have forces of their own. */
+static lar_status create_state(lar_processor *p, lar_worker *worker, lar_error *error) {
+    int32_t nodes = p->domain.layout.node_padded;
+    if (worker->thread == 0) return lar_state_create(&worker->state, nodes, error);
+    const lar_state *first = &p->worker[0].state;
+    worker->state = (lar_state){.node_count = nodes, .u = first->u, .v = first->v};
+    worker->state.force = lar_calloc_aligned(4 * (size_t)nodes, sizeof *worker->state.force);
+    if (worker->state.force) return LAR_OK;
+    return lar_fail_memory(error, 32 * (size_t)nodes, "the force sums of a thread");
+}
+
+static lar_status create_worker(const lar_schedule *schedule, const lar_processor_setting *setting,
+                                const assignment *a, const uint16_t *adds, int32_t thread,
+                                lar_processor *p, lar_error *error) {
+    lar_worker *worker = &p->worker[thread];
+    const lar_layout *layout = &p->domain.layout;
+    worker->processor = p;
+    worker->thread = thread;
+    worker->batch_first = schedule->thread_first[thread];
+    worker->batch_end = schedule->thread_first[thread + 1];
+    worker->context = lar_domain_context_of(&p->domain, layout->first_node[thread],
+                                            layout->first_node[thread + 1]);
+    if (setting->delays)
+        worker->random = setting->delays * 0x9e3779b97f4a7c15u +
+                         (uint64_t)(p->self * LAR_THREADS_MOST + thread + 1);
+    int32_t moving = 0;
+    size_t largest = 64;
+    for (int32_t b = worker->batch_first; b < worker->batch_end; b++) {
+        moving += p->batch[b].moves;
+        lar_span sends = p->batch[b].sends;
+        for (int32_t i = sends.first; i < sends.first + sends.count; i++)
+            if (p->packet[i].bytes > largest) largest = p->packet[i].bytes;
+    }
+    if (moving > 1)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "the schedule of processor %d moves nodes of thread %d in %d batches; "
+                        "a thread moves all its nodes in one batch: put them together",
+                        (int)p->self, (int)thread, (int)moving);
+    lar_status status = create_state(p, worker, error);
+    if (!status) status = list_joints(p, adds, worker, error);
+    if (!status && !(worker->gather = lar_calloc_aligned(largest, 1)))
+        status = lar_fail_memory(error, largest, "a packet");
+    lar_condition_share share = {thread, a->owner, a->loads, a->thread};
+    if (!status)
+        status = lar_conditions_create(setting->whole->model, layout->local, &share,
+                                       &worker->conditions, error);
+    return status;
+}
+
+static lar_status create_workers(const lar_schedule *schedule, const lar_processor_setting *setting,
+                                 const assignment *a, lar_processor *p, lar_error *error) {
+    size_t bytes = (size_t)p->thread_count * sizeof *p->worker;
+    uint16_t *adds = list_adders(schedule, a, p);
+    p->worker = lar_calloc_aligned((size_t)p->thread_count, sizeof *p->worker);
+    lar_status status =
+        adds && p->worker ? LAR_OK : lar_fail_memory(error, bytes, "the threads of a processor");
+    for (int32_t t = 0; t < p->thread_count && !status; t++)
+        status = create_worker(schedule, setting, a, adds, t, p, error);
+    free(adds);
+    return status;
+}
+
+/* ---- the processor ------------------------------------------------------------------------ */
+
+lar_status lar_processor_create(const lar_processor_setting *setting, const lar_schedule *schedule,
+                                lar_processor *p, lar_error *error) {
+    *p = (lar_processor){.self = schedule->processor,
+                         .thread_count = schedule->threads,
+                         .shift = setting->shift,
+                         .check = setting->check};
+    assignment a = {0};
+    lar_status status = assign(schedule, setting, &a, error);
+    lar_part part = {
+        .threads = schedule->threads, .thread = a.thread, .batch = a.batch, .owner = a.owner};
+    if (!status)
+        status = lar_domain_create_part(setting->whole, &part, a.counted, &p->domain, error);
+    if (!status) status = compile_batches(schedule, p, error);
+    if (!status) status = compile_packets(schedule, p, error);
+    if (!status) status = create_workers(schedule, setting, &a, p, error);
+    clear_assignment(&a);
+    if (status) lar_processor_destroy(p);
+    return status;
+}
+
+void lar_processor_destroy(lar_processor *p) {
+    for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
+        lar_worker *worker = &p->worker[t];
+        lar_conditions_destroy(&worker->conditions);
+        free(worker->joint);
+        free(worker->gather);
+        if (t == 0)
+            lar_state_destroy(&worker->state);
+        else
+            free(worker->state.force);
+    }
+    lar_domain_destroy(&p->domain);
+    free(p->worker);
+    free(p->batch);
+    free(p->mark);
+    free(p->packet);
+    free(p->value);
+    free(p->wait);
+    *p = (lar_processor){0};
+}
+
+void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_state *state) {
+    const lar_layout *layout = &p->domain.layout;
+    lar_state *own = &p->worker[0].state;
+    for (lar_lid n = 0; n < layout->node_padded; n++) {
+        if (layout->global[n] < 0) continue;
+        size_t there = 4 * (size_t)whole->layout.local[layout->global[n]], here = 4 * (size_t)n;
+        memcpy(own->u + here, state->u + there, 4 * sizeof *own->u);
+        memcpy(own->v + here, state->v + there, 4 * sizeof *own->v);
+    }
+    for (int32_t t = 0; t < p->thread_count; t++) p->worker[t].state.step = state->step;
+    for (int32_t b = 0; b < p->batch_count; b++) p->mark[b].step = state->step;
+}
+
+void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
+    uint64_t known = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
+    while ((known == 0 || step < known) &&
+           !__atomic_compare_exchange_n(&p->stop, &known, step, false, __ATOMIC_RELAXED,
+                                        __ATOMIC_RELAXED))
+        continue;
+}

@@ -1,0 +1,102 @@
+/* One processor of the parallel computer: its part of the model, its compiled schedule and the
+ * threads that go through it (T 6.1, 6.5.3.2).
+ *
+ *     lar_schedule (global elements and nodes)      lar_processor
+ *     recover 12 13 17 ...                  ---->   runs of blocks of the domain
+ *     receive 5 stage 0: nodes 100 101      ---->   offset, bytes, indices into the force sums
+ *     move 5 6 ...                          ---->   a range of local nodes
+ *
+ * u and v belong to the processor: every thread reads them, the thread that owns a node writes it.
+ * Force sums belong to the threads, one array each (divide/schedule.h, "sums").
+ */
+#ifndef LAR_ENGINE_PROCESSOR_H
+#define LAR_ENGINE_PROCESSOR_H
+
+#include "comm/comm.h"
+#include "divide/schedule.h"
+#include "engine/step.h"
+#include "engine/verification.h"
+
+/* A transfer of the schedule, compiled. */
+typedef struct lar_packet_plan {
+    int32_t peer;
+    int32_t added, whole; /* vectors; the whole ones come last */
+    int32_t first;        /* in processor->value */
+    size_t offset;        /* in a half of the receiver's buffer */
+    size_t bytes;         /* signal word and vectors */
+} lar_packet_plan;
+
+typedef struct lar_batch_plan {
+    int32_t run_first, run_count; /* of the domain */
+    lar_span waits;               /* in the schedule's list: batches of other threads */
+    lar_span receives, sends;     /* in processor->packet */
+    bool moves;                   /* the thread's nodes */
+} lar_batch_plan;
+
+/* The step in which a batch was last finished, alone in its cache line: others poll it. */
+typedef struct lar_batch_mark {
+    uint64_t step;
+} __attribute__((aligned(64))) lar_batch_mark;
+
+struct lar_processor;
+
+/* One thread of a processor. */
+typedef struct lar_worker {
+    struct lar_processor *processor;
+    int32_t thread;
+    int32_t batch_first, batch_end;
+    lar_state state; /* u, v: the processor's; force, step and work are its own */
+    lar_conditions conditions;
+    lar_condition_context context; /* the nodes that it moves */
+    int32_t joint_count;
+    int32_t *joint; /* 4 * local node: moved here, and other threads add to it */
+    lar_trip trip;
+    unsigned char *gather; /* where packets are put together that the backend has no room for */
+    uint64_t random;       /* of the delays; 0: none */
+} __attribute__((aligned(64))) lar_worker;
+
+typedef struct lar_processor {
+    int32_t self, thread_count;
+    lar_domain domain;
+    lar_worker *worker; /* [thread_count] */
+    int32_t batch_count, packet_count;
+    lar_batch_plan *batch; /* [batch_count] thread after thread */
+    lar_batch_mark *mark;  /* [batch_count], atomic */
+    lar_packet_plan *packet;
+    int32_t *value;          /* 4 * local node, of all packets */
+    int32_t *wait;           /* of all batches */
+    lar_comm *comm;          /* not owned */
+    const size_t *shift;     /* [processors] bytes before the schedule's part of each buffer */
+    lar_verification *check; /* NULL: real forces. Not owned */
+    uint64_t stop;           /* atomic: the step before which everyone stops; 0: none asked for */
+    uint64_t failed;         /* atomic: a thread has given up, its siblings must */
+} lar_processor;
+
+/* What is common to all processors of a computer. */
+typedef struct lar_processor_setting {
+    const lar_domain *whole; /* outlives the processor */
+    const int32_t *reporter; /* [nodes of the model] the processor that accounts for a node */
+    lar_verification *check; /* or NULL */
+    const size_t *shift;     /* as above; outlives the processor */
+    uint64_t delays;         /* seed of random delays, 0: none */
+} lar_processor_setting;
+
+/* Compiles a schedule that has been checked against the mesh (read or built). `comm` may be set
+ * later. */
+lar_status lar_processor_create(const lar_processor_setting *setting, const lar_schedule *schedule,
+                                lar_processor *processor, lar_error *error);
+void lar_processor_destroy(lar_processor *processor); /* idempotent */
+
+/* Displacements, velocities and step of the whole model into the part. */
+void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
+                           const lar_state *state);
+
+/* Asks all processors to stop before `step`: earlier requests stand. */
+void lar_processor_ask_stop(lar_processor *processor, uint64_t step);
+
+/* One step of one thread: batches, packets, waits (batch.c). Fails when a peer is lost, another
+ * thread of the processor failed, or verification finds a difference; the processor is then of no
+ * more use. A trip is no failure: the step is completed. */
+lar_status lar_worker_step(lar_worker *worker, lar_error *error);
+
+#endif
