@@ -46,16 +46,6 @@ enum {
     LAR_PACKET_ALIGN = 64, /* of offsets: no two packets share a cache line */
 };
 
-/* How the scheme `local` uses its channels; the others do not care. */
-typedef enum lar_channel_use {
-    LAR_CHANNELS_SEQUENTIAL = 0, /* x, then y, then z (T 6.6.2.1, algorithm 2) */
-    LAR_CHANNELS_CONCURRENT,     /* all at the same time, far travellers first (T 6.6.2.2) */
-    LAR_CHANNEL_USES
-} lar_channel_use;
-
-/* "sequential", "concurrent", as on the command line. */
-extern const char *const lar_channel_use_name[LAR_CHANNEL_USES];
-
 typedef struct lar_schedule_options {
     lar_scheme scheme;
     lar_channel_use channels;

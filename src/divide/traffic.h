@@ -40,6 +40,16 @@ typedef enum lar_scheme {
 /* "all", "local", "one", "two", as on the command line. */
 extern const char *const lar_scheme_name[LAR_SCHEMES];
 
+/* How the scheme `local` uses its channels; the others do not care. */
+typedef enum lar_channel_use {
+    LAR_CHANNELS_SEQUENTIAL = 0, /* x, then y, then z (T 6.6.2.1, algorithm 2) */
+    LAR_CHANNELS_CONCURRENT,     /* all at the same time, far travellers first (T 6.6.2.2) */
+    LAR_CHANNEL_USES
+} lar_channel_use;
+
+/* "sequential", "concurrent", as on the command line. */
+extern const char *const lar_channel_use_name[LAR_CHANNEL_USES];
+
 /* ---- sets of nodes ---------------------------------------------------------------------- */
 
 /* Which processors have a node, P_k, for all nodes. */
@@ -91,12 +101,16 @@ typedef struct lar_message {
         LAR_CARRIES_SUM, /* what the sender knew before this stage; added by the receiver */
         LAR_CARRIES_ALL  /* the whole force; replaces what the receiver has */
     } what;
+    int onward; /* how often what it carries travels on after this, until everybody has it */
 } lar_message;
 typedef void lar_message_visit(void *context, const lar_message *message);
 
-/* Visits the messages of a node with P_k = set[count] under a scheme. */
-void lar_scheme_messages(lar_scheme scheme, const lar_grid *grid, const int32_t *set, int32_t count,
-                         lar_message_visit *visit, void *context);
+/* Visits the messages of a node with P_k = set[count] under a scheme. In the concurrent use of
+ * local channels a vector with h ways to go is a message of stage LAR_STAGES - h: what travels far
+ * leaves first. */
+void lar_scheme_messages(lar_scheme scheme, lar_channel_use channels, const lar_grid *grid,
+                         const int32_t *set, int32_t count, lar_message_visit *visit,
+                         void *context);
 
 /* ---- counts ----------------------------------------------------------------------------- */
 
@@ -107,7 +121,7 @@ typedef struct lar_traffic {
     int64_t largest_packet;                /* vectors */
 } lar_traffic;
 
-/* Fills traffic[grid.count] for a scheme. */
+/* Fills traffic[grid.count] for a scheme, packets as in the sequential use of channels. */
 lar_status lar_traffic_measure(const lar_sharing *sharing, lar_scheme scheme, lar_traffic *traffic,
                                lar_error *error);
 

@@ -156,12 +156,13 @@ static void play(void *context, const lar_message *m) {
 }
 
 /* After all stages every processor of P_k has every part exactly once. */
-static void play_node(lar_scheme scheme, const lar_grid *grid, const int32_t *set, int32_t count) {
+static void play_node(lar_scheme scheme, lar_channel_use channels, const lar_grid *grid,
+                      const int32_t *set, int32_t count) {
     player *p = calloc(1, sizeof *p);
     for (int32_t i = 0; i < count; i++) p->part[set[i]][set[i]] = 1;
     for (p->stage = 0; p->stage < LAR_STAGES; p->stage++) {
         memcpy(p->before, p->part, sizeof p->part);
-        lar_scheme_messages(scheme, grid, set, count, play, p);
+        lar_scheme_messages(scheme, channels, grid, set, count, play, p);
     }
     for (int32_t i = 0; i < count; i++)
         for (int32_t j = 0; j < count; j++) assert_int_equal(p->part[set[i]][set[j]], 1);
@@ -185,7 +186,8 @@ static void every_part_arrives_once(void **state) {
                 const int32_t *set;
                 int32_t count = lar_sharing_of(&d.sharing, k, &set);
                 for (int s = 0; s < LAR_SCHEMES && count > 1; s++)
-                    play_node((lar_scheme)s, &grid, set, count);
+                    for (int c = 0; c < LAR_CHANNEL_USES; c++)
+                        play_node((lar_scheme)s, (lar_channel_use)c, &grid, set, count);
             }
             lar_sharing_clear(&d.sharing);
             lar_incidence_clear(&d.incidence);
