@@ -117,6 +117,7 @@ static lar_status check_text(const lar_text_file *file) {
 
 lar_status lar_text_file_version(lar_text_file *file, int version) {
     static const char family[] = "lariat-";
+    const lar_text_file all = *file;
     lar_span head = {0}, value = {0};
     int64_t claimed;
     bool good = lar_text_file_line(file) &&
@@ -137,7 +138,7 @@ lar_status lar_text_file_version(lar_text_file *file, int version) {
                                     "version %" PRId64 " of the %s file is not known here, only "
                                     "%d; make it anew with lariat partition",
                                     claimed, file->kind, version);
-    return file->whole ? check_text(file) : lar_text_file_cut_off(file);
+    return file->whole ? check_text(&all) : lar_text_file_cut_off(file);
 }
 
 lar_status lar_text_file_key(lar_text_file *file, const char *key) {
