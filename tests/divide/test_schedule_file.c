@@ -265,6 +265,24 @@ static void damaged(void **state) {
     lar_mesh_clear(&mesh);
 }
 
+/* The example of docs/formats.md. */
+static void documented(void **state) {
+    (void)state;
+    lar_mesh mesh = lattice(4, 1, 1);
+    lar_bytes docs = {0};
+    assert_int_equal(lar_bytes_read(LAR_TEST_FORMATS, &docs, NULL), LAR_OK);
+    char *start = strstr((char *)docs.data, "```\nlariat-schedule 1\n");
+    assert_non_null(start);
+    char *stop = strstr(start += 4, "```");
+    assert_non_null(stop);
+    *stop = 0;
+    lar_schedule s = parse_good(start, &mesh);
+    assert_int_equal(s.batch_count, 6);
+    lar_schedule_clear(&s);
+    lar_bytes_free(&docs);
+    lar_mesh_clear(&mesh);
+}
+
 static void overlapping_receives(void **state) {
     (void)state;
     lar_mesh mesh = lattice(4, 1, 1);
@@ -434,6 +452,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(by_hand),
         cmocka_unit_test(damaged),
+        cmocka_unit_test(documented),
         cmocka_unit_test(overlapping_receives),
         cmocka_unit_test(zero_bytes),
         cmocka_unit_test(cut_off),
