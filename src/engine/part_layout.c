@@ -9,7 +9,7 @@
 
 /* Ways of looking for rows. The first serves parts too large to try them all. */
 static const double patience[] = {0.3, 0, 0.2, 0.4};
-enum { PATIENCES = sizeof patience / sizeof patience[0], TRY_ALL_ELEMENTS = 50000 };
+enum { PATIENCES = sizeof patience / sizeof patience[0], TRY_ALL_ELEMENTS = 200000 };
 
 /* What a part is made from. Two orders: along the Z curve, and as the whole layout has them. */
 enum { ORDERS = 2 };

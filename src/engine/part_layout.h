@@ -26,10 +26,9 @@
 /* Who recovers what in one processor, and when. */
 typedef struct lar_part {
     int32_t threads;
-    const int32_t *thread; /* [elements of the model] thread that recovers it; -1: another processor
-                            */
+    const int32_t *thread; /* [elements of the model] who recovers it; -1: another processor */
     const int32_t *batch;  /* [elements of the model] batch of its thread that needs it, from 0 */
-    const int32_t *owner; /* [nodes of the model] thread that moves it; -1: not of this processor */
+    const int32_t *owner;  /* [nodes of the model] who moves it; -1: not in this processor */
     bool rows_within_batches; /* rows only of elements of one batch: later, but more loose ones */
 } lar_part;
 

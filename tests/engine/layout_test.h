@@ -237,4 +237,72 @@ TEST_UNUSED static void mix_laws(lar_model *model, bool layers) {
                    : chance(model->material_count);
 }
 
+/* A ring of `around` elements with a section of width x width; after one round the section has
+ * made `quarters` quarter turns, so that the rows of a twisted ring go round several times. */
+TEST_UNUSED static lar_model *ring(int around, int width, int quarters) {
+    int side = width + 1, section = side * side;
+    lar_model *model = boxes(around, width, width, 0); /* the arrays have room enough */
+    lar_mesh *mesh = &model->mesh;
+    mesh->node_count = around * section;
+    double radius = 6 * width, quarter = 1.5707963267948966;
+    for (int j = 0; j < around; j++)
+        for (int k = 0; k < side; k++)
+            for (int i = 0; i < side; i++) {
+                double angle = 4 * quarter * j / around, twist = quarter * quarters * j / around;
+                double s = i - 0.5 * width, t = k - 0.5 * width;
+                double r = radius + s * cos(twist) - t * sin(twist);
+                double at[3] = {r * cos(angle), r * sin(angle), s * sin(twist) + t * cos(twist)};
+                memcpy(mesh->position[i + side * k + section * j], at, sizeof at);
+            }
+    int32_t e = 0;
+    for (int j = 0; j < around; j++)
+        for (int k = 0; k < width; k++)
+            for (int i = 0; i < width; i++, e++)
+                for (int a = 0; a < 8; a++) {
+                    int at[2] = {i + (lar_node_sign[a][0] > 0), k + (lar_node_sign[a][2] > 0)};
+                    int along = j + (lar_node_sign[a][1] > 0);
+                    for (int q = 0; along == around && q < quarters; q++) {
+                        int turned[2] = {width - at[1], at[0]};
+                        memcpy(at, turned, sizeof at);
+                    }
+                    mesh->element[e][a] = at[0] + side * at[1] + section * (along % around);
+                }
+    return model;
+}
+
+/* A row that leaves an element towards x, makes a loop to the right and crosses the same element
+ * again towards y. Sections 0 and SECTIONS - 1 are faces of that element. */
+TEST_UNUSED static lar_model *loop(void) {
+    enum { SECTIONS = 40 };
+    lar_model *model = boxes(SECTIONS, 1, 1, 0);
+    lar_mesh *mesh = &model->mesh;
+    const double bend = 6, pi = 3.14159265358979324;
+    int32_t node[SECTIONS][4], count = 0;
+    for (int n = 0; n < SECTIONS - 1; n++) {
+        int arc = n < 5 ? 0 : n > SECTIONS - 6 ? SECTIONS - 11 : n - 5;
+        double heading = -1.5 * pi * arc / (SECTIONS - 11);
+        double x = bend - bend * sin(heading), y = -bend + bend * cos(heading);
+        if (n < 5) x = 0.5 + 1.1 * n;
+        if (n > SECTIONS - 6) y = -0.5 - 1.1 * (SECTIONS - 1 - n);
+        for (int k = 0; k < 4; k++) { /* eta to the left, zeta up */
+            double left = k % 2 ? 0.5 : -0.5;
+            double at[3] = {x - left * sin(heading), y + left * cos(heading), k / 2};
+            memcpy(mesh->position[count], at, sizeof at);
+            node[n][k] = count++;
+        }
+    }
+    for (int up = 0; up < 2; up++) /* the left side of the crossing */
+        for (int k = 0; k < 2; k++)
+            memcpy(mesh->position[count++], (double[]){-0.5, k - 0.5, up}, 24);
+    int32_t far[4] = {count - 4, count - 3, count - 2, count - 1};
+    /* heading to y, left is -x: the lower side of the crossing */
+    memcpy(node[SECTIONS - 1], (int32_t[]){node[0][0], far[0], node[0][2], far[2]}, 16);
+    for (int n = 0; n < SECTIONS; n++) {
+        const int32_t *a = n ? node[n - 1] : far, *b = n ? node[n] : node[0];
+        memcpy(mesh->element[n], (int32_t[]){a[0], b[0], b[1], a[1], a[2], b[2], b[3], a[3]}, 32);
+    }
+    mesh->node_count = count;
+    return model;
+}
+
 #endif
