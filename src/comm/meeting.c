@@ -1,5 +1,6 @@
 #include "comm/meeting.h"
 
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/random.h>
@@ -36,6 +37,34 @@ static lar_status lost(int32_t p, lar_error *error) {
                     (int)p);
 }
 
+/* How long a wait lasts before it looks whether all are still there [s]. */
+static const double LOOK = 0.05;
+
+lar_status lar_meeting_check(const lar_comm *comm, lar_error *error) {
+    for (int32_t p = 0; p < comm->options.count; p++)
+        if (comm->links[p] >= 0 && lar_socket_ended(comm->links[p])) return lost(p, error);
+    struct pollfd zero = {.fd = comm->links[0], .events = POLLIN};
+    if (zero.fd >= 0 && poll(&zero, 1, 0) == 1)
+        return lar_fail(error, LAR_ERROR_PEER, "processor 0 has called off the start");
+    return LAR_OK;
+}
+
+static double next_look(double deadline) {
+    double look = lar_comm_now() + LOOK;
+    return look < deadline ? look : deadline;
+}
+
+lar_status lar_meeting_accept(const lar_comm *comm, int listener, double deadline, int *guest,
+                              lar_error *error) {
+    *guest = -1;
+    for (;;) {
+        *guest = lar_socket_accept(listener, next_look(deadline));
+        if (*guest >= 0 || lar_comm_now() > deadline) return LAR_OK;
+        lar_status status = lar_meeting_check(comm, error);
+        if (status) return status;
+    }
+}
+
 static double start_deadline(const lar_comm *comm) {
     return lar_comm_now() + comm->options.start_timeout;
 }
@@ -44,11 +73,16 @@ static double start_deadline(const lar_comm *comm) {
 
 static lar_status judge(const lar_comm *comm, const hello *h, const hello *own, lar_error *error) {
     int p = (int)h->self;
-    if (h->magic != MAGIC || memcmp(h->version, own->version, sizeof h->version) != 0)
+    if (h->magic != MAGIC)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "a processor runs another version of Lariat than processor 0 (%.15s); "
+                        "install the same on all machines",
+                        own->version);
+    if (memcmp(h->version, own->version, sizeof h->version) != 0)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor %d runs another version of Lariat (%.15s) than processor 0 "
                         "(%.15s); install the same on all machines",
-                        p, h->magic == MAGIC ? h->version : "unknown", own->version);
+                        p, h->version, own->version);
     if (memcmp(h->backend, own->backend, sizeof h->backend) != 0)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor %d communicates by %.15s, processor 0 by %.15s; give all the "
@@ -90,19 +124,23 @@ static lar_status not_all_came(const lar_comm *comm, lar_error *error) {
 static lar_status receive_guests(lar_comm *comm, const hello *own, double deadline,
                                  lar_error *error) {
     for (int32_t missing = comm->options.count - 1; missing > 0;) {
-        int guest = lar_socket_accept(comm->options.listener, deadline);
+        int guest;
+        lar_status status =
+            lar_meeting_accept(comm, comm->options.listener, deadline, &guest, error);
+        if (status) return status;
         if (guest < 0) return not_all_came(comm, error);
-        hello h;
+        hello h = {.magic = 0};
         double patience = lar_comm_now() + 1;
         bool ours = lar_socket_receive(guest, &h, sizeof h.magic, patience) == LAR_SOCKET_DONE &&
                     (h.magic ^ MAGIC) >> 16 == 0 &&
-                    lar_socket_receive(guest, (char *)&h + sizeof h.magic,
-                                       sizeof h - sizeof h.magic, patience) == LAR_SOCKET_DONE;
+                    (h.magic != MAGIC || /* another version's hello may be shorter */
+                     lar_socket_receive(guest, (char *)&h + sizeof h.magic,
+                                        sizeof h - sizeof h.magic, patience) == LAR_SOCKET_DONE);
         if (!ours) {
             close(guest);
             continue;
         }
-        lar_status status = judge(comm, &h, own, error);
+        status = judge(comm, &h, own, error);
         if (status) {
             if (error) {
                 note n = refusal(error);
@@ -126,15 +164,18 @@ static void refuse_all(lar_comm *comm, const lar_error *why) {
             lar_socket_send(comm->links[p], &n, sizeof n, lar_comm_now() + 0.2);
 }
 
+/* Tells everyone; the first that cannot be told is the failure. */
 static lar_status tell_all(lar_comm *comm, bool addresses, double deadline, lar_error *error) {
     note n = {.magic = MAGIC, .token = comm->token};
     size_t bytes = (size_t)comm->options.count * sizeof *comm->addresses;
+    int32_t deaf = 0;
     for (int32_t p = 1; p < comm->options.count; p++) {
-        if (lar_socket_send(comm->links[p], &n, sizeof n, deadline) ||
-            (addresses && lar_socket_send(comm->links[p], comm->addresses, bytes, deadline)))
-            return lost(p, error);
+        if ((lar_socket_send(comm->links[p], &n, sizeof n, deadline) ||
+             (addresses && lar_socket_send(comm->links[p], comm->addresses, bytes, deadline))) &&
+            deaf == 0)
+            deaf = p;
     }
-    return LAR_OK;
+    return deaf ? lost(deaf, error) : LAR_OK;
 }
 
 static lar_status host_meeting(lar_comm *comm, const hello *own, lar_error *error) {
@@ -200,12 +241,24 @@ lar_status lar_meeting_gather(lar_comm *comm, lar_error *error) {
     return own.self == 0 ? host_meeting(comm, &own, error) : join_meeting(comm, &own, error);
 }
 
+/* Until there is something to read from p, or the deadline; fails when somebody has gone. */
+static lar_status wait_to_read(const lar_comm *comm, int32_t p, double deadline, lar_error *error) {
+    struct pollfd link = {.fd = comm->links[p], .events = POLLIN};
+    for (;;) {
+        lar_socket_poll(link.fd, POLLIN, next_look(deadline));
+        if (poll(&link, 1, 0) == 1 || lar_comm_now() > deadline) return LAR_OK;
+        lar_status status = lar_meeting_check(comm, error);
+        if (status) return status;
+    }
+}
+
 static lar_status gather_ready(lar_comm *comm, const lar_error *own, lar_error *error) {
     double deadline = start_deadline(comm);
     lar_error why = {.status = LAR_OK};
     if (own) why = *own;
     for (int32_t p = 1; p < comm->options.count && !why.status; p++) {
         note n;
+        if (wait_to_read(comm, p, deadline, &why)) break;
         if (lar_socket_receive(comm->links[p], &n, sizeof n, deadline) || n.magic != MAGIC) {
             lost(p, &why);
         } else if (n.refused) {
@@ -213,7 +266,8 @@ static lar_status gather_ready(lar_comm *comm, const lar_error *own, lar_error *
             lar_fail(&why, LAR_ERROR_PEER, "%s", n.why.message);
         }
     }
-    if (!why.status) tell_all(comm, false, deadline, &why);
+    /* Who cannot be told has died since; some have begun already, and the watch will find it. */
+    if (!why.status) tell_all(comm, false, deadline, NULL);
     if (why.status) {
         refuse_all(comm, &why);
         if (error) *error = why;
@@ -226,6 +280,7 @@ lar_status lar_meeting_ready(lar_comm *comm, const lar_error *own, lar_error *er
     note n = {.magic = MAGIC};
     if (own) n = refusal(own);
     double deadline = start_deadline(comm) + 1;
-    if (lar_socket_send(comm->links[0], &n, sizeof n, deadline)) return lost(0, error);
+    /* A zero that is gone may have left a refusal. */
+    lar_socket_send(comm->links[0], &n, sizeof n, deadline);
     return hear_zero(comm, &n, deadline, error);
 }

@@ -7,9 +7,9 @@
  *     zero     --- go ---------------------------------------------------->  everyone
  *
  * Instead of `welcome` and `go` there may be a refusal: one sentence, the same for all, which
- * names the processor that does not fit, did not come or could not connect. The connections stay
- * in comm->links for watch.h. A stranger that connects and does not say hello is shown out after a
- * second.
+ * names the processor that does not fit, did not come, could not connect or died on the way. The
+ * connections stay in comm->links for watch.h. A stranger that connects and does not say hello is
+ * shown out after a second.
  */
 #ifndef LAR_COMM_MEETING_H
 #define LAR_COMM_MEETING_H
@@ -21,5 +21,13 @@ lar_status lar_meeting_gather(lar_comm *comm, lar_error *error);
 
 /* `own` is what prevented this processor from connecting, or NULL. LAR_OK only when all can. */
 lar_status lar_meeting_ready(lar_comm *comm, const lar_error *own, lar_error *error);
+
+/* For what takes time between the two: fails when processor zero has refused, or, at zero, when
+ * somebody has gone. Give up then; lar_meeting_ready finds out the sentence for all. */
+lar_status lar_meeting_check(const lar_comm *comm, lar_error *error);
+
+/* The next connection at `listener`, checking meanwhile; *guest is -1 at the deadline. */
+lar_status lar_meeting_accept(const lar_comm *comm, int listener, double deadline, int *guest,
+                              lar_error *error);
 
 #endif

@@ -2,9 +2,9 @@
  *
  * Names live only from open to begin: as soon as all have mapped all, each unlinks its own, and
  * the memory goes with the last process, however that ends. What a crash during start-up leaves
- * is removed by the next start: a living owner holds a lock on its object, so an object whose lock
- * can be had belongs to nobody. Process numbers would not do: they return, and differ between
- * containers that share /dev/shm.
+ * is removed by the others when they give up, or by the next start: a living owner holds a lock on
+ * its object, so an object whose lock can be had belongs to nobody. Process numbers would not do:
+ * they return, and differ between containers that share /dev/shm.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -142,9 +142,21 @@ static void shm_begin(lar_comm *comm) {
     state->object = -1;
 }
 
+/* A start that failed, or somebody who died just after it: names of the dead go as well. */
+static void remove_names(lar_comm *comm) {
+    for (int32_t p = 0; p < comm->options.count; p++) {
+        lar_comm_address *address = &comm->addresses[p];
+        address->data[NAME_BYTES - 1] = '\0';
+        const char *name = (const char *)address->data;
+        if (name[0] == '/' && strncmp(name + 1, PREFIX, sizeof PREFIX - 1) == 0) shm_unlink(name);
+    }
+    remove_leftovers();
+}
+
 static void shm_close(lar_comm *comm) {
     shm_state *state = comm->state;
     if (!state) return;
+    if (state->name[0] || __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE)) remove_names(comm);
     shm_begin(comm);
     for (int32_t p = 0; state->maps && state->mapped && p < comm->options.count; p++)
         if (state->maps[p]) munmap(state->maps[p], state->mapped[p]);

@@ -2,11 +2,14 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <time.h>
@@ -86,6 +89,47 @@ void lar_socket_peer_host(int socket, char *host) {
         getnameinfo((struct sockaddr *)&at, length, host, LAR_COMM_HOST_BYTES, NULL, 0,
                     NI_NUMERICHOST) != 0)
         host[0] = '\0';
+}
+
+/* Numeric, when it is an address that others can reach: no loopback, none of one wire only. */
+static bool reachable(const struct sockaddr *at, char *host) {
+    socklen_t length = sizeof(struct sockaddr_in);
+    if (at->sa_family == AF_INET6) {
+        const struct in6_addr *six = &((const struct sockaddr_in6 *)(const void *)at)->sin6_addr;
+        if (IN6_IS_ADDR_LOOPBACK(six) || IN6_IS_ADDR_LINKLOCAL(six)) return false;
+        length = sizeof(struct sockaddr_in6);
+    } else if (at->sa_family != AF_INET ||
+               ntohl(((const struct sockaddr_in *)(const void *)at)->sin_addr.s_addr) >> 24 ==
+                   127) {
+        return false;
+    }
+    return getnameinfo(at, length, host, LAR_COMM_HOST_BYTES, NULL, 0, NI_NUMERICHOST) == 0;
+}
+
+lar_status lar_socket_own_host(char *host, lar_error *error) {
+    const char *said = getenv("LARIAT_HOST");
+    if (said && *said && strlen(said) < LAR_COMM_HOST_BYTES) {
+        memcpy(host, said, strlen(said) + 1);
+        return LAR_OK;
+    }
+    char name[256];
+    bool found = false;
+    struct addrinfo hints = {.ai_socktype = SOCK_STREAM}, *named = NULL;
+    if (gethostname(name, sizeof name - 1) == 0) getaddrinfo(name, NULL, &hints, &named);
+    for (const struct addrinfo *a = named; a && !found; a = a->ai_next)
+        found = reachable(a->ai_addr, host);
+    if (named) freeaddrinfo(named);
+    struct ifaddrs *all = NULL;
+    if (!found && getifaddrs(&all)) all = NULL;
+    static const int families[] = {AF_INET, AF_INET6};
+    for (int i = 0; i < 2; i++)
+        for (const struct ifaddrs *a = all; a && !found; a = a->ifa_next)
+            found = a->ifa_addr && a->ifa_addr->sa_family == families[i] &&
+                    (a->ifa_flags & IFF_UP) && reachable(a->ifa_addr, host);
+    if (all) freeifaddrs(all);
+    if (found) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "this machine has no address that others can reach; set LARIAT_HOST to one");
 }
 
 void lar_socket_poll(int socket, short events, double deadline) {
@@ -187,6 +231,12 @@ lar_socket_end lar_socket_receive(int socket, void *data, size_t bytes, double d
         lar_socket_poll(socket, POLLIN, deadline);
     }
     return LAR_SOCKET_DONE;
+}
+
+bool lar_socket_ended(int socket) {
+    char byte;
+    ssize_t got = recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
 
 lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_COMM_ADDRESS_TEXT],

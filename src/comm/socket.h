@@ -17,6 +17,10 @@ lar_status lar_socket_listen(const char *address, int *listener, lar_error *erro
 int lar_socket_port(int listener);
 /* Host of the other side, numeric, into host[LAR_COMM_HOST_BYTES]; "" when unknown. */
 void lar_socket_peer_host(int socket, char *host);
+/* An address of this machine that other machines can reach, numeric, into
+ * host[LAR_COMM_HOST_BYTES]: what LARIAT_HOST says, what the machine's name stands for, or the
+ * first network that is not the loopback. */
+lar_status lar_socket_own_host(char *host, lar_error *error);
 
 /* Connects, again and again while nobody listens there, until the deadline. */
 lar_status lar_socket_connect(const char *address, double deadline, int *socket, lar_error *error);
@@ -25,6 +29,9 @@ int lar_socket_accept(int listener, double deadline);
 
 lar_socket_end lar_socket_send(int socket, const void *data, size_t bytes, double deadline);
 lar_socket_end lar_socket_receive(int socket, void *data, size_t bytes, double deadline);
+
+/* Whether the other side has ended the connection and everything it sent has been read. */
+bool lar_socket_ended(int socket);
 
 /* Waits until the socket can be read or written (POLLIN, POLLOUT) or the deadline. */
 void lar_socket_poll(int socket, short events, double deadline);

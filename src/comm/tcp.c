@@ -19,6 +19,7 @@
 
 #include "base/memory.h"
 #include "comm/backend.h"
+#include "comm/meeting.h"
 #include "comm/socket.h"
 
 enum { CHUNK = 65536, ALL_EVERY = 16 };
@@ -89,8 +90,13 @@ static lar_status call(lar_comm *comm, int32_t p, double deadline, lar_error *er
     snprintf(address, sizeof address, strchr(to->host, ':') ? "[%s]:%.7s" : "%s:%.7s", to->host,
              (const char *)to->data);
     int *socket = &state->links[p].socket;
-    lar_status status = lar_socket_connect(address, deadline, socket, error);
-    if (status) return status;
+    for (;;) {
+        double look = lar_comm_now() + 0.5;
+        if (look > deadline) look = deadline;
+        lar_status status = lar_socket_connect(address, look, socket, error);
+        if (!status) break;
+        if (lar_comm_now() > deadline || lar_meeting_check(comm, error)) return LAR_ERROR_PEER;
+    }
     caller c = {.token = comm->token, .self = comm->options.self};
     if (lar_socket_send(*socket, &c, sizeof c, deadline))
         return lar_fail(error, LAR_ERROR_PEER,
@@ -102,7 +108,9 @@ static lar_status call(lar_comm *comm, int32_t p, double deadline, lar_error *er
 
 static lar_status take_call(lar_comm *comm, double deadline, int32_t *missing, lar_error *error) {
     tcp_state *state = comm->state;
-    int socket = lar_socket_accept(state->listener, deadline);
+    int socket;
+    lar_status status = lar_meeting_accept(comm, state->listener, deadline, &socket, error);
+    if (status) return status;
     if (socket < 0)
         return lar_fail(error, LAR_ERROR_PEER,
                         "%d processors could not call processor %d within %g s; check the network "

@@ -33,6 +33,8 @@ typedef struct fleet {
     void *context;
     double start_timeout, timeout, patience; /* 0: the default */
     uint64_t odd_identity;                   /* of processor 1, when not 0 */
+    /* Called by each before it opens and after it closed, or NULL. */
+    void (*around)(void *context, int32_t self, bool closed);
     lar_comm_team *team;
     int listener;
     char master[LAR_COMM_ADDRESS_TEXT];
@@ -78,18 +80,20 @@ static inline lar_comm_options fleet_options(const fleet *f, int32_t self) {
 
 /* One processor's life. */
 static inline void fleet_live(fleet *f, int32_t self, char text[FLEET_TEXT]) {
+    if (f->around) f->around(f->context, self, false);
     lar_comm_options options = fleet_options(f, self);
     lar_comm *comm = NULL;
     lar_error error;
     text[0] = '\0';
     if (lar_comm_open(&options, &comm, &error)) {
         snprintf(text, FLEET_TEXT, "%s", error.message);
-        return;
+    } else {
+        char own[FLEET_TEXT];
+        const char *wrong = f->body(comm, f->context, own);
+        if (wrong) snprintf(text, FLEET_TEXT, "%s", wrong);
+        lar_comm_close(comm);
     }
-    char own[FLEET_TEXT];
-    const char *wrong = f->body(comm, f->context, own);
-    if (wrong) snprintf(text, FLEET_TEXT, "%s", wrong);
-    lar_comm_close(comm);
+    if (f->around) f->around(f->context, self, true);
 }
 
 static inline void *fleet_thread(void *member) {
@@ -128,12 +132,14 @@ typedef struct fleet_processes {
     int32_t count;
     pid_t pid[FLEET_MOST];
     int words[FLEET_MOST]; /* the reading end of each one's pipe */
+    char master[LAR_COMM_ADDRESS_TEXT];
 } fleet_processes;
 
 /* All as processes, which run when this returns. */
 static inline void fleet_launch(fleet f, fleet_processes *running) {
     fleet_prepare(&f);
     running->count = f.count;
+    memcpy(running->master, f.master, sizeof f.master);
     for (int32_t p = 0; p < f.count; p++) {
         int ends[2];
         assert_int_equal(pipe(ends), 0);

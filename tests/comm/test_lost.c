@@ -1,159 +1,158 @@
 /* A processor that dies, stops or fails: everyone else ends within two seconds with a message that
- * names it, and nothing is left behind. */
-#include "fleet.h"
+ * names it, and nothing is left behind. With the argument "every" each processor in turn is the
+ * victim. */
+#include "loss.h"
 
-#include <dirent.h>
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/mman.h>
-#include <sys/socket.h>
-#include <time.h>
+enum { PROCESSORS = 4, BACKENDS_MOST = 8 };
 
-static double now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
-}
-
-/* Our objects that nobody alive owns; those of tests that run beside this one are locked. */
-static int leftovers(void) {
-    int count = 0;
-    DIR *folder = opendir("/dev/shm");
-    if (!folder) return 0;
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        if (strncmp(entry->d_name, "lariat-comm-", 12) != 0) continue;
-        char path[300];
-        snprintf(path, sizeof path, "/dev/shm/%s", entry->d_name);
-        int object = open(path, O_RDWR);
-        if (object >= 0 && flock(object, LOCK_EX | LOCK_NB) == 0) count++;
-        if (object >= 0) close(object);
-    }
-    closedir(folder);
-    return count;
-}
-
-typedef struct trouble {
-    int32_t victim;
-    uint64_t at_step; /* 0: never */
-    int kind;         /* a signal to itself; CUT, FAIL, HANG */
-    int announced;    /* pipe end: a byte when the victim is about to go */
-} trouble;
-enum { CUT = -1, FAIL = -2, HANG = -3 };
-
-/* Cuts every connection of this process, as a pulled cable would. */
-static void cut_sockets(void) {
-    for (int fd = 3; fd < 256; fd++) shutdown(fd, SHUT_RDWR);
-}
-
-static void happen(lar_comm *comm, const trouble *t) {
-    if (write(t->announced, "", 1) < 0) return;
-    if (t->kind > 0) kill(getpid(), t->kind);
-    if (t->kind == CUT) cut_sockets();
-    if (t->kind == FAIL) lar_comm_abort(comm);
-    if (t->kind == HANG) usleep(2600000);
-}
-
-/* Exchange with both neighbours of a ring, for ever. */
-static const char *ring(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
-    const trouble *t = context;
-    lar_error error;
-    char data[200] = {0};
-    int32_t count = lar_comm_count(comm), self = lar_comm_self(comm);
-    int32_t next = (self + 1) % count, last = (self + count - 1) % count;
-    for (uint64_t step = 1;; step++) {
-        if (self == t->victim && step == t->at_step) {
-            happen(comm, t);
-            if (t->kind == FAIL) return "its own failure";
-        }
-        if (lar_comm_put(comm, next, 0, data, 200, step, &error) ||
-            lar_comm_put(comm, last, 256, data, 200, step, &error) ||
-            lar_comm_wait(comm, last, 0, 200, step, NULL, &error) ||
-            lar_comm_wait(comm, next, 256, 200, step, NULL, &error))
-            return fleet_say(text, "%s", error.message);
-    }
-}
-
-static void lose(const char *backend, int32_t victim, int kind) {
-    int announced[2];
-    char byte, texts[5][FLEET_TEXT], expected[40];
-    assert_int_equal(pipe(announced), 0);
-    trouble t = {.victim = victim, .at_step = 1000, .kind = kind, .announced = announced[1]};
+typedef struct scene {
+    const char *backend;
+    loss_board *board;
     fleet_processes running;
-    fleet_launch((fleet){.backend = backend, .count = 5, .bytes = 512, .body = ring, .context = &t},
-                 &running);
-    assert_int_equal(read(announced[0], &byte, 1), 1);
-    double begin = now(), last = begin;
-    snprintf(expected, sizeof expected, "processor %d is lost", (int)victim);
+} scene;
+
+static void launch(scene *s, const char *backend, int32_t victim, loss_kind kind, int cut) {
+    s->backend = backend;
+    s->board = loss_board_create(victim, kind);
+    s->board->cut = cut;
+    fleet_launch((fleet){.backend = backend,
+                         .count = PROCESSORS,
+                         .bytes = LOSS_BYTES,
+                         .body = loss_ring,
+                         .context = s->board,
+                         .around = loss_around},
+                 &s->running);
+    loss_await_steps(s->board, PROCESSORS, 100);
+}
+
+/* Takes all words, then looks at what is left. Returns how many things are wrong. */
+static int finish(scene *s, loss_control *control) {
+    char texts[PROCESSORS][FLEET_TEXT];
+    int32_t victim = s->board->victim;
     int wrong = 0;
-    for (int32_t p = 0; p < 5; p++) {
+    for (int32_t p = 0; p < PROCESSORS; p++)
+        if (p != victim) fleet_reap(&s->running, p, texts[p]);
+    double late = loss_control_stop(control), last = 0;
+    __atomic_store_n(&s->board->released, 1, __ATOMIC_RELEASE);
+    if (s->board->kind == LOSS_STOP) kill(s->running.pid[victim], SIGKILL);
+    fleet_reap(&s->running, victim, texts[victim]);
+    for (int32_t p = 0; p < PROCESSORS; p++) {
         if (p == victim) continue;
-        fleet_reap(&running, p, texts[p]);
-        last = now();
-        if (strstr(texts[p], expected) && strstr(texts[p], "the last complete step")) continue;
-        print_error("%s, victim %d, kind %d, processor %d says: %s\n", backend, (int)victim, kind,
-                    (int)p, texts[p]);
+        wrong += loss_check(s->board, s->backend, p, texts[p], late);
+        if (s->board->entries[p].ended > last) last = s->board->entries[p].ended;
+    }
+    print_message("%s, processor %d, kind %d: all stopped after %.2f s\n", s->backend, (int)victim,
+                  (int)s->board->kind, last - s->board->began);
+    bool cut = s->board->kind == LOSS_CUT || s->board->kind == LOSS_CUT_ONE;
+    if (cut && s->board->entries[victim].status != LAR_ERROR_PEER) {
+        print_error("processor %d, cut off, says: %s\n", (int)victim, texts[victim]);
         wrong++;
     }
-    if (kind == SIGSTOP) kill(running.pid[victim], SIGKILL);
-    fleet_reap(&running, victim, texts[victim]);
-    close(announced[0]);
-    close(announced[1]);
-    print_message("%s, processor %d, kind %d: all stopped after %.2f s\n", backend, (int)victim,
-                  kind, last - begin);
-    assert_int_equal(wrong, 0);
-    assert_true(last - begin < 2.0);
-    assert_int_equal(leftovers(), 0);
+    if (loss_sockets_left(s->running.master)) print_error("sockets are left\n"), wrong++;
+    munmap(s->board, sizeof *s->board);
+    return wrong;
 }
 
-static void lose_everywhere(int kind) {
-    static const char *const backends[] = {"shm", "tcp"};
-    for (int i = 0; i < 2; i++) {
-        lose(backends[i], 0, kind);
-        lose(backends[i], 2, kind);
+/* The same trouble over every backend at once: most of the time is waiting. */
+static void lose(int32_t victim, loss_kind kind, int cut) {
+    scene scenes[BACKENDS_MOST];
+    loss_control controls[BACKENDS_MOST];
+    lar_comm_backend_info info;
+    int count = 0, wrong = 0;
+    for (int i = 0; fleet_backend(i, &info); i++)
+        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MOST)
+            launch(&scenes[count++], info.name, victim, kind, cut);
+    for (int i = 0; i < count; i++) {
+        loss_control_start(&controls[i]);
+        loss_begin(scenes[i].board, scenes[i].running.pid[victim]);
+    }
+    for (int i = 0; i < count; i++) wrong += finish(&scenes[i], &controls[i]);
+    assert_int_equal(wrong, 0);
+    assert_int_equal(loss_objects_left(), 0);
+}
+
+static bool every_victim; /* or only processor zero and one other */
+
+static void lose_each(loss_kind kind) {
+    for (int32_t victim = 0; victim < PROCESSORS; victim++) {
+        if (!every_victim && victim % 2) continue;
+        lose(victim, kind, 0);
     }
 }
 
 static void a_killed_processor_is_named(void **state) {
     (void)state;
-    lose_everywhere(SIGKILL);
+    lose_each(LOSS_KILL);
 }
 static void a_stopped_processor_is_named(void **state) {
     (void)state;
-    lose_everywhere(SIGSTOP);
+    lose_each(LOSS_STOP);
 }
 static void a_cut_processor_is_named(void **state) {
     (void)state;
-    lose_everywhere(CUT);
+    lose_each(LOSS_CUT);
+}
+/* Some lead to processor zero, some (tcp) to neighbours. */
+static void one_cut_connection_is_enough(void **state) {
+    (void)state;
+    for (int cut = 0; cut < (every_victim ? 5 : 3); cut++) lose(1, LOSS_CUT_ONE, cut);
 }
 static void a_failing_processor_is_named(void **state) {
     (void)state;
-    lose_everywhere(FAIL);
+    lose_each(LOSS_FAIL);
 }
 static void a_hanging_processor_is_named(void **state) {
     (void)state;
-    lose_everywhere(HANG);
+    if (every_victim)
+        lose_each(LOSS_HANG);
+    else
+        lose(2, LOSS_HANG, 0);
+}
+
+/* In one process; `at_step` the victim fails, or hangs until the others have ended. */
+typedef struct mishap {
+    bool fails;
+    int ended; /* atomic: processors */
+} mishap;
+
+static const char *mishap_ring(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
+    mishap *m = context;
+    lar_error error;
+    int32_t count = lar_comm_count(comm), self = lar_comm_self(comm);
+    int32_t next = (self + 1) % count, last = (self + count - 1) % count;
+    for (uint64_t step = 1;; step++) {
+        if (self == 1 && step == 100 && m->fails) {
+            lar_comm_abort(comm);
+            return "its own failure";
+        }
+        while (self == 1 && step == 100 && __atomic_load_n(&m->ended, __ATOMIC_ACQUIRE) < count - 1)
+            usleep(1000);
+        if (lar_comm_put(comm, next, 0, "", 1, step, &error) ||
+            lar_comm_put(comm, last, 256, "", 1, step, &error) ||
+            lar_comm_wait(comm, last, 0, 1, step, NULL, &error) ||
+            lar_comm_wait(comm, next, 256, 1, step, NULL, &error)) {
+            __atomic_fetch_add(&m->ended, 1, __ATOMIC_ACQ_REL);
+            return fleet_say(text, "%s", error.message);
+        }
+    }
 }
 
 /* Threads cannot be killed; they fail or hang. */
 static void threads_that_fail_or_hang_are_named(void **state) {
     (void)state;
-    int nowhere[2];
-    assert_int_equal(pipe(nowhere), 0);
-    for (int kind = FAIL; kind >= HANG; kind--) {
+    for (int fails = 0; fails < 2; fails++) {
         char texts[4][FLEET_TEXT];
-        trouble t = {.victim = 1, .at_step = 100, .kind = kind, .announced = nowhere[1]};
+        mishap m = {.fails = fails};
         fleet_threads((fleet){.backend = "threads",
                               .count = 4,
                               .bytes = 512,
-                              .body = ring,
-                              .context = &t,
+                              .body = mishap_ring,
+                              .context = &m,
                               .patience = 0.5},
                       texts);
         for (int p = 0; p < 4; p++)
             if (p != 1) assert_non_null(strstr(texts[p], "processor 1 is lost"));
     }
-    close(nowhere[0]);
-    close(nowhere[1]);
 }
 
 static const char *nothing(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
@@ -224,10 +223,11 @@ static void leftovers_of_a_crash_are_removed(void **state) {
 }
 
 int main(int argc, char **argv) {
-    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    every_victim = argc > 1 && strcmp(argv[1], "every") == 0;
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_killed_processor_is_named),
                                        cmocka_unit_test(a_stopped_processor_is_named),
                                        cmocka_unit_test(a_cut_processor_is_named),
+                                       cmocka_unit_test(one_cut_connection_is_enough),
                                        cmocka_unit_test(a_failing_processor_is_named),
                                        cmocka_unit_test(a_hanging_processor_is_named),
                                        cmocka_unit_test(threads_that_fail_or_hang_are_named),
