@@ -7,6 +7,7 @@
 
 #include "divide/schedule_file.h"
 #include "lattice.h"
+#include "model/demo/demo.h"
 #include "same_schedule.h"
 
 static const char folder[] = LAR_TEST_BUILD "/schedules";
@@ -214,6 +215,7 @@ static const struct {
     {"recover 1  1", "recover 2000000000 1", "x.schedule:15: the file is too short for 2000"},
     {"recover 1  1", "recover 99999999999 1", "x.schedule:15: a count is 99999999999 here"},
     {"recover 1  1", "recover 1  2", "x.schedule:35: node 3 of element 2 never moves"},
+    {"wait 1  3", "move 1  0 wait 1  3", "x.schedule:19: the parts of a batch are"},
     {"recover 1  1", "recover 1  1\nrecover 1 2", "x.schedule:16: the parts of a batch are"},
     {"  recover 1  0\n", "", "x.schedule:30: node 0 moves, but no element here has it"},
     {"wait 1  3", "wait 1  0", "x.schedule:19: batch 0 is of this thread, which has 0 to 2"},
@@ -320,17 +322,38 @@ static void cut_off(void **state) {
     lar_mesh mesh = lattice(4, 1, 1);
     char *text = for_mesh(left, &mesh);
     size_t complete = (size_t)(strstr(text, "\nend\n") + 4 - text);
+    size_t head = (size_t)(strstr(text, "thread 0") - text);
     for (size_t size = 0; size < complete; size++) {
         lar_schedule s = {0};
         lar_error error = {0};
         lar_status status = parse(text, size, &mesh, &s, &error);
         if (status != LAR_ERROR_FORMAT) fail_msg("the first %zu bytes: status %d", size, status);
         assert_non_null(strstr(error.message, "x.schedule:"));
+        /* Half a number is never taken for another one. */
+        if (size > head && !strstr(error.message, "the file ends before") &&
+            !strstr(error.message, "the file is too short"))
+            fail_msg("the first %zu bytes: %s", size, error.message);
         assert_null(s.batch);
     }
     lar_schedule s = {0};
     assert_int_equal(parse(text, complete, &mesh, &s, NULL), LAR_OK);
     lar_schedule_clear(&s);
+    free(text);
+    lar_mesh_clear(&mesh);
+}
+
+static void nothing_to_do(void **state) {
+    (void)state;
+    static const char idle[] = "lariat-schedule 1\ngrid 2x1x1\nprocessor 0\nthreads 1\nscheme all\n"
+                               "channels sequential\nmesh MESHMESHMESHMESH\n"
+                               "division 0123456789abcdef\nreceive-bytes 0\nbatches 1\n"
+                               "thread 0 batches 1\nbatch 0\nend\n";
+    lar_mesh mesh = lattice(4, 1, 1);
+    char *text = for_mesh(idle, &mesh);
+    lar_schedule s = {0};
+    lar_error error = {0};
+    assert_int_equal(parse(text, strlen(text), &mesh, &s, &error), LAR_ERROR_FORMAT);
+    assert_non_null(strstr(error.message, "x.schedule:13: processor 0 recovers no element"));
     free(text);
     lar_mesh_clear(&mesh);
 }
@@ -376,6 +399,38 @@ static void write_and_read(void **state) {
     remove_folder(2);
     lar_schedule_set_clear(&set);
     lar_schedule_set_clear(&again);
+    lar_mesh_clear(&mesh);
+}
+
+/* Schedules as they are built, for the demonstration organ. */
+static void organ(void **state) {
+    (void)state;
+    lar_mesh mesh = {0};
+    lar_incidence incidence = {0};
+    lar_distribution d = {0};
+    lar_grid grid = grid_of(2, 2, 3);
+    assert_int_equal(lar_demo_mesh(&mesh, NULL), LAR_OK);
+    assert_int_equal(lar_incidence_build(&mesh, &incidence, NULL), LAR_OK);
+    assert_int_equal(lar_distribution_cut(&mesh, &grid, &d, NULL), LAR_OK);
+    for (int way = 0; way < LAR_SCHEMES + 1; way++) {
+        lar_schedule_options options = lar_schedule_options_default();
+        options.threads = 2;
+        options.scheme = way < LAR_SCHEMES ? (lar_scheme)way : LAR_SCHEME_LOCAL;
+        if (way == LAR_SCHEMES) options.channels = LAR_CHANNELS_CONCURRENT;
+        lar_schedule_set set = {0}, again = {0};
+        lar_error error = {0};
+        if (lar_schedule_build(&mesh, &incidence, &d, &options, &set, &error) ||
+            lar_schedule_write(folder, &set, &error) ||
+            lar_schedule_read_all(folder, &mesh, &again, &error))
+            fail_msg("%s: %s", lar_scheme_name[options.scheme], error.message);
+        assert_int_equal(again.count, grid.count);
+        for (int p = 0; p < grid.count; p++) assert_same_schedule(&set.of[p], &again.of[p]);
+        lar_schedule_set_clear(&set);
+        lar_schedule_set_clear(&again);
+    }
+    remove_folder(grid.count);
+    lar_distribution_clear(&d);
+    lar_incidence_clear(&incidence);
     lar_mesh_clear(&mesh);
 }
 
@@ -456,9 +511,11 @@ int main(void) {
         cmocka_unit_test(overlapping_receives),
         cmocka_unit_test(zero_bytes),
         cmocka_unit_test(cut_off),
+        cmocka_unit_test(nothing_to_do),
         cmocka_unit_test(another_mesh),
         cmocka_unit_test(names),
         cmocka_unit_test(write_and_read),
+        cmocka_unit_test(organ),
         cmocka_unit_test(whole_or_not_at_all),
         cmocka_unit_test(folders_that_do_not_fit),
     };
