@@ -149,6 +149,7 @@ static void clear_site(lar_plan_site *site) {
     free(site->node);
     free(site->node_first);
     free(site->batch);
+    free(site->kind);
     free(site->place);
 }
 
@@ -166,9 +167,10 @@ static lar_status make_site(lar_plan_site *site, lar_error *error) {
     site->node = lar_calloc(shared, sizeof *site->node);
     site->node_first = lar_calloc(processors + 1, sizeof *site->node_first);
     site->batch = lar_calloc(elements, sizeof *site->batch);
+    site->kind = lar_calloc(elements, sizeof *site->kind);
     site->place = lar_calloc(nodes, sizeof *site->place);
     if (!site->centre || !site->element || !site->element_first || !site->node ||
-        !site->node_first || !site->batch || !site->place)
+        !site->node_first || !site->batch || !site->kind || !site->place)
         return lar_fail_memory(error, elements * sizeof *site->centre, "elements of processors");
     find_centres(site->mesh, site->centre);
     list_by_processor(site);

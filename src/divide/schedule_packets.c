@@ -110,7 +110,7 @@ static void count_packets(const table *t, lar_packets *out, int64_t *vectors) {
             }
 }
 
-static void list_packets(const table *t, lar_packets *out) {
+static void list_packets(const table *t, const lar_grid *grid, lar_packets *out) {
     int32_t count = 0;
     int64_t first = 0;
     for (int32_t from = 0; from < t->processors; from++) {
@@ -124,6 +124,7 @@ static void list_packets(const table *t, lar_packets *out) {
                                                   .stage = s,
                                                   .count = c->added + c->whole,
                                                   .whole = c->whole,
+                                                  .distance = lar_grid_distance(grid, from, to),
                                                   .onward = c->onward,
                                                   .first = first,
                                                   .sent_in = LAR_NOWHERE,
@@ -154,7 +155,7 @@ static void list_received(const table *t, lar_packets *out) {
     out->received_first[t->processors] = count;
 }
 
-static lar_status make_lists(table *t, lar_packets *out, lar_error *error) {
+static lar_status make_lists(table *t, const lar_grid *grid, lar_packets *out, lar_error *error) {
     int64_t vectors;
     size_t n = (size_t)t->processors;
     count_packets(t, out, &vectors);
@@ -167,7 +168,7 @@ static lar_status make_lists(table *t, lar_packets *out, lar_error *error) {
     if (!out->packet || !out->received || !out->sent_first || !out->received_first || !out->room ||
         !out->node)
         return lar_fail_memory(error, (size_t)vectors * sizeof *out->node, "vectors of packets");
-    list_packets(t, out);
+    list_packets(t, grid, out);
     list_received(t, out);
     return LAR_OK;
 }
@@ -181,7 +182,7 @@ lar_status lar_packets_build(const lar_sharing *sharing, const lar_schedule_opti
     for (size_t i = 0; i < cells; i++) t.cell[i].packet = LAR_NOWHERE;
     visit_nodes(&t, sharing, options, count_vector);
     lar_status status = add_empty(&t, error);
-    if (status == LAR_OK) status = make_lists(&t, &packets, error);
+    if (status == LAR_OK) status = make_lists(&t, &sharing->grid, &packets, error);
     if (status == LAR_OK) visit_nodes(&t, sharing, options, put_vector);
     free(t.cell);
     if (status == LAR_OK)

@@ -83,8 +83,7 @@ static void mark_nodes(lar_plan *plan, const lar_packet *packet, int32_t mark) {
 /* Elements of units since the last relay: work behind which the packets of that one travel. Those
  * of the first stage are recovered before anything can be on its way. */
 static int32_t elements_since(const lar_plan *plan) {
-    int32_t first = plan->first_later, count = 0;
-    if (plan->gap_count > 0) first = plan->gap[plan->gap_count - 1].relay + 1;
+    int32_t first = plan->gap_count > 0 ? plan->first_unit : plan->first_later, count = 0;
     for (int32_t b = first; b < plan->batch_count; b++) count += plan->batch[b].elements;
     return count;
 }
@@ -105,6 +104,8 @@ static lar_plan_gap *add_gap(lar_plan *plan, int32_t receiver, lar_error *error)
         }
     }
     plan->gap_count++;
+    plan->first_unit = plan->batch_count;
+    memset(plan->clock, 0, sizeof plan->clock);
     return gap;
 }
 
@@ -131,6 +132,7 @@ static lar_status add_relay(lar_plan *plan, lar_packet **packet, int32_t count, 
 static int compare_units(const void *a, const void *b) {
     const lar_packet *x = *(lar_packet *const *)a, *y = *(lar_packet *const *)b;
     if (x->onward != y->onward) return x->onward > y->onward ? -1 : 1;
+    if (x->distance != y->distance) return x->distance > y->distance ? -1 : 1;
     return x->to > y->to ? -1 : x->to < y->to;
 }
 
@@ -147,7 +149,9 @@ static lar_status add_units(lar_plan *plan, lar_packet **packet, int32_t count, 
     lar_status status = LAR_OK;
     qsort(packet, (size_t)count, sizeof *packet, compare_units);
     for (int32_t i = 0, j; i < count && status == LAR_OK; i = j) {
-        for (j = i + 1; j < count && packet[j]->onward == packet[i]->onward;) j++;
+        for (j = i + 1; j < count && packet[j]->onward == packet[i]->onward &&
+                        packet[j]->distance == packet[i]->distance;)
+            j++;
         status = lar_plan_units(plan, packet + i, j - i, error);
     }
     return status;

@@ -26,6 +26,7 @@
 typedef struct lar_packet {
     int32_t from, to, stage;
     int32_t count, whole; /* vectors; the last `whole` of them are whole forces */
+    int32_t distance;     /* channels between the two */
     int32_t onward;       /* most ways that one of its vectors still has to go after this one */
     int64_t first;        /* in node[] */
     int64_t offset;       /* in the receiver's buffer */
@@ -64,6 +65,7 @@ typedef struct lar_plan_site {
     int32_t *node;          /* by processor, ascending */
     int64_t *node_first;    /* [processors + 1] */
     int32_t *batch;         /* [elements] batch of the plan of its processor, or LAR_NOWHERE */
+    uint64_t *kind;         /* [elements] scratch, 0 */
     int32_t *place;         /* [nodes] number within the processor that is planned now */
 } lar_plan_site;
 
@@ -72,6 +74,7 @@ typedef struct lar_plan_site {
 typedef struct lar_plan_batch {
     int32_t thread;
     int32_t elements;
+    int64_t finish; /* of a unit, as far as it is foreseen (schedule_threads.c) */
 } lar_plan_batch;
 
 /* What is recovered before something is received: each thread has a batch for it. In one of them,
@@ -95,9 +98,12 @@ typedef struct lar_plan {
     int32_t element_count, node_count;
     size_t batch_capacity;
     int32_t batch_count;
-    lar_plan_batch *batch; /* in the order of rank */
-    int32_t first_later;   /* batches of stage 0 */
-    int32_t gap_count;     /* the last gap is before the last receives */
+    lar_plan_batch *batch;           /* in the order of rank */
+    int32_t first_later;             /* batches of stage 0 */
+    int32_t first_unit;              /* batches up to the last gap */
+    int64_t clock[LAR_THREADS_MOST]; /* when each thread is through with its units since then */
+    int64_t tried;                   /* assignments of units */
+    int32_t gap_count;               /* the last gap is before the last receives */
     lar_plan_gap gap[LAR_GAPS_MOST];
     int32_t last[LAR_THREADS_MOST]; /* the batch that moves nodes; a gate follows */
     int32_t pooled;
