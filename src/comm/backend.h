@@ -7,25 +7,11 @@
  *                     begin()      names and listeners that nobody needs any more go
  *     lar_comm_put    put()        only to peers without `direct`: payload, then tail
  *     lar_comm_wait   progress()   when the hardware does not write the receive buffer by itself
- *     lar_comm_close  close()
+ *     lar_comm_close  leave()      when what was put needs help to arrive; before the goodbyes
+ *                     close()
  *
  * Peers with `direct` are served by comm.c: copy, then store-release of the tail. `threads` and
  * `shm` need no more than that. NULL functions do nothing.
- *
- * A backend `ucx` fits in without a change here. open: ucp_mem_map of the receive buffer; the
- * address holds the worker's address and the packed rkey (LAR_COMM_ADDRESS_BYTES). connect:
- * endpoints, ucp_ep_rkey_unpack; same-host peers may get `direct` by ucp_rkey_ptr. room: registered
- * memory for the payload, two halves by parity as at the receiver; put: ucp_put_nbx of the payload,
- * ucp_worker_fence, ucp_put_nbx of the tail from a word that lives as long as the payload does;
- * what is not complete locally is remembered per peer and parity and completed, with progress,
- * before room or put touches the same memory again. Several payloads to one neighbour may share
- * one fence: put may hold tails back until progress. Over TCP an active message whose handler
- * copies and stores the tail (lar_comm_tail). progress: ucp_worker_progress.
- *
- * A backend `mpi`: receives for every peer are posted in begin; put: MPI_Isend of header and
- * payload from memory of its own, reused after MPI_Test; progress: MPI_Testsome, lar_comm_tail,
- * post again. Under mpirun the meeting goes through MPI_Allgather: such a backend sets `meets` and
- * fills all addresses in connect itself.
  */
 #ifndef LAR_COMM_BACKEND_H
 #define LAR_COMM_BACKEND_H
@@ -56,10 +42,12 @@ typedef struct lar_comm_backend {
     /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. An error says
      * that nothing more will come from it; what had come is stored. */
     lar_status (*progress)(lar_comm *comm, int32_t peer);
+    void (*leave)(lar_comm *comm);
     void (*close)(lar_comm *comm);
 } lar_comm_backend;
 
-extern const lar_comm_backend lar_comm_threads, lar_comm_shm, lar_comm_tcp;
+extern const lar_comm_backend lar_comm_threads, lar_comm_shm, lar_comm_ucx, lar_comm_mpi,
+    lar_comm_tcp;
 
 typedef struct lar_comm_peer {
     unsigned char *direct; /* its receive buffer when it can be written from here, else NULL */
@@ -103,6 +91,19 @@ static inline uint64_t *lar_comm_tail(unsigned char *buffer, size_t half, size_t
 static inline bool lar_comm_fits(size_t half, size_t offset, size_t bytes) {
     return offset % 8 == 0 && offset <= half && bytes <= half - offset &&
            lar_comm_packet_bytes(bytes) <= half - offset;
+}
+
+/* Whether all processors are on this machine because processor zero can be reached from nowhere
+ * else. */
+bool lar_comm_is_local(const lar_comm *comm);
+
+/* Between two polls of memory: leaves the core to its other thread. */
+static inline void lar_comm_relax(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
 }
 
 /* Monotonic clock [s]. */

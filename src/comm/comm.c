@@ -15,21 +15,8 @@
 /* ---- the backends ------------------------------------------------------------------------ */
 
 /* Default first. One that this build lacks has a name and says how to get it. */
-static const lar_comm_backend missing_ucx = {
-    .name = "ucx",
-    .summary = "clusters: InfiniBand, RoCE, shared memory",
-    .missing =
-        "this version of Lariat does not have it yet; use tcp between machines and shm on one",
-};
-static const lar_comm_backend missing_mpi = {
-    .name = "mpi",
-    .summary = "anywhere MPI runs",
-    .start = LAR_COMM_BY_LAUNCHER,
-    .missing =
-        "this version of Lariat does not have it yet; use tcp between machines and shm on one",
-};
-static const lar_comm_backend *const table[] = {&lar_comm_threads, &lar_comm_shm, &missing_ucx,
-                                                &missing_mpi, &lar_comm_tcp};
+static const lar_comm_backend *const table[] = {&lar_comm_threads, &lar_comm_shm, &lar_comm_ucx,
+                                                &lar_comm_mpi, &lar_comm_tcp};
 enum { BACKENDS = sizeof table / sizeof table[0] };
 
 bool lar_comm_backend_list(int index, lar_comm_backend_info *info) {
@@ -67,6 +54,12 @@ lar_comm_options lar_comm_options_default(void) {
                               .start_timeout = 20,
                               .timeout = 2,
                               .patience = 1.7};
+}
+
+bool lar_comm_is_local(const lar_comm *comm) {
+    const char *master = comm->options.master;
+    return !master || strncmp(master, "127.", 4) == 0 || strncmp(master, "[::1]", 5) == 0 ||
+           strncmp(master, "localhost:", 10) == 0;
 }
 
 static lar_status check_options(const lar_comm_options *o, const lar_comm_backend *backend,
@@ -150,6 +143,7 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
 
 void lar_comm_close(lar_comm *comm) {
     if (!comm) return;
+    if (comm->backend->leave) comm->backend->leave(comm);
     /* Goodbyes first: a connection that ends after one is no loss. */
     lar_watch_stop(comm);
     if (comm->backend->close) comm->backend->close(comm);
@@ -264,14 +258,6 @@ void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, u
     return comm->backend->room ? comm->backend->room(comm, peer, offset, bytes, step) : NULL;
 }
 
-static inline void relax(void) {
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#elif defined(__aarch64__)
-    __asm__ volatile("yield");
-#endif
-}
-
 static inline uint64_t load_tail(const uint64_t *tail) {
     return __atomic_load_n(tail, __ATOMIC_ACQUIRE);
 }
@@ -303,7 +289,7 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
                 if (status) return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
             } else {
                 if (load_tail(tail) == step) return LAR_OK;
-                relax();
+                lar_comm_relax();
             }
         }
         sched_yield();

@@ -20,6 +20,7 @@
 
 #include "comm/channel.h"
 #include "comm/comm.h"
+#include "comm/job.h"
 
 enum { FLEET_MOST = 32, FLEET_TEXT = 1100 };
 
@@ -191,9 +192,48 @@ static inline void fleet_expect_good(const char *what, const fleet *f, char (*te
     assert_int_equal(wrong, 0);
 }
 
+/* Under mpirun this process is one processor of every fleet, or looks on when the fleet is smaller.
+ */
+static inline lar_comm_job *fleet_job(void) {
+    static lar_comm_job job;
+    lar_error error;
+    if (job.count == 0 && lar_comm_job_find(&job, &error)) fail_msg("%s", error.message);
+    return job.count > 1 ? &job : NULL;
+}
+
+static inline void fleet_in_job(const char *what, fleet f) {
+    lar_comm_backend_info info;
+    lar_comm_job *job = fleet_job();
+    assert_true(f.count <= job->count);
+    for (int row = 0; lar_comm_backend_list(row, &info); row++) {
+        if (info.missing || info.start == LAR_COMM_BY_TEAM) continue;
+        lar_comm_options o = lar_comm_options_default();
+        lar_error error;
+        char text[FLEET_TEXT] = "";
+        if (lar_comm_job_meet(job, &o, &error)) fail_msg("%s", error.message);
+        f.backend = info.name;
+        f.listener = o.listener;
+        memcpy(f.master, o.master, sizeof f.master);
+        if (job->self < f.count) fleet_live(&f, job->self, text);
+        if (text[0]) fail_msg("%s, %s, processor %d: %s", what, f.backend, (int)job->self, text);
+    }
+}
+
+/* The last words of main. */
+static inline int fleet_end(int failed) {
+    lar_error error;
+    if (!fleet_job() || !lar_comm_job_end(fleet_job(), failed != 0, &error)) return failed;
+    fprintf(stderr, "%s\n", error.message);
+    return 1;
+}
+
 /* Every backend with threads, and those for processes with processes too. */
 static inline void fleet_everywhere(const char *what, fleet f) {
     lar_comm_backend_info info;
+    if (lar_comm_job_launched()) {
+        fleet_in_job(what, f);
+        return;
+    }
     char(*texts)[FLEET_TEXT] = calloc((size_t)f.count, FLEET_TEXT);
     assert_non_null(texts);
     for (int i = 0; fleet_backend(i, &info); i++) {

@@ -232,8 +232,15 @@ static void nonsense_is_refused(void **state) {
     lar_comm *comm;
     lar_error error;
     assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT); /* no team */
-    o.backend = "ucx";
-    assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_UNSUPPORTED);
+    lar_comm_backend_info info;
+    int rows = 0;
+    for (; lar_comm_backend_list(rows, &info); rows++) {
+        if (!info.missing) continue;
+        o.backend = info.name;
+        assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_UNSUPPORTED);
+        assert_non_null(strstr(error.message, info.missing));
+    }
+    assert_int_equal(rows, 5);
     o.backend = "pigeons";
     assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "take one of these: threads, shm"));
@@ -243,10 +250,6 @@ static void nonsense_is_refused(void **state) {
     o.self = 1;
     assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "host:port"));
-    lar_comm_backend_info info;
-    int rows = 0;
-    while (lar_comm_backend_list(rows, &info)) rows++;
-    assert_int_equal(rows, 5);
 }
 
 static const char *nothing(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
@@ -257,6 +260,7 @@ static const char *nothing(lar_comm *comm, void *context, char text[FLEET_TEXT])
 /* A processor with other files is refused before the first step, and all say the same. */
 static void other_models_are_refused(void **state) {
     (void)state;
+    if (lar_comm_job_launched()) skip();
     lar_comm_backend_info info;
     for (int i = 0; fleet_backend(i, &info); i++) {
         char texts[3][FLEET_TEXT];
@@ -278,5 +282,5 @@ int main(void) {
         cmocka_unit_test(one_way_edges_are_safe),       cmocka_unit_test(packets_go_anywhere),
         cmocka_unit_test(twelve_on_two_cores_progress), cmocka_unit_test(nonsense_is_refused),
         cmocka_unit_test(other_models_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fleet_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

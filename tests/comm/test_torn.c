@@ -52,5 +52,5 @@ static void no_packet_is_torn(void **state) {
 int main(int argc, char **argv) {
     if (argc > 1) packets = strtoull(argv[1], NULL, 10);
     const struct CMUnitTest tests[] = {cmocka_unit_test(no_packet_is_torn)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return fleet_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
