@@ -136,11 +136,15 @@ static int compare_units(const void *a, const void *b) {
     return x->to > y->to ? -1 : x->to < y->to;
 }
 
+/* How far apart the numbers are: less along x than along y, along y than along z. */
+static int32_t step_of(const lar_packet *packet) {
+    return abs(packet->to - packet->from);
+}
+
 /* x before y before z: what comes over x is sent first, so it is there first. */
 static int compare_relays(const void *a, const void *b) {
     const lar_packet *x = *(lar_packet *const *)a, *y = *(lar_packet *const *)b;
-    int32_t dx = abs(x->to - x->from), dy = abs(y->to - y->from);
-    if (dx != dy) return dx < dy ? -1 : 1;
+    if (step_of(x) != step_of(y)) return step_of(x) < step_of(y) ? -1 : 1;
     return x->to > y->to ? -1 : x->to < y->to;
 }
 
@@ -158,15 +162,17 @@ static lar_status add_units(lar_plan *plan, lar_packet **packet, int32_t count, 
 }
 
 /* One batch receives and sends on for a whole stage. Only in the concurrent use, by one thread,
- * each peer has its own: finer, but each costs other threads a wait. */
+ * each axis has its own: finer, but each costs other threads a wait. */
 static lar_status add_relays(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
     const lar_schedule_options *o = plan->site->options;
     bool fine = o->scheme == LAR_SCHEME_LOCAL && o->channels == LAR_CHANNELS_CONCURRENT &&
                 plan->threads == 1;
     lar_status status = LAR_OK;
     qsort(packet, (size_t)count, sizeof *packet, compare_relays);
-    for (int32_t i = 0; i < count && status == LAR_OK; i += fine ? 1 : count)
-        status = add_relay(plan, packet + i, fine ? 1 : count, error);
+    for (int32_t i = 0, j; i < count && status == LAR_OK; i = j) {
+        for (j = i + 1; j < count && (!fine || step_of(packet[j]) == step_of(packet[i]));) j++;
+        status = add_relay(plan, packet + i, j - i, error);
+    }
     return status;
 }
 
