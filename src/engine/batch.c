@@ -17,11 +17,27 @@ static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_
     for (int i = 0; i < 3; i++) sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)part[i]);
 }
 
-/* What all threads of the processor together have at a value. */
-static inline void sum_of_threads(const lar_processor *p, int32_t value, int64_t sum[3]) {
-    memcpy(sum, p->worker[0].state.force + value, LAR_VECTOR_BYTES);
+/* What all threads of the processor together have at some values, one vector after the other. */
+static void collect(const lar_processor *p, const int32_t *value, int32_t count,
+                    int64_t *restrict vector) {
+    const int64_t *force = p->worker[0].state.force;
+    for (int32_t i = 0; i < count; i++)
+        memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
     for (int32_t t = 1; t < p->thread_count; t++)
-        add_vector(p, sum, p->worker[t].state.force + value);
+        for (int32_t i = 0; i < count; i++)
+            add_vector(p, vector + 3 * i, p->worker[t].state.force + value[i]);
+}
+
+/* Adds vectors, one after the other, at some values. */
+static void spread(const lar_processor *p, const int32_t *value, int32_t count,
+                   const int64_t *restrict vector, int64_t *restrict force) {
+    if (p->check)
+        for (int32_t i = 0; i < count; i++) lar_list_join(force + value[i], vector + 3 * i);
+    else
+        for (int32_t i = 0; i < count; i++)
+            for (int k = 0; k < 3; k++)
+                force[value[i] + k] =
+                    (int64_t)((uint64_t)force[value[i] + k] + (uint64_t)vector[3 * i + k]);
 }
 
 /* Takes the sums of the other threads over into the one that moves the nodes. */
@@ -54,7 +70,7 @@ static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uin
         (const int64_t *)(const void *)((const char *)payload + LAR_SIGNAL_BYTES);
     const int32_t *value = p->value + packet->first;
     int64_t *force = worker->state.force;
-    for (int32_t i = 0; i < packet->added; i++) add_vector(p, force + value[i], vector + 3 * i);
+    spread(p, value, packet->added, vector, force);
     for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
         for (int32_t t = 0; t < p->thread_count; t++)
             memset(p->worker[t].state.force + value[i], 0, LAR_VECTOR_BYTES);
@@ -72,9 +88,7 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
     uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
     memcpy(bytes, &stop, sizeof stop);
     int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
-    const int32_t *value = p->value + packet->first;
-    int32_t count = packet->added + packet->whole;
-    for (int32_t i = 0; i < count; i++) sum_of_threads(p, value[i], vector + 3 * i);
+    collect(p, p->value + packet->first, packet->added + packet->whole, vector);
     return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, step, error);
 }
 
@@ -112,14 +126,27 @@ static void dawdle(lar_worker *worker) {
 
 /* ---- the step ------------------------------------------------------------------------------ */
 
-static void recover(lar_worker *worker, const lar_batch_plan *batch) {
+/* While the last run of a batch is recovered, the memory of its packets comes near. */
+static void bring_near(const lar_processor *p, const lar_batch_plan *batch, uint64_t step) {
+    for (int32_t i = batch->sends.first; i < batch->sends.first + batch->sends.count; i++) {
+        const lar_packet_plan *packet = &p->packet[i];
+        lar_comm_prepare(p->comm, packet->peer, packet->offset, packet->bytes, step);
+    }
+    for (int32_t i = batch->receives.first; i < batch->receives.first + batch->receives.count; i++)
+        lar_comm_expect(p->comm, p->packet[i].offset, p->packet[i].bytes, step);
+}
+
+static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t step) {
     lar_processor *p = worker->processor;
-    if (p->check)
-        lar_verification_recover(p->check, &p->domain, batch->run_first, batch->run_count,
-                                 &worker->state);
-    else
-        lar_step_recover(&p->domain, batch->run_first, batch->run_count, &worker->state,
-                         &worker->trip);
+    int32_t first = batch->run_first, last = first + batch->run_count - 1;
+    if (p->check) {
+        lar_verification_recover(p->check, &p->domain, first, batch->run_count, &worker->state);
+        return;
+    }
+    if (batch->run_count == 0) return;
+    lar_step_recover(&p->domain, first, last - first, &worker->state, &worker->trip);
+    bring_near(p, batch, step);
+    lar_step_recover(&p->domain, last, 1, &worker->state, &worker->trip);
 }
 
 static lar_status move(lar_worker *worker, lar_error *error) {
@@ -137,7 +164,7 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t step, lar_er
     const lar_batch_plan *batch = &p->batch[b];
     lar_status status = LAR_OK;
     dawdle(worker);
-    recover(worker, batch);
+    recover(worker, batch, step);
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
         status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], step, error);
     dawdle(worker);
