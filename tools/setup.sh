@@ -5,7 +5,8 @@
 #   tools/setup.sh [build] [check] [fuzz]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
-#   check   what widens the tests: a second compiler, METIS, MPI, cross compiler and emulator for NEON
+#   check   what widens the tests: a second compiler, METIS, UCX, MPI, the cross compiler and emulator
+#           for NEON
 #   fuzz    clang with libFuzzer
 #
 # What belongs to `check` and `fuzz` is optional: without it the tests that need it are left out,
@@ -27,6 +28,8 @@ CLANG_PACKAGES="
 clang             c:clang"
 METIS_PACKAGES="
 libmetis-dev      -"
+UCX_PACKAGES="
+libucx-dev        m:ucx"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
@@ -143,8 +146,8 @@ for group in "$@"; do
     check)
         want_clang "the sanitizers run with gcc instead of clang"
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
-        want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there, if any" ||
-            true
+        want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
+        want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         ;;
     fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;

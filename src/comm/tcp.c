@@ -70,8 +70,7 @@ static lar_status tcp_start(lar_comm *comm, lar_error *error) {
     if (count == 1) return LAR_OK;
     /* Loopback stays loopback: only a master elsewhere makes this processor reachable. */
     const char *master = comm->options.master;
-    bool local = !master || strncmp(master, "127.", 4) == 0 || strncmp(master, "[::1]", 5) == 0 ||
-                 strncmp(master, "localhost:", 10) == 0;
+    bool local = lar_comm_is_local(comm);
     bool six = master && master[0] == '[';
     const char *at = six ? local ? "[::1]:0" : "[::]:0" : local ? "127.0.0.1:0" : "0.0.0.0:0";
     lar_status status = lar_socket_listen(at, &state->listener, error);
