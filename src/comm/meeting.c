@@ -39,6 +39,7 @@ static lar_status lost(int32_t p, lar_error *error) {
 
 /* How long a wait lasts before it looks whether all are still there [s]. */
 static const double LOOK = 0.05;
+static const double LATE = 1; /* for guests after a refusal [s] */
 
 lar_status lar_meeting_check(const lar_comm *comm, lar_error *error) {
     for (int32_t p = 0; p < comm->options.count; p++)
@@ -121,9 +122,10 @@ static lar_status not_all_came(const lar_comm *comm, lar_error *error) {
                     list, comm->options.start_timeout);
 }
 
+/* *missing: how many may still come. */
 static lar_status receive_guests(lar_comm *comm, const hello *own, double deadline,
-                                 lar_error *error) {
-    for (int32_t missing = comm->options.count - 1; missing > 0;) {
+                                 int32_t *missing, lar_error *error) {
+    for (*missing = comm->options.count - 1; *missing > 0;) {
         int guest;
         lar_status status =
             lar_meeting_accept(comm, comm->options.listener, deadline, &guest, error);
@@ -140,6 +142,7 @@ static lar_status receive_guests(lar_comm *comm, const hello *own, double deadli
             close(guest);
             continue;
         }
+        --*missing;
         status = judge(comm, &h, own, error);
         if (status) {
             if (error) {
@@ -152,7 +155,6 @@ static lar_status receive_guests(lar_comm *comm, const hello *own, double deadli
         comm->links[h.self] = guest;
         comm->addresses[h.self] = h.address;
         lar_socket_peer_host(guest, comm->addresses[h.self].host);
-        missing--;
     }
     return LAR_OK;
 }
@@ -162,6 +164,20 @@ static void refuse_all(lar_comm *comm, const lar_error *why) {
     for (int32_t p = 1; p < comm->options.count; p++)
         if (comm->links[p] >= 0)
             lar_socket_send(comm->links[p], &n, sizeof n, lar_comm_now() + 0.2);
+}
+
+/* Who comes a moment later would call in vain until its own limit. */
+static void refuse_late_guests(lar_comm *comm, int32_t missing, const lar_error *why) {
+    note n = refusal(why);
+    double deadline = lar_comm_now() + LATE;
+    while (missing-- > 0) {
+        int guest = lar_socket_accept(comm->options.listener, deadline);
+        if (guest < 0) return;
+        hello h; /* unread, it would take the refusal with it */
+        lar_socket_receive(guest, &h, sizeof h, deadline);
+        lar_socket_send(guest, &n, sizeof n, deadline);
+        close(guest);
+    }
 }
 
 /* Tells everyone; the first that cannot be told is the failure. */
@@ -184,12 +200,14 @@ static lar_status host_meeting(lar_comm *comm, const hello *own, lar_error *erro
     if (getrandom(&comm->token, sizeof comm->token, 0) != sizeof comm->token)
         return lar_fail(error, LAR_ERROR_IO, "the system gives no random numbers; check getrandom");
     lar_status status = LAR_OK;
+    int32_t missing = 0;
     if (comm->options.listener < 0)
         status = lar_socket_listen(comm->options.master, &comm->options.listener, &why);
-    if (!status) status = receive_guests(comm, own, deadline, &why);
+    if (!status) status = receive_guests(comm, own, deadline, &missing, &why);
     if (!status) status = tell_all(comm, true, deadline, &why);
     if (status) {
         refuse_all(comm, &why);
+        if (lar_comm_now() < deadline) refuse_late_guests(comm, missing, &why);
         if (error) *error = why;
     }
     if (comm->options.listener >= 0) close(comm->options.listener);

@@ -60,7 +60,9 @@ static void lose(int32_t victim, loss_kind kind, int cut) {
     lar_comm_backend_info info;
     int count = 0, wrong = 0;
     for (int i = 0; fleet_backend(i, &info); i++)
-        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MOST)
+        /* Which of its sockets carry packets is UCX's own affair. */
+        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MOST &&
+            !(kind == LOSS_CUT_ONE && strcmp(info.name, "ucx") == 0))
             launch(&scenes[count++], info.name, victim, kind, cut);
     for (int i = 0; i < count; i++) {
         loss_control_start(&controls[i]);
