@@ -11,28 +11,28 @@
 #include "plain_schedule.h"
 #include "step_player.h"
 
-/* Of all combinations every so many is tried: prime, so that all values of everything occur. */
-static int sample = 61;
+/* Of all divisions, and of all schedules of one, every so many are tried: prime to all numbers
+ * here, so that all values of everything occur. */
+static int some_divisions = 23, some_schedules = 5;
 
 enum { EDGE = 4, THREADS = 4, CUT = 0, RANDOM, METIS, DISTRIBUTIONS };
-
-typedef struct combination {
-    int edge[3], scheme, channels, threads, distribution;
-} combination;
-
 enum {
-    COMBINATIONS = EDGE * EDGE * EDGE * LAR_SCHEMES * LAR_CHANNEL_USES * THREADS * DISTRIBUTIONS
+    DIVISIONS = EDGE * EDGE * EDGE * DISTRIBUTIONS,
+    SCHEDULES = LAR_SCHEMES * LAR_CHANNEL_USES * THREADS
 };
 
-static combination combination_of(int i) {
-    const int size[] = {LAR_SCHEMES, LAR_CHANNEL_USES, THREADS, DISTRIBUTIONS, EDGE, EDGE, EDGE};
-    int digit[7];
-    for (int d = 0; d < 7; d++) {
-        digit[d] = i % size[d];
-        i /= size[d];
-    }
-    return (combination){
-        {digit[4] + 1, digit[5] + 1, digit[6] + 1}, digit[0], digit[1], digit[2] + 1, digit[3]};
+typedef struct combination {
+    int edge[3], distribution, scheme, channels, threads;
+} combination;
+
+static combination combination_of(int division, int schedule) {
+    return (combination){.distribution = division % DISTRIBUTIONS,
+                         .edge = {division / DISTRIBUTIONS % EDGE + 1,
+                                  division / DISTRIBUTIONS / EDGE % EDGE + 1,
+                                  division / DISTRIBUTIONS / EDGE / EDGE + 1},
+                         .threads = schedule % THREADS + 1,
+                         .scheme = schedule / THREADS % LAR_SCHEMES,
+                         .channels = schedule / THREADS / LAR_SCHEMES};
 }
 
 static bool distribute(const lar_mesh *mesh, const lar_incidence *incidence, const combination *c,
@@ -55,7 +55,7 @@ static void prove_one(const lar_mesh *mesh, const lar_incidence *incidence,
     options.scheme = (lar_scheme)c->scheme;
     options.channels = (lar_channel_use)c->channels;
     options.threads = c->threads;
-    options.search = sample > 1 ? 200 : 2000;
+    options.search = 500;
     lar_schedule_set set;
     lar_schedule_proof proof;
     lar_error error = {0};
@@ -81,11 +81,14 @@ static void prove_one(const lar_mesh *mesh, const lar_incidence *incidence,
 static void prove_mesh(lar_mesh *mesh, bool play) {
     lar_incidence incidence;
     assert_int_equal(lar_incidence_build(mesh, &incidence, NULL), LAR_OK);
-    for (int i = 0; i < COMBINATIONS; i += sample) {
-        combination c = combination_of(i);
+    for (int i = 0; i < DIVISIONS; i += some_divisions) {
+        combination c = combination_of(i, 0);
         lar_distribution distribution = {0};
-        if (distribute(mesh, &incidence, &c, &distribution))
+        if (!distribute(mesh, &incidence, &c, &distribution)) continue;
+        for (int j = i % some_schedules; j < SCHEDULES; j += some_schedules) {
+            c = combination_of(i, j);
             prove_one(mesh, &incidence, &distribution, &c, play);
+        }
         lar_distribution_clear(&distribution);
     }
     lar_incidence_clear(&incidence);
@@ -195,7 +198,7 @@ static void larger(void **state) {
     lar_incidence incidence;
     assert_int_equal(lar_incidence_build(&mesh, &incidence, NULL), LAR_OK);
     for (int distribution = CUT; distribution <= RANDOM; distribution++) {
-        combination c = {{4, 4, 4}, LAR_SCHEME_LOCAL, LAR_CHANNELS_CONCURRENT, 2, distribution};
+        combination c = {{4, 4, 4}, distribution, LAR_SCHEME_LOCAL, LAR_CHANNELS_CONCURRENT, 2};
         lar_distribution d = {0};
         assert_true(distribute(&mesh, &incidence, &c, &d));
         prove_one(&mesh, &incidence, &d, &c, false);
@@ -206,7 +209,7 @@ static void larger(void **state) {
 }
 
 int main(int argc, char **argv) {
-    if (argc > 1 && strcmp(argv[1], "all") == 0) sample = 1;
+    if (argc > 1 && strcmp(argv[1], "all") == 0) some_divisions = some_schedules = 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(demonstration_organ), cmocka_unit_test(regular_lattice),
         cmocka_unit_test(bodies_apart),        cmocka_unit_test(many_elements_at_a_node),
