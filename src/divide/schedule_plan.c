@@ -80,21 +80,12 @@ static void mark_nodes(lar_plan *plan, const lar_packet *packet, int32_t mark) {
     for (int32_t j = 0; j < packet->count; j++) plan->mark[plan->site->place[node[j]]] = mark;
 }
 
-/* Elements of units since the last relay: work behind which the packets of that one travel. Those
- * of the first stage are recovered before anything can be on its way. */
-static int32_t elements_since(const lar_plan *plan) {
-    int32_t first = plan->gap_count > 0 ? plan->first_unit : plan->first_later, count = 0;
-    for (int32_t b = first; b < plan->batch_count; b++) count += plan->batch[b].elements;
-    return count;
-}
-
 /* A new gap with a batch for each thread, the one that receives (if only one does) at the end: it
  * waits for the others. */
 static lar_plan_gap *add_gap(lar_plan *plan, int32_t receiver, lar_error *error) {
     assert(plan->gap_count < LAR_GAPS_MOST);
     lar_plan_gap *gap = &plan->gap[plan->gap_count];
-    *gap =
-        (lar_plan_gap){.relay = LAR_NOWHERE, .first = plan->pooled, .before = elements_since(plan)};
+    *gap = (lar_plan_gap){.relay = LAR_NOWHERE, .first = plan->pooled, .before = plan->since};
     for (int32_t i = 1; i <= plan->threads; i++) {
         int32_t thread = (receiver + i) % plan->threads;
         gap->batch[thread] = lar_plan_add_batch(plan, thread);
@@ -109,20 +100,42 @@ static lar_plan_gap *add_gap(lar_plan *plan, int32_t receiver, lar_error *error)
     return gap;
 }
 
+/* Elements at the nodes of packets, to be recovered in the newest gap. */
+static void need(lar_plan *plan, lar_packet **packet, int32_t count) {
+    lar_plan_gap *gap = &plan->gap[plan->gap_count - 1];
+    for (int32_t i = 0; i < count; i++)
+        plan->pooled += lar_plan_claim(plan, packet[i], LAR_POOLED, plan->pool + plan->pooled);
+    gap->needed = plan->pooled - gap->first;
+}
+
 /* A batch that sends `count` packets of a stage on, and the gap before it. */
 static lar_status add_relay(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
     int32_t receiver = plan->gap_count % plan->threads;
     lar_plan_gap *gap = add_gap(plan, receiver, error);
     if (!gap) return LAR_ERROR_MEMORY;
+    need(plan, packet, count);
     gap->relay = gap->batch[receiver];
     for (int32_t i = 0; i < count; i++) {
         packet[i]->sent_in = gap->relay;
         mark_nodes(plan, packet[i], 1);
-        plan->pooled += lar_plan_claim(plan, packet[i], LAR_POOLED, plan->pool + plan->pooled);
     }
-    gap->needed = plan->pooled - gap->first;
     gap->receives = receive_marked(plan, packet[0]->stage, gap->relay);
     for (int32_t i = 0; i < count; i++) mark_nodes(plan, packet[i], 0);
+    plan->since = 0;
+    return LAR_OK;
+}
+
+lar_status lar_plan_split(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+    const lar_plan_gap *gap = add_gap(plan, plan->threads - 1, error);
+    if (!gap) return LAR_ERROR_MEMORY;
+    need(plan, packet, count);
+    plan->since += gap->needed;
+    for (int32_t t = 0; t < plan->threads && t < count; t++) {
+        int32_t batch = lar_plan_add_batch(plan, t);
+        if (batch == LAR_NOWHERE) return lar_fail_memory(error, sizeof *plan->batch, "batches");
+        for (int32_t i = t; i < count; i += plan->threads) packet[i]->sent_in = batch;
+    }
+    plan->first_unit = plan->batch_count;
     return LAR_OK;
 }
 
@@ -192,7 +205,7 @@ static lar_status add_stage(lar_plan *plan, int32_t stage, lar_packet **scratch,
     }
     lar_status status = add_units(plan, scratch, units, error);
     if (status == LAR_OK) status = add_relays(plan, scratch + relays, most - relays, error);
-    if (stage == 0) plan->first_later = plan->batch_count;
+    if (stage == 0) plan->since = 0; /* until now nothing was on its way */
     return status;
 }
 

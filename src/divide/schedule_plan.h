@@ -77,14 +77,15 @@ typedef struct lar_plan_batch {
     int64_t finish; /* of a unit, as far as it is foreseen (schedule_threads.c) */
 } lar_plan_batch;
 
-/* What is recovered before something is received: each thread has a batch for it. In one of them,
- * the relay, packets are received and sent on, unless this is the gap before the last receives. */
+/* What all threads recover together, each in a batch of its own: before something is received, or
+ * before what is too much for one thread is sent. In one of the batches, the relay, packets may be
+ * received and sent on. */
 typedef struct lar_plan_gap {
     int32_t batch[LAR_THREADS_MOST];
     int32_t relay;  /* LAR_NOWHERE: none */
-    int32_t first;  /* of the elements in plan->pool that the relay needs */
+    int32_t first;  /* of the elements in plan->pool that must be recovered here */
     int32_t needed; /* how many */
-    int32_t before; /* elements of units since the exchange before */
+    int32_t before; /* elements recovered since the exchange before */
     bool receives;  /* something, so that there is latency to hide */
 } lar_plan_gap;
 
@@ -99,8 +100,8 @@ typedef struct lar_plan {
     size_t batch_capacity;
     int32_t batch_count;
     lar_plan_batch *batch;           /* in the order of rank */
-    int32_t first_later;             /* batches of stage 0 */
     int32_t first_unit;              /* batches up to the last gap */
+    int32_t since;                   /* elements recovered since packets of others may come */
     int64_t clock[LAR_THREADS_MOST]; /* when each thread is through with its units since then */
     int64_t tried;                   /* assignments of units */
     int32_t gap_count;               /* the last gap is before the last receives */
@@ -132,6 +133,10 @@ int32_t lar_plan_claim(lar_plan *plan, const lar_packet *packet, int32_t batch, 
 /* One batch for each of these packets, which need nothing from others and are equally urgent, on
  * the thread and in the order that are best; small ones share a batch. */
 lar_status lar_plan_units(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error);
+
+/* The same where units would leave threads uneven: all threads recover a part of what the packets
+ * need, then the packets are sent. */
+lar_status lar_plan_split(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error);
 
 /* Elements in a gap get a batch. Decides about all gaps at once. */
 lar_status lar_plan_shares(lar_plan *plan, lar_error *error);

@@ -30,6 +30,7 @@ typedef struct unit {
 
 typedef struct move {
     int32_t unit, thread;
+    int64_t gain; /* elements */
     int64_t wait, finish;
 } move;
 
@@ -72,7 +73,7 @@ static move look_at(const search *s, int32_t u, int32_t thread, int64_t gain) {
     for (int32_t v = 0; v < s->units; v++)
         if (s->needs[u] >> v & 1 && s->path[v].thread != thread && s->path[v].finish > others)
             others = s->path[v].finish;
-    move m = {u, thread, 0, ready > others ? ready : others};
+    move m = {u, thread, gain, 0, ready > others ? ready : others};
     if (others > 0 && others + SLACK > ready) m.wait = others + SLACK - ready;
     return m;
 }
@@ -276,25 +277,51 @@ static lar_status settle(lar_plan *plan, const unit *own, const move *m, lar_err
     if (batch == LAR_NOWHERE) return lar_fail_memory(error, sizeof *plan->batch, "batches");
     for (int32_t i = 0; i < own->packets; i++) {
         own->packet[i]->sent_in = batch;
-        plan->batch[batch].elements += lar_plan_claim(plan, own->packet[i], batch, NULL);
+        int32_t elements = lar_plan_claim(plan, own->packet[i], batch, NULL);
+        plan->batch[batch].elements += elements;
+        plan->since += elements;
     }
     plan->batch[batch].finish = m->finish;
     plan->clock[m->thread] = m->finish;
     return LAR_OK;
 }
 
+/* Whether a thread would have more than its share of all elements, so that nothing could make the
+ * threads even again. */
+static bool overloads(const lar_plan *plan, const search *s) {
+    int64_t load[LAR_THREADS_MOST] = {0};
+    for (int32_t b = 0; b < plan->batch_count; b++)
+        load[plan->batch[b].thread] += plan->batch[b].elements;
+    for (int32_t u = 0; u < s->units; u++) load[s->best[u].thread] += s->best[u].gain;
+    for (int32_t t = 0; t < plan->threads; t++)
+        if ((load[t] - 1) * plan->threads >= plan->element_count) return true;
+    return false;
+}
+
+static lar_status settle_searched(lar_plan *plan, unit *units, int32_t count, lar_error *error) {
+    search s;
+    lar_status status = run_search(plan, units, count, &s, error);
+    if (status == LAR_OK && plan->gap_count < LAR_GAPS_MOST / 2 && overloads(plan, &s)) {
+        int32_t packets = 0;
+        for (int32_t u = 0; u < count; u++) packets += units[u].packets;
+        return lar_plan_split(plan, units->packet, packets, error);
+    }
+    for (int32_t j = 0; j < count && status == LAR_OK; j++) {
+        const move *m = &s.best[s.best_order[j]];
+        status = settle(plan, &units[m->unit], m, error);
+    }
+    return status;
+}
+
 static lar_status settle_all(lar_plan *plan, unit *units, int32_t count, lar_error *error) {
     lar_status status = LAR_OK;
-    search s;
-    for (int32_t i = 0; i < count && status == LAR_OK; i += UNITS_MOST) {
-        int32_t some = count - i < UNITS_MOST ? count - i : UNITS_MOST;
-        if (plan->threads > 1) status = run_search(plan, units + i, some, &s, error);
-        for (int32_t j = 0; j < some && status == LAR_OK; j++) {
-            int32_t u = plan->threads > 1 ? s.best_order[j] : j;
-            const move *m = plan->threads > 1 ? &s.best[u] : &(move){.unit = j};
-            status = settle(plan, &units[i + u], m, error);
-        }
-    }
+    if (plan->threads == 1)
+        for (int32_t i = 0; i < count && status == LAR_OK; i++)
+            status = settle(plan, &units[i], &(move){.unit = i}, error);
+    else
+        for (int32_t i = 0; i < count && status == LAR_OK; i += UNITS_MOST)
+            status = settle_searched(plan, units + i,
+                                     count - i < UNITS_MOST ? count - i : UNITS_MOST, error);
     return status;
 }
 
