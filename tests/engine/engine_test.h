@@ -159,6 +159,29 @@ TEST_UNUSED static void throw_body(lar_model *model, const double translation[3]
     }
 }
 
+/* Everything that a step can do: all laws, supports, motion, loads, pressure, varying gravity,
+ * damping. */
+TEST_UNUSED static lar_model *busy_model(const brick *b) {
+    lar_model *model = brick_model(b);
+    static const double points[3][2] = {{0, 0}, {0.02, 1}, {0.05, -0.5}};
+    int ramp = add_ramp(model, 0.03), table = add_table(model, LAR_CURVE_SMOOTH, 3, points);
+    for (int law = 1; law < LAR_LAW_COUNT; law++) {
+        lar_material *material = LAR_MODEL_APPEND(model, material);
+        material->law = (lar_law)law;
+        material->density = b->density;
+        lar_material_from_shear_bulk(material, b->shear, b->bulk);
+        model->element_material[law] = law;
+    }
+    memcpy(model->gravity, (double[]){2, 1, -9.81}, 24);
+    model->gravity_curve[0] = table;
+    model->damping = 3;
+    fix_nodes(model, brick_side(b, 0, 0), LAR_AXIS_ALL);
+    move_nodes(model, brick_side(b, 0, -1), LAR_AXIS_Y, 0.004, table);
+    press(model, 4, 60, ramp);
+    load_nodes(model, single_node(brick_node(b, 1, 1, 1)), 0.002, -0.001, 0.001, ramp);
+    return model;
+}
+
 TEST_UNUSED static lar_simulation *start_with(const lar_model *model, lar_options options) {
     lar_simulation *simulation = NULL;
     lar_error error = {0};

@@ -58,34 +58,10 @@ int __wrap_pthread_mutex_lock(pthread_mutex_t *mutex) {
     return __real_pthread_mutex_lock(mutex);
 }
 
-/* Everything that a step can do: all laws, supports, motion, loads, pressure, varying gravity,
- * damping. */
-static lar_model *busy_model(void) {
-    brick b = soft_brick;
-    lar_model *model = brick_model(&b);
-    static const double points[3][2] = {{0, 0}, {0.02, 1}, {0.05, -0.5}};
-    int ramp = add_ramp(model, 0.03), table = add_table(model, LAR_CURVE_SMOOTH, 3, points);
-    for (int law = 1; law < LAR_LAW_COUNT; law++) {
-        lar_material *material = LAR_MODEL_APPEND(model, material);
-        material->law = (lar_law)law;
-        material->density = b.density;
-        lar_material_from_shear_bulk(material, b.shear, b.bulk);
-        model->element_material[law] = law;
-    }
-    memcpy(model->gravity, (double[]){2, 1, -9.81}, 24);
-    model->gravity_curve[0] = table;
-    model->damping = 3;
-    fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
-    move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_Y, 0.004, table);
-    press(model, 4, 60, ramp);
-    load_nodes(model, single_node(brick_node(&b, 1, 1, 1)), 0.002, -0.001, 0.001, ramp);
-    return model;
-}
-
 static void a_step_allocates_and_locks_nothing(void **unused) {
     (void)unused;
     for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_MATRIX; kind++) {
-        lar_model *model = busy_model();
+        lar_model *model = busy_model(&soft_brick);
         lar_options options = lar_options_default();
         options.element = (lar_element_kind)kind;
         int before = calls;
@@ -97,6 +73,37 @@ static void a_step_allocates_and_locks_nothing(void **unused) {
         lar_status status = lar_simulation_advance(simulation, 300, &error);
         int counted = calls - before;
         assert_int_equal(status, LAR_OK);
+        assert_int_equal(counted, 0);
+        finish(simulation, model);
+    }
+}
+
+/* The same of two processors with two threads each: what they need, they need before. Threads that
+ * slept between two advances take a lock to wake up, so one advance goes from warm-up on. */
+static int calls_when_warm;
+
+static int count_when_warm(void *context, uint64_t step) {
+    (void)context;
+    if (step == 50) calls_when_warm = calls;
+    return 1;
+}
+
+static void processors_allocate_and_lock_nothing(void **unused) {
+    (void)unused;
+    static const char *const schemes[] = {"all", "local", "one", "two"};
+    for (int i = 0; i < 4; i++) {
+        lar_model *model = busy_model(&soft_brick);
+        lar_options options = lar_options_default();
+        options.grid = "2x2x1";
+        options.threads = 2;
+        options.scheme = schemes[i];
+        lar_simulation *simulation = start_with(model, options);
+        lar_error error;
+        calls_when_warm = -1;
+        lar_status status =
+            lar_simulation_advance_watched(simulation, 400, count_when_warm, NULL, &error);
+        int counted = calls - calls_when_warm;
+        if (status) fail_msg("%s", error.message);
         assert_int_equal(counted, 0);
         finish(simulation, model);
     }
@@ -137,7 +144,7 @@ static int in_child(lar_simulation *simulation, uint64_t steps) {
 
 static void a_step_makes_no_system_call(void **unused) {
     (void)unused;
-    lar_model *model = busy_model();
+    lar_model *model = busy_model(&soft_brick);
     lar_simulation *simulation = start(model);
     advance(simulation, 10);
     int caught = in_child(simulation, 0);
@@ -154,6 +161,7 @@ static void a_step_makes_no_system_call(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_allocates_and_locks_nothing),
+        cmocka_unit_test(processors_allocate_and_lock_nothing),
         cmocka_unit_test(a_step_makes_no_system_call),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
