@@ -383,6 +383,7 @@ static lar_status read_thread(reader *r, int32_t thread) {
         status =
             number(r, "its count of batches", 0, r->s.thread_first[r->s.threads] - first, &count);
     if (!status) status = advance(r);
+    if (status) return status;
     r->s.thread_first[thread] = r->own_first = first;
     r->own_end = first + (int32_t)count;
     while (!status && r->s.batch_count < r->own_end) status = read_batch(r);

@@ -202,6 +202,7 @@ static const struct {
     {"thread 0 batches 3", "thread 0 batch 3", "x.schedule:13: here must stand 'batches', not"},
     {"thread 0 batches 3", "thread 0 batches 4", "x.schedule:19: batch 3 is of this thread"},
     {"thread 0 batches 3", "thread 0 batches 2", "x.schedule:25: here must stand 'thread', not"},
+    {"thread 1 batches 3", "thread 1 batches 2147483647", "x.schedule:27: its count of batches is"},
     {"batch 1\n", "batch 2\n", "x.schedule:18: the number of this batch is 2 here"},
     {"batch 2\n", "move 1 0\n", "x.schedule:25: the parts of a batch are"},
     {"recover 1  1", "recover 1  4", "x.schedule:15: an element is 4 here"},
