@@ -13,7 +13,7 @@
 
 /* Of all divisions, and of all schedules of one, every so many are tried: prime to all numbers
  * here, so that all values of everything occur. */
-static int some_divisions = 23, some_schedules = 5;
+static int some_divisions = 31, some_schedules = 5;
 
 enum { EDGE = 4, THREADS = 4, CUT = 0, RANDOM, METIS, DISTRIBUTIONS };
 enum {
