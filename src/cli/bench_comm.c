@@ -83,6 +83,7 @@ static int comm_main(int argc, char **argv) {
     lar_error error;
     if (lar_bench_comm(&wanted, &result, &error))
         return cli_complain(&cli_bench_comm, CLI_FAILED, "%s", error.message);
+    if (result.rows == 0) return CLI_DONE; /* the other process tells */
     if (json)
         write_json(&result);
     else
@@ -100,5 +101,6 @@ const cli_command cli_bench_comm = {
         "them by a hand-written copy and poll and by a single word from core to core. Samples of\n"
         "all take turns; medians count. For quiet figures run nothing else on the machine.",
     .examples = "  lariat bench comm\n"
+                "  mpirun -n 2 lariat bench comm\n"
                 "  lariat bench comm --bytes 1000 --json\n",
     .main = comm_main};

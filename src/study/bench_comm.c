@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "comm/comm.h"
+#include "comm/job.h"
 
 enum { BLOCK_BYTES = 65536, BLOCK_MOST = 64, HALF_BYTES = BLOCK_BYTES + 8 * BLOCK_MOST + 64 };
 static const double SAMPLE_TIME = 2e-3; /* [s] at least */
@@ -34,6 +35,7 @@ typedef struct pair {
     uint64_t step[2];         /* of each end */
     uint64_t arrived;         /* atomic: the step whose packets lie there (time in receive) */
     unsigned char *payload;
+    lar_comm_job *launched; /* the ends are processes of mpirun, one is here; else NULL: both are */
 } pair;
 
 /* A job is done by both ends; end 0 measures. */
@@ -66,6 +68,7 @@ static void *other_end(void *context) {
 
 static lar_status run_both(job *j, lar_error *error) {
     pthread_t thread;
+    if (j->with->launched) return j->run(j, j->with->launched->self, error);
     if (pthread_create(&thread, NULL, other_end, j) != 0)
         return lar_fail(error, LAR_ERROR_MEMORY,
                         "no second thread could be started; raise the "
@@ -187,7 +190,7 @@ static lar_status late_receive(job *j, int end, lar_error *error) {
             if (!status) status = await_block(j, end, error);
             continue;
         }
-        double until = now() + 1;
+        double until = now() + (p->launched ? 200e-6 : 1); /* another process has another word */
         while (__atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[end] && now() < until)
             sched_yield();
         for (double moment = now() + 50e-6; now() < moment;) continue;
@@ -199,12 +202,30 @@ static lar_status late_receive(job *j, int end, lar_error *error) {
     return status;
 }
 
+/* Under mpirun: the other end learns how long it took, and so decides the same. */
+static lar_status share_time(job *j, lar_error *error) {
+    pair *p = j->with;
+    int end = p->launched->self;
+    uint64_t step = ++p->step[end];
+    const void *seconds;
+    if (end == 0) {
+        lar_status status =
+            lar_comm_put(p->comm[0], 1, 0, &j->seconds, sizeof j->seconds, step, error);
+        return status ? status : lar_comm_wait(p->comm[0], 1, 0, 0, step, NULL, error);
+    }
+    lar_status status = lar_comm_wait(p->comm[1], 0, 0, sizeof j->seconds, step, &seconds, error);
+    if (status) return status;
+    memcpy(&j->seconds, seconds, sizeof j->seconds);
+    return lar_comm_put(p->comm[1], 0, 0, NULL, 0, step, error);
+}
+
 /* Repeats with more rounds until a sample is long enough. *rounds is where to begin and what was
  * found. */
 static lar_status measure(job *j, uint64_t *rounds, lar_error *error) {
     for (;;) {
         j->rounds = *rounds;
         lar_status status = run_both(j, error);
+        if (!status && j->with->launched) status = share_time(j, error);
         if (status || j->seconds >= SAMPLE_TIME || *rounds >= 1 << 20) return status;
         *rounds *= 2;
     }
@@ -222,7 +243,8 @@ static lar_status open_end(job *j, int end, lar_error *error) {
     o.team = p->team;
     o.master = p->master;
     if (end == 0) o.listener = p->listener;
-    return lar_comm_open(&o, &p->comm[end], error);
+    lar_status status = p->launched ? lar_comm_job_meet(p->launched, &o, error) : LAR_OK;
+    return status ? status : lar_comm_open(&o, &p->comm[end], error);
 }
 
 /* Both at once: each waits for the other's goodbye. */
@@ -240,7 +262,8 @@ static lar_status open_pair(pair *p, const int cores[2], lar_error *error) {
     if (!p->payload || !p->word || !p->buffer[0] || !p->buffer[1])
         return lar_fail_memory(error, 4 * HALF_BYTES, "the benchmark's buffers");
     if (p->kind != PAIR_COMM) return LAR_OK;
-    lar_status status = strcmp(p->backend, "threads") == 0
+    lar_status status = p->launched ? LAR_OK
+                        : strcmp(p->backend, "threads") == 0
                             ? lar_comm_team_create(2, &p->team, error)
                             : lar_comm_listen("127.0.0.1:0", &p->listener, p->master, error);
     job j = {.with = p, .run = open_end, .cores = cores};
@@ -352,6 +375,16 @@ static lar_status measure_latencies(pair *pairs, lar_bench_comm_result *r, doubl
     return LAR_OK;
 }
 
+/* Under mpirun: what joins processes. */
+static void list_launched_rows(pair *pairs, lar_bench_comm_result *r, lar_comm_job *launched) {
+    lar_comm_backend_info info;
+    for (int i = 0; r->rows < LAR_BENCH_COMM_ROWS && lar_comm_backend_list(i, &info); i++) {
+        if (info.missing || info.start == LAR_COMM_BY_TEAM) continue;
+        pairs[r->rows] = (pair){.kind = PAIR_COMM, .backend = info.name, .launched = launched};
+        r->row[r->rows++].name = info.name;
+    }
+}
+
 static void list_rows(pair *pairs, lar_bench_comm_result *r) {
     lar_comm_backend_info info;
     pairs[0].kind = PAIR_WORD;
@@ -363,6 +396,8 @@ static void list_rows(pair *pairs, lar_bench_comm_result *r) {
         pairs[r->rows].kind = PAIR_COMM;
         pairs[r->rows].backend = r->row[r->rows].name = info.name;
         r->row[r->rows].missing = info.missing;
+        if (!info.missing && info.start == LAR_COMM_BY_LAUNCHER)
+            r->row[r->rows].missing = "mpirun -n 2 lariat bench comm measures it";
     }
 }
 
@@ -374,6 +409,32 @@ static void choose_cores(const cpu_set_t *allowed, int cores[2]) {
         if (CPU_ISSET(core, allowed)) cores[found++] = core;
 }
 
+static lar_status measure_rows(lar_bench_comm_result *r, lar_comm_job *launched, lar_error *error) {
+    cpu_set_t before;
+    CPU_ZERO(&before);
+    sched_getaffinity(0, sizeof before, &before);
+    pair pairs[LAR_BENCH_COMM_ROWS] = {{.kind = PAIR_WORD}};
+    if (launched)
+        list_launched_rows(pairs, r, launched);
+    else
+        list_rows(pairs, r);
+    choose_cores(&before, r->cores);
+    double *samples = lar_calloc((size_t)(r->rows * r->repeat), sizeof *samples);
+    lar_status status =
+        samples ? LAR_OK : lar_fail_memory(error, sizeof *samples * 1000, "samples");
+    bind_to(r->cores[launched ? launched->self : 0]);
+    for (int i = 0; i < r->rows && !status; i++)
+        if (!r->row[i].missing) status = open_pair(&pairs[i], r->cores, error);
+    if (!status) status = measure_latencies(pairs, r, samples, error);
+    for (int i = 0; i < r->rows && !status; i++)
+        if (!r->row[i].missing)
+            status = fill_row(&pairs[i], r->cores, (size_t)r->bytes, &r->row[i], error);
+    for (int i = 0; i < r->rows; i++) close_pair(&pairs[i], r->cores);
+    if (r->cores[0] >= 0) sched_setaffinity(0, sizeof before, &before);
+    free(samples);
+    return status;
+}
+
 lar_status lar_bench_comm(const lar_bench_comm_options *options, lar_bench_comm_result *result,
                           lar_error *error) {
     if (options->bytes < 1 || options->bytes > LAR_BENCH_COMM_BYTES_MOST || options->repeat < 1 ||
@@ -382,26 +443,18 @@ lar_status lar_bench_comm(const lar_bench_comm_options *options, lar_bench_comm_
                         "packets of %d bytes, %d samples; take 1 to %d bytes and 1 to %d samples",
                         (int)options->bytes, options->repeat, LAR_BENCH_COMM_BYTES_MOST,
                         LAR_BENCH_REPEAT_MOST);
-    cpu_set_t before;
-    CPU_ZERO(&before);
-    sched_getaffinity(0, sizeof before, &before);
+    lar_comm_job launched;
+    lar_status status = lar_comm_job_find(&launched, error);
+    if (status) return status;
     lar_bench_comm_result r = {.bytes = options->bytes, .repeat = options->repeat};
-    pair pairs[LAR_BENCH_COMM_ROWS] = {{.kind = PAIR_WORD}};
-    list_rows(pairs, &r);
-    choose_cores(&before, r.cores);
-    double *samples = lar_calloc((size_t)(r.rows * r.repeat), sizeof *samples);
-    lar_status status =
-        samples ? LAR_OK : lar_fail_memory(error, sizeof *samples * 1000, "samples");
-    bind_to(r.cores[0]);
-    for (int i = 0; i < r.rows && !status; i++)
-        if (!r.row[i].missing) status = open_pair(&pairs[i], r.cores, error);
-    if (!status) status = measure_latencies(pairs, &r, samples, error);
-    for (int i = 0; i < r.rows && !status; i++)
-        if (!r.row[i].missing)
-            status = fill_row(&pairs[i], r.cores, (size_t)r.bytes, &r.row[i], error);
-    for (int i = 0; i < r.rows; i++) close_pair(&pairs[i], r.cores);
-    if (r.cores[0] >= 0) sched_setaffinity(0, sizeof before, &before);
-    free(samples);
+    if (launched.count > 2)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "%d processors; latency is between two: mpirun -n 2 lariat bench comm",
+                          (int)launched.count);
+    if (!status) status = measure_rows(&r, launched.count == 2 ? &launched : NULL, error);
+    if (launched.self > 0) r.rows = 0;
+    lar_status left = lar_comm_job_end(&launched, status != LAR_OK, status ? NULL : error);
+    if (!status) status = left;
     if (!status) *result = r;
     return status;
 }
