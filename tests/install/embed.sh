@@ -5,7 +5,8 @@
 #
 # 1. The library exports the functions of lariat.h, all of them and nothing else, and carries its
 #    soname. 2. examples/embed.c builds with pkg-config and with find_package, after the tree was
-# moved. 3. Both programs run on the example beam and agree.
+# moved. 3. Both programs run on the example beam and agree. 4. The command finds the modules for
+# MPI.
 set -eu
 source=$1 build=$2 scratch=$3
 cc=${CC:-cc}
@@ -29,6 +30,19 @@ libdir=$(dirname "$(dirname "$pc")")
 library=$libdir/liblariat.so
 [ -e "$library" ] || fail "$library was not installed"
 [ -x "$prefix/bin/lariat" ] || fail "the command was not installed"
+
+# Modules for MPI lie beside the library, and the installed command finds them: alone, where srun
+# says two, it gets as far as asking MPI.
+for module in "$build"/liblariat-mpi-*.so; do
+    [ -e "$module" ] || continue
+    name=${module##*-mpi-}
+    [ -e "$libdir/${module##*/}" ] || fail "${module##*/} was not installed"
+    env -u OMPI_COMM_WORLD_RANK -u PMI_RANK SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=2 \
+        LARIAT_MPI="${name%.so}" timeout 60 "$prefix/bin/lariat" bench comm 2>"$scratch/stderr" &&
+        fail "a processor without the others was accepted"
+    grep -q 'do not belong together' "$scratch/stderr" ||
+        fail "the module ${module##*/} does not work: $(cat "$scratch/stderr")"
+done
 
 # What the header promises against what the library exports.
 nm -D --defined-only "$library" | awk '{ print $3 }' | sort >"$scratch/exported"
