@@ -1,6 +1,7 @@
 /* Schedules as such: numbers inside their bounds, elements and nodes each once. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "divide/proof.h"
 
@@ -23,7 +24,8 @@ static lar_status check_head(const lar_schedule_set *set, int32_t p, uint64_t me
     if (s->mesh != mesh)
         return LAR_DISPROVE(error, "processor %d: the schedule was made for another mesh", p);
     if (s->division != first->division || s->threads != first->threads ||
-        s->scheme != first->scheme || s->channels != first->channels)
+        s->scheme != first->scheme || s->channels != first->channels ||
+        memcmp(s->grid.edge, first->grid.edge, sizeof s->grid.edge) != 0)
         return LAR_DISPROVE(error,
                             "processor %d: the schedule belongs to another division, or to other "
                             "options, than that of processor 0",

@@ -180,6 +180,8 @@ static void foreign_schedules(void **state) {
     REFUSED(&p, "processor 2", "another mesh");
     square(&p, LAR_SCHEME_ALL, 1)[3].division ^= 1;
     REFUSED(&p, "processor 3", "another division");
+    square(&p, LAR_SCHEME_ALL, 1)[2].grid = grid_of(4, 1, 1);
+    REFUSED(&p, "processor 2", "another division");
     square(&p, LAR_SCHEME_ALL, 1)[1].processor = 2;
     REFUSED(&p, "schedule 1 of 4", "processor 2");
     square(&p, LAR_SCHEME_ALL, 1)[1].batch[0].elements.count = 1000;
