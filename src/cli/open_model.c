@@ -9,7 +9,7 @@ int cli_open_model(const cli_command *command, const char *path, lar_model **mod
     lar_error error;
     if (lar_model_open(path, model, &error))
         return cli_complain(command, CLI_FAILED, "%s", error.message);
-    for (int32_t i = 0; i < lar_model_notice_count(*model); i++)
+    for (int32_t i = 0; cli_speaker() == 0 && i < lar_model_notice_count(*model); i++)
         cli_complain(command, CLI_DONE, "note: %s", lar_model_notice_text(*model, i));
     return CLI_DONE;
 }

@@ -9,13 +9,26 @@
 
 /* ---- messages --------------------------------------------------------------------------- */
 
+static int32_t speaker;
+
+void cli_speak_as(int32_t processor) {
+    speaker = processor;
+}
+
+int32_t cli_speaker(void) {
+    return speaker;
+}
+
 int cli_complain(const cli_command *command, int status, const char *format, ...) {
     char text[2048];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    fprintf(stderr, "lariat%s%s: %s\n", command ? " " : "", command ? command->name : "", text);
+    char who[32] = "";
+    if (speaker > 0) snprintf(who, sizeof who, "processor %d: ", (int)speaker);
+    fprintf(stderr, "lariat%s%s: %s%s\n", command ? " " : "", command ? command->name : "", who,
+            text);
     return status;
 }
 

@@ -69,6 +69,11 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
 int cli_complain(const cli_command *command, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* From now on messages begin with the processor that they are from; 0: they do not. Who is not
+ * processor zero leaves to it what all would say alike. */
+void cli_speak_as(int32_t processor);
+int32_t cli_speaker(void);
+
 /* The name among `names` (NULL ends them) that `word` was probably meant to be, or NULL. */
 const char *cli_nearest_name(const char *word, const char *const *names);
 

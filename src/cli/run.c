@@ -8,15 +8,18 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/parallel.h"
 #include "cli/run_report.h"
 
 typedef struct run_settings {
-    const char *scene, *out, *grid;
+    const char *scene, *out;
     double time, time_step; /* 0: not given */
     int64_t steps;          /* 0: not given */
-    int64_t threads;
-    int element, isa; /* as lar_element_kind, lar_isa */
-    bool realtime, json;
+    int element, isa;       /* as lar_element_kind, lar_isa */
+    bool realtime, json, verify;
+    cli_parallel parallel;
+    int argc; /* what the command was given */
+    char **argv;
 } run_settings;
 
 /* One run under way. */
@@ -24,7 +27,10 @@ typedef struct run {
     run_settings settings;
     lar_model *model;
     lar_model_info info;
+    lar_processes *processes;
+    lar_parallel parallel;
     lar_simulation *simulation;
+    lar_status failure;   /* of the library, LAR_OK: none */
     lar_results *results; /* NULL without --out */
     lar_step_clock clock;
     uint64_t last_step; /* where the run ends */
@@ -74,6 +80,12 @@ static void clear_progress(run *r) {
     r->progress_at = 0;
 }
 
+/* For the step clock. */
+static bool look(void *context) {
+    show_progress(context);
+    return true;
+}
+
 static int fail(run *r, int status, const char *message) {
     clear_progress(r);
     return cli_complain(&cli_run, status, "%s", message);
@@ -81,13 +93,16 @@ static int fail(run *r, int status, const char *message) {
 
 /* ---- results ---------------------------------------------------------------------------- */
 
+static int fail_by(run *r, const lar_error *error) {
+    r->failure = error->status;
+    return fail(r, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, error->message);
+}
+
 static int add_frame(run *r) {
     lar_error error;
     uint64_t step = lar_simulation_steps(r->simulation);
     if (!r->results || r->framed == step) return CLI_DONE;
-    if (lar_results_add(r->results, r->simulation, &error))
-        return fail(r, error.status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
-                    error.message);
+    if (lar_results_add(r->results, r->simulation, &error)) return fail_by(r, &error);
     r->framed = step;
     r->frames++;
     return CLI_DONE;
@@ -107,6 +122,8 @@ static run_report report_of(const run *r) {
     return (run_report){.scene = r->settings.scene,
                         .element = cli_element_names[r->settings.element],
                         .interrupted = stop_asked != 0,
+                        .verify = r->settings.verify,
+                        .parallel = &r->parallel,
                         .folder = r->settings.out,
                         .frames = r->frames,
                         .simulation = r->simulation,
@@ -152,9 +169,9 @@ static int report(run *r) {
 
 /* ---- the run ---------------------------------------------------------------------------- */
 
-static int report_unstable(run *r, const char *message) {
-    int status = fail(r, CLI_UNSTABLE, message);
-    if (!r->results) return status;
+static int report_failure(run *r, const lar_error *error) {
+    int status = fail_by(r, error);
+    if (!r->results || status != CLI_UNSTABLE) return status;
     if (add_frame(r) == CLI_DONE)
         cli_complain(&cli_run, status,
                      "the state of that moment is the last frame in %s, number %d", r->settings.out,
@@ -163,22 +180,20 @@ static int report_unstable(run *r, const char *message) {
 }
 
 static int advance(run *r) {
-    static const double GLANCE = 0.1; /* progress and frames are looked at so often [s] */
+    const lar_step_glance glance = {.every = 0.1, .look = look, .context = r};
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
     r->next_frame = 1;
     lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
     while (!status && !stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
         uint64_t now = lar_simulation_steps(r->simulation), stop = next_stop(r);
         lar_error error;
-        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, GLANCE, &stop_asked,
+        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &stop_asked,
                                    &error))
-            return error.status == LAR_ERROR_UNSTABLE ? report_unstable(r, error.message)
-                                                      : fail(r, CLI_FAILED, error.message);
+            return report_failure(r, &error);
         if (r->interval > 0 && lar_simulation_steps(r->simulation) == stop) {
             status = add_frame(r);
             r->next_frame++;
         }
-        show_progress(r);
     }
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     clear_progress(r);
@@ -203,40 +218,66 @@ static int choose_length(run *r) {
     return CLI_DONE;
 }
 
-static int prepare(run *r) {
-    const run_settings *settings = &r->settings;
+static lar_options options_of(const run_settings *settings) {
     lar_options options = lar_options_default();
     options.element = (lar_element_kind)settings->element;
     options.isa = (lar_isa)settings->isa;
     options.time_step = settings->time_step;
-    int status = cli_open_model(&cli_run, settings->scene, &r->model);
+    options.verify = settings->verify;
+    cli_parallel_set(&settings->parallel, &options);
+    return options;
+}
+
+/* The model, the processes, and this one's share of the simulation. */
+static int prepare(run *r) {
+    const run_settings *s = &r->settings;
+    lar_options options = options_of(s);
     lar_error error;
+    int status = cli_processes_begin(&cli_run, &s->parallel, s->argc, s->argv, &r->processes);
+    if (!status) status = cli_open_model(&cli_run, s->scene, &r->model);
+    if (!status)
+        status = cli_processes_start(&cli_run, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
-    if (lar_model_inspect(r->model, &r->info, &error) ||
-        lar_simulation_create(r->model, &options, &r->simulation, &error))
-        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    status = choose_length(r);
-    if (!status && settings->out &&
-        lar_results_open(settings->out, r->simulation, &r->results, &error))
-        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    return status;
+    if (!lar_model_inspect(r->model, &r->info, &error) &&
+        !lar_processes_meet(r->processes, &options, &error) &&
+        !lar_simulation_create(r->model, &options, &r->simulation, &error))
+        return CLI_DONE;
+    r->failure = error.status;
+    return cli_complain_as_other(&cli_run, r->processes, &error);
+}
+
+static int compute(run *r) {
+    lar_error error;
+    int status = choose_length(r);
+    if (!status && r->settings.out &&
+        lar_results_open(r->settings.out, r->simulation, &r->results, &error))
+        status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status) {
+        catch_signals();
+        status = advance(r);
+    }
+    if (lar_results_close(r->results, &error) && !status)
+        status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status) status = report(r);
+    return !status && stop_asked ? CLI_INTERRUPTED : status;
+}
+
+/* Processor zero hears Ctrl-C too, and ends the run for all. */
+static int serve(run *r) {
+    lar_error error;
+    catch_signals();
+    return lar_simulation_serve(r->simulation, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 
 static int run_scene(const run_settings *settings) {
     run r = {.settings = *settings, .framed = UINT64_MAX};
     int status = prepare(&r);
-    if (!status) {
-        catch_signals();
-        status = advance(&r);
-    }
-    lar_error error;
-    if (lar_results_close(r.results, &error) && !status)
-        status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    if (!status) status = report(&r);
-    if (!status && stop_asked) status = CLI_INTERRUPTED;
+    if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compute(&r);
+    bool failed = status && status != CLI_INTERRUPTED;
     lar_simulation_destroy(r.simulation);
     lar_model_destroy(r.model);
-    return status;
+    if (failed && !r.failure) r.failure = LAR_ERROR_IO;
+    return cli_processes_end(&cli_run, r.processes, r.failure, status);
 }
 
 /* ---- the command line ------------------------------------------------------------------- */
@@ -244,21 +285,16 @@ static int run_scene(const run_settings *settings) {
 static int check_settings(const run_settings *s) {
     if (s->time > 0 && s->steps > 0)
         return cli_complain(&cli_run, CLI_USAGE, "--time and --steps both say how long; give one");
-    if (strcmp(s->grid, "1x1x1") != 0)
+    if (s->verify && s->out)
         return cli_complain(&cli_run, CLI_USAGE,
-                            "--grid %s: the parallel engine is not there yet; leave --grid out or "
-                            "give 1x1x1",
-                            s->grid);
-    if (s->threads != 1)
-        return cli_complain(&cli_run, CLI_USAGE,
-                            "--threads %lld: the parallel engine is not there yet; leave --threads "
-                            "out or give 1",
-                            (long long)s->threads);
-    return CLI_DONE;
+                            "--verify moves nothing, there would be nothing to see in %s; leave "
+                            "--out out",
+                            s->out);
+    return cli_parallel_check(&cli_run, &s->parallel);
 }
 
 static int run_main(int argc, char **argv) {
-    run_settings s = {.grid = "1x1x1", .threads = 1};
+    run_settings s = {.parallel = CLI_PARALLEL_NONE, .argc = argc, .argv = argv};
     const cli_option options[] = {
         CLI_REAL("--time", "S",
                  "simulated seconds; without: the scene's duration,\nat least one "
@@ -279,8 +315,11 @@ static int run_main(int argc, char **argv) {
                    &s.isa, cli_isa_names),
         CLI_TEXT("--out", "DIR", "write frames, .pvd, probes.csv and run.json there", &s.out),
         CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
-        CLI_TEXT("--grid", "NXxNYxNZ", "processors; only 1x1x1 for now", &s.grid),
-        CLI_COUNT("--threads", "N", "of a processor; only 1 for now", &s.threads, 1, 1e6),
+        CLI_PARALLEL(s.parallel),
+        CLI_FLAG("--verify",
+                 "steps verify that every force arrives everywhere\nonce, instead of moving "
+                 "anything",
+                 &s.verify),
         CLI_FLAG("--json", "the summary as one JSON object on standard output", &s.json),
         CLI_END};
     int status = cli_parse(&cli_run, options, argc, argv, &s.scene, 1);
@@ -301,5 +340,8 @@ const cli_command cli_run = {
     .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
                 "  lariat run demo/uterus.yaml --time 2 --realtime\n"
                 "  lariat run demo/uterus.yaml --steps 1000 --json\n"
+                "  lariat run demo/uterus.yaml --grid 2x1x1\n"
+                "  lariat run demo/uterus.yaml --grid 2x2x1 --threads 2 --scheme local --comm shm\n"
+                "  mpirun -n 4 lariat run demo/uterus.yaml --grid 2x2x1 --comm mpi\n"
                 "  lariat run demo/uterus.yaml --steps 100 --element hex8-full\n",
     .main = run_main};

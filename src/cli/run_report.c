@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 #include "cli/json.h"
 
@@ -56,11 +57,11 @@ void run_report_json(const run_report *report, FILE *out) {
     json_number(&json, "time", lar_simulation_time(simulation));
     json_number(&json, "time_step", lar_simulation_time_step(simulation));
     json_number(&json, "stable_step", report->info.stable_step);
-    /* One processor: no grid to speak of, nobody to talk to. */
-    json_text(&json, "grid", "1x1x1");
-    json_integer(&json, "threads", 1);
-    json_text(&json, "scheme", "none");
-    json_text(&json, "comm", "none");
+    json_text(&json, "grid", report->parallel->grid);
+    json_integer(&json, "processors", report->parallel->processors);
+    json_integer(&json, "threads", report->parallel->threads);
+    json_text(&json, "scheme", report->parallel->scheme);
+    json_text(&json, "comm", report->parallel->comm);
     json_text(&json, "isa", lar_simulation_isa(simulation));
     json_number(&json, "wall_time", stepping_time(report));
     write_times(&json, report->clock);
@@ -70,12 +71,32 @@ void run_report_json(const run_report *report, FILE *out) {
     json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     json_text(&json, "state_hash", hash);
+    json_boolean(&json, "verify", report->verify);
     json_integer(&json, "frames", report->frames);
     json_boolean(&json, "interrupted", report->interrupted);
     json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */
+
+static void print_division(const lar_parallel *parallel, FILE *out) {
+    bool local = strcmp(parallel->scheme, "local") == 0;
+    bool several = parallel->threads > 1;
+    fprintf(out, "%-17s%s: %d processor%s", "grid", parallel->grid, (int)parallel->processors,
+            parallel->processors == 1 ? "" : "s");
+    if (several) fprintf(out, " of %d threads", (int)parallel->threads);
+    fprintf(out, ", scheme %s%s%s, by %s\n", parallel->scheme, local ? ", channels " : "",
+            local ? parallel->channels : "", parallel->comm);
+}
+
+static void print_body(const run_report *report, FILE *out) {
+    lar_energy energy;
+    lar_simulation_energy(report->simulation, &energy);
+    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g; external %.4g\n",
+            "energy [J]", energy.kinetic, energy.strain, energy.hourglass, energy.damping,
+            energy.external);
+    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
+}
 
 static void print_pace(const run_report *report, FILE *out) {
     const lar_step_clock *clock = report->clock;
@@ -93,12 +114,11 @@ static void print_pace(const run_report *report, FILE *out) {
 void run_report_table(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     const lar_step_clock *clock = report->clock;
-    lar_energy energy;
-    lar_simulation_energy(simulation, &energy);
     bool titled = *report->info.title != '\0';
     fprintf(out, "%s: %d elements, %d nodes (%s, %s)\n",
             titled ? report->info.title : report->scene, (int)report->info.elements,
             (int)report->info.nodes, report->element, lar_simulation_isa(simulation));
+    if (report->parallel->divided) print_division(report->parallel, out);
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
             lar_simulation_time(simulation), lar_simulation_steps(simulation),
             lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");
@@ -109,10 +129,11 @@ void run_report_table(const run_report *report, FILE *out) {
                 lar_step_clock_quantile(clock, 0.999), lar_step_clock_longest(clock));
         fprintf(out, "%-17s%.4g ns on average\n", "an element", ns_per_element(report));
     }
-    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g; external %.4g\n",
-            "energy [J]", energy.kinetic, energy.strain, energy.hourglass, energy.damping,
-            energy.external);
-    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(simulation));
+    if (report->verify)
+        fprintf(out, "%-17severy force arrived at its nodes once, in every step; nothing moved\n",
+                "verified");
+    else
+        print_body(report, out);
     if (report->folder)
         fprintf(out, "%-17s%s: %d frame%s, .pvd, probes.csv, run.json\n", "results", report->folder,
                 report->frames, report->frames == 1 ? "" : "s");

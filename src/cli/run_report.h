@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "lariat.h"
+#include "study/parallel.h"
 #include "study/step_clock.h"
 
 typedef struct run_report {
@@ -12,6 +13,8 @@ typedef struct run_report {
     lar_model_info info;
     const char *element; /* kind */
     bool interrupted;
+    bool verify; /* steps have verified the schedules */
+    const lar_parallel *parallel;
     const char *folder; /* of the results, NULL: none */
     int frames;
     const lar_simulation *simulation;

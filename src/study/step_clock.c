@@ -43,29 +43,63 @@ void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simu
     step_clock->start = 1e-9 * (double)now();
 }
 
-lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *simulation,
-                                  uint64_t steps, double most_seconds,
-                                  const volatile sig_atomic_t *stop, lar_error *error) {
-    const double tick = 1e9 * lar_simulation_time_step(simulation);
-    const int64_t start = (int64_t)(1e9 * step_clock->start);
-    const int64_t last = now() + (int64_t)(1e9 * most_seconds);
-    for (uint64_t i = 0; i < steps && !(stop && *stop); i++) {
-        int64_t begin = now();
-        lar_status status = lar_simulation_advance(simulation, 1, error);
-        int64_t end = now();
-        lar_histogram_add(&step_clock->times, (uint64_t)(end - begin));
-        if (status) return status;
-        if (step_clock->paced) {
-            uint64_t done = lar_simulation_steps(simulation) - step_clock->first_step;
-            int64_t deadline = start + (int64_t)(tick * (double)done);
-            if (end > deadline)
-                step_clock->misses++;
-            else
-                wait_until(deadline);
-        }
-        if (end > last) break;
+/* What the watch over an advance knows. */
+typedef struct stretch {
+    lar_step_clock *clock;
+    const lar_step_glance *glance;
+    const volatile sig_atomic_t *stop;
+    double tick;   /* [ns] */
+    int64_t start; /* of step clock->first_step [ns] */
+    int64_t begin; /* of the step under way */
+    int64_t look;  /* when to glance next */
+} stretch;
+
+static int64_t nanoseconds(double seconds) {
+    return seconds < 1e9 ? (int64_t)(1e9 * seconds) : INT64_MAX / 2;
+}
+
+static bool asked_to_stop(const stretch *s) {
+    return s->stop && *s->stop;
+}
+
+static int64_t pace(const stretch *s, uint64_t step, int64_t end) {
+    int64_t deadline = s->start + (int64_t)(s->tick * (double)(step - s->clock->first_step));
+    if (end > deadline)
+        s->clock->misses++;
+    else
+        wait_until(deadline);
+    return now();
+}
+
+/* Everything between two steps happens here: the end of one is measured first, the beginning of the
+ * next last. */
+static int after_step(void *context, uint64_t step) {
+    stretch *s = context;
+    int64_t end = now();
+    bool on = true;
+    lar_histogram_add(&s->clock->times, (uint64_t)(end - s->begin));
+    s->begin = end;
+    if (s->clock->paced && !asked_to_stop(s)) s->begin = pace(s, step, end);
+    if (s->glance && end >= s->look) {
+        on = s->glance->look(s->glance->context);
+        s->begin = now();
+        s->look = s->begin + nanoseconds(s->glance->every);
     }
-    return LAR_OK;
+    return on && !asked_to_stop(s);
+}
+
+lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *simulation,
+                                  uint64_t steps, const lar_step_glance *glance,
+                                  const volatile sig_atomic_t *stop, lar_error *error) {
+    stretch s = {.clock = step_clock,
+                 .glance = glance,
+                 .stop = stop,
+                 .tick = 1e9 * lar_simulation_time_step(simulation),
+                 .start = (int64_t)(1e9 * step_clock->start)};
+    if (asked_to_stop(&s)) return LAR_OK;
+    s.begin = now();
+    s.look = s.begin + (glance ? nanoseconds(glance->every) : 0);
+    return lar_simulation_advance_watched(simulation, steps, after_step, &s, error);
 }
 
 double lar_step_clock_elapsed(const lar_step_clock *step_clock) {

@@ -17,6 +17,14 @@
 #include "base/histogram.h"
 #include "lariat.h"
 
+/* Called between two steps about every `every` seconds, while no step is measured: for progress on
+ * a screen. False ends the steps. */
+typedef struct lar_step_glance {
+    double every; /* [s] */
+    bool (*look)(void *context);
+    void *context;
+} lar_step_glance;
+
 typedef struct lar_step_clock {
     bool paced;          /* follow the wall clock */
     lar_histogram times; /* of the steps, without waiting [ns] */
@@ -29,10 +37,11 @@ typedef struct lar_step_clock {
  * thread's timers are made as exact as the system allows. */
 void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simulation, bool paced);
 
-/* Up to `steps` steps, each measured. Returns early, with LAR_OK, when `most_seconds` have passed
- * or *stop (may be NULL) is not 0: ask the simulation where it is. */
+/* Up to `steps` steps as one advance, each measured. Returns early, with LAR_OK, when *stop (may be
+ * NULL) is not 0 or `glance` (may be NULL) says so, with several processors some steps later: ask
+ * the simulation where it is. */
 lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *simulation,
-                                  uint64_t steps, double most_seconds,
+                                  uint64_t steps, const lar_step_glance *glance,
                                   const volatile sig_atomic_t *stop, lar_error *error);
 
 /* Seconds since the start. */

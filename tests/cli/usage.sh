@@ -55,10 +55,6 @@ for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--ste
 done
 expect 2 "$LARIAT" run "$beam" --element tet
 complains 'hex8, hex8-full, hex8-matrix'
-expect 2 "$LARIAT" run "$beam" --grid 2x2x1
-complains 'parallel engine is not there yet'
-expect 2 "$LARIAT" run "$beam" --threads 2
-complains 'parallel engine is not there yet'
 expect 0 "$LARIAT" run --steps 1 --grid 1x1x1 --threads=1 -- "$beam"
 
 expect 1 "$LARIAT" run "$SCRATCH/none.yaml"

@@ -39,7 +39,7 @@ static void every_step_is_measured(void **state) {
     fixture *f = *state;
     lar_error error;
     lar_step_clock_start(&f->clock, f->simulation, false);
-    assert_int_equal(lar_step_clock_advance(&f->clock, f->simulation, 100, 1e3, NULL, &error),
+    assert_int_equal(lar_step_clock_advance(&f->clock, f->simulation, 100, NULL, NULL, &error),
                      LAR_OK);
     assert_int_equal(lar_simulation_steps(f->simulation), 100);
     assert_int_equal(f->clock.times.count, 100);
@@ -54,21 +54,29 @@ static void steps_are_those_of_an_unmeasured_run(void **state) {
     lar_simulation *other = NULL;
     assert_int_equal(lar_simulation_create(f->model, NULL, &other, NULL), LAR_OK);
     lar_step_clock_start(&f->clock, f->simulation, false);
-    lar_step_clock_advance(&f->clock, f->simulation, 50, 1e3, NULL, NULL);
+    lar_step_clock_advance(&f->clock, f->simulation, 50, NULL, NULL, NULL);
     lar_simulation_advance(other, 50, NULL);
     assert_true(lar_simulation_hash(other) == lar_simulation_hash(f->simulation));
     lar_simulation_destroy(other);
+}
+
+static bool look_three_times(void *context) {
+    int *looks = context;
+    return ++*looks < 3;
 }
 
 static void it_returns_when_asked(void **state) {
     fixture *f = *state;
     volatile sig_atomic_t stop = 1;
     lar_step_clock_start(&f->clock, f->simulation, false);
-    assert_int_equal(lar_step_clock_advance(&f->clock, f->simulation, 1000, 1e3, &stop, NULL),
+    assert_int_equal(lar_step_clock_advance(&f->clock, f->simulation, 1000, NULL, &stop, NULL),
                      LAR_OK);
     assert_int_equal(lar_simulation_steps(f->simulation), 0);
-    assert_int_equal(lar_step_clock_advance(&f->clock, f->simulation, 1000000000, 0.01, NULL, NULL),
-                     LAR_OK);
+    int looks = 0;
+    const lar_step_glance glance = {0.001, look_three_times, &looks};
+    assert_int_equal(
+        lar_step_clock_advance(&f->clock, f->simulation, 1000000000, &glance, NULL, NULL), LAR_OK);
+    assert_int_equal(looks, 3);
     assert_true(lar_simulation_steps(f->simulation) > 0);
     assert_true(lar_simulation_steps(f->simulation) < 1000000000);
 }
@@ -76,7 +84,7 @@ static void it_returns_when_asked(void **state) {
 static void a_paced_run_takes_its_time(void **state) {
     fixture *f = *state;
     lar_step_clock_start(&f->clock, f->simulation, true);
-    lar_step_clock_advance(&f->clock, f->simulation, 200, 1e3, NULL, NULL);
+    lar_step_clock_advance(&f->clock, f->simulation, 200, NULL, NULL, NULL);
     double elapsed = lar_step_clock_elapsed(&f->clock);
     double simulated = lar_simulation_time(f->simulation);
     assert_true(elapsed >= simulated - 1e-6);
@@ -88,7 +96,7 @@ static void late_steps_are_misses(void **state) {
     fixture *f = *state;
     lar_step_clock_start(&f->clock, f->simulation, true);
     f->clock.start -= 3600;
-    lar_step_clock_advance(&f->clock, f->simulation, 20, 1e3, NULL, NULL);
+    lar_step_clock_advance(&f->clock, f->simulation, 20, NULL, NULL, NULL);
     assert_int_equal(f->clock.misses, 20);
 }
 

@@ -1,0 +1,60 @@
+/* The processes of a command whose processors are processes: who this one is, who starts the
+ * others, and how they end (T 5.3.1: the controller starts the others).
+ *
+ *     started by          this process is         the others
+ *     a user, alone       processor zero          are started here, on this machine
+ *     processor zero      --processor K           it waits for them, and says who ended badly
+ *     a user, by hand     --processor K           are started by hand, on whatever machine
+ *     mpirun, srun        what the launcher says  were started by it, too
+ *
+ *     lar_processes_begin    who am I?
+ *     lar_processes_start    the others, once their number is known
+ *     lar_processes_meet     before each lar_simulation_create
+ *     lar_processes_end
+ *
+ * Processes that were started here read and write nothing but messages. When processor zero ends
+ * without a word, they learn it from their connection and can say so; should one of them not get
+ * there within two seconds, the system ends it.
+ */
+#ifndef LAR_STUDY_PROCESSES_H
+#define LAR_STUDY_PROCESSES_H
+
+#include <stdbool.h>
+
+#include "lariat.h"
+
+typedef struct lar_processes lar_processes;
+
+typedef struct lar_processes_setting {
+    const char *comm;      /* as in lar_options; NULL: processors are threads */
+    int32_t processor;     /* -1: not given */
+    const char *master;    /* NULL: not given */
+    const char *command;   /* "run": its words, and "--processor K --master ADDRESS" behind them */
+    int argument_count;    /* what follows them */
+    char *const *argument; /* outlives lar_processes_start, as all of these do */
+} lar_processes_setting;
+
+/* LAR_ERROR_ARGUMENT when launcher and options do not belong together. */
+lar_status lar_processes_begin(const lar_processes_setting *setting, lar_processes **processes,
+                               lar_error *error);
+
+/* The number of this process's first processor. */
+int32_t lar_processes_self(const lar_processes *processes);
+
+/* Processor zero starts processors 1 .. count - 1 when nobody else does. */
+lar_status lar_processes_start(lar_processes *processes, int32_t count, lar_error *error);
+
+/* Sets processor, master and listener of the options, for one simulation. */
+lar_status lar_processes_meet(lar_processes *processes, lar_options *options, lar_error *error);
+
+/* Before a process other than zero, which could not even begin, says why: processor zero, if it has
+ * started this one, has most likely said the same, and ends it here. */
+void lar_processes_hesitate(const lar_processes *processes);
+
+/* Waits for the processes that were started and frees; ends those that do not end themselves within
+ * a moment. `failure` is this process's own, LAR_OK: none; after LAR_ERROR_PEER the others have
+ * something to say. LAR_ERROR_PEER when one of them ended badly and may not have said so itself.
+ * Accepts NULL. */
+lar_status lar_processes_end(lar_processes *processes, lar_status failure, lar_error *error);
+
+#endif
