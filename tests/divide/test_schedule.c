@@ -132,6 +132,29 @@ static void far_travellers_first(void **state) {
     clear(&d);
 }
 
+/* Eq. 6.6: sums that others must add up and send back leave before what is needed by one only. */
+static void urgent_ones_first(void **state) {
+    (void)state;
+    divided d = cubes(4, 3, 3, 3);
+    lar_schedule_set set;
+    build(&d, LAR_SCHEME_ONE, LAR_CHANNELS_SEQUENTIAL, 1, &set);
+    const lar_schedule *s = &set.of[CENTRE];
+    int lower = 0, upper = 0;
+    for (int b = 0; b < s->batch_count; b++)
+        for (int i = 0; i < s->batch[b].sends.count; i++) {
+            const lar_transfer *t = &s->transfer[s->batch[b].sends.first + i];
+            if (t->stage > 0) continue;
+            upper += t->peer > CENTRE;
+            if (t->peer > CENTRE) continue;
+            lower++;
+            assert_int_equal(upper, 0);
+        }
+    assert_int_equal(lower, 3 + 3 + 1); /* over faces, edges, a corner */
+    assert_int_equal(upper, 3);
+    lar_schedule_set_clear(&set);
+    clear(&d);
+}
+
 /* ---- what holds for every schedule --------------------------------------------------------- */
 
 static void count_once(const int32_t *number, int32_t count, int32_t most, char *seen) {
@@ -415,6 +438,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(small_cubes),
         cmocka_unit_test(algorithm_2),
         cmocka_unit_test(far_travellers_first),
+        cmocka_unit_test(urgent_ones_first),
         cmocka_unit_test(the_organ),
         cmocka_unit_test(few_elements),
         cmocka_unit_test(something_flows_back),
