@@ -5,7 +5,7 @@
 #include "cli/options.h"
 #include "lariat.h"
 
-extern const cli_command cli_info, cli_run, cli_partition, cli_demo_model, cli_bench,
+extern const cli_command cli_info, cli_run, cli_verify, cli_partition, cli_demo_model, cli_bench,
     cli_bench_kernel, cli_bench_comm;
 
 /* Opens a model and prints its notices to standard error. Returns the exit status; messages are

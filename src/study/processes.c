@@ -24,7 +24,7 @@
 static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0;
 
 /* Whoever wants more on one machine has mistyped the grid. */
-enum { STARTED_MOST = 128 };
+enum { STARTED_MOST = 64 };
 
 /* By this variable of the environment a process knows which one has started it. */
 static const char PARENT[] = "LARIAT_PARENT";
