@@ -21,8 +21,7 @@ static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_
 static void collect(const lar_processor *p, const int32_t *value, int32_t count,
                     int64_t *restrict vector) {
     const int64_t *force = p->worker[0].state.force;
-    for (int32_t i = 0; i < count; i++)
-        memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
+    for (int32_t i = 0; i < count; i++) memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
     for (int32_t t = 1; t < p->thread_count; t++)
         for (int32_t i = 0; i < count; i++)
             add_vector(p, vector + 3 * i, p->worker[t].state.force + value[i]);
@@ -40,16 +39,42 @@ static void spread(const lar_processor *p, const int32_t *value, int32_t count,
                     (int64_t)((uint64_t)force[value[i] + k] + (uint64_t)vector[3 * i + k]);
 }
 
+/* Packs what this thread has for the nodes of others that wait for batch b. The sums themselves
+ * stay: who sends such a node reads them until the end of the step. */
+static void pack_parcels(const lar_worker *worker, int32_t b) {
+    const lar_processor *p = worker->processor;
+    for (int32_t to = 0; to < p->thread_count; to++) {
+        const lar_parcel *parcel = &worker->parcel[to];
+        if (parcel->batch != b) continue;
+        for (int32_t i = 0; i < parcel->count; i++)
+            memcpy(parcel->vector + 3 * i, worker->state.force + parcel->value[i],
+                   LAR_VECTOR_BYTES);
+    }
+}
+
+/* At the end of the step, when nobody reads them any more. */
+static void clear_parcels(const lar_worker *worker) {
+    const lar_processor *p = worker->processor;
+    for (int32_t to = 0; to < p->thread_count; to++) {
+        const lar_parcel *parcel = &worker->parcel[to];
+        for (int32_t i = 0; i < parcel->count; i++)
+            memset(worker->state.force + parcel->value[i], 0, LAR_VECTOR_BYTES);
+    }
+}
+
 /* Takes the sums of the other threads over into the one that moves the nodes. */
 static void join_sums(lar_worker *worker) {
     const lar_processor *p = worker->processor;
-    for (int32_t i = 0; i < worker->joint_count; i++) {
-        int32_t value = worker->joint[i];
-        for (int32_t t = 0; t < p->thread_count; t++) {
-            if (t == worker->thread) continue;
-            int64_t *other = p->worker[t].state.force + value;
-            add_vector(p, worker->state.force + value, other);
-            memset(other, 0, LAR_VECTOR_BYTES);
+    int64_t *force = worker->state.force;
+    for (int32_t t = 0; t < p->thread_count; t++) {
+        if (t == worker->thread) continue;
+        const lar_parcel *parcel = &p->worker[t].parcel[worker->thread];
+        spread(p, parcel->value, parcel->count, parcel->vector, force);
+        int64_t *other = p->worker[t].state.force;
+        for (int32_t i = 0; i < worker->joint_count; i++) {
+            int32_t value = worker->joint[i];
+            add_vector(p, force + value, other + value);
+            memset(other + value, 0, LAR_VECTOR_BYTES);
         }
     }
 }
@@ -126,6 +151,12 @@ static void dawdle(lar_worker *worker) {
 
 /* ---- the step ------------------------------------------------------------------------------ */
 
+/* The displacements that other threads have computed are in their cores' caches. */
+static void fetch_foreign(const lar_worker *worker) {
+    for (int32_t i = 0; i < worker->foreign_count; i++)
+        __builtin_prefetch(worker->state.u + worker->foreign[i]);
+}
+
 /* While the last run of a batch is recovered, the memory of its packets comes near. */
 static void bring_near(const lar_processor *p, const lar_batch_plan *batch, uint64_t step) {
     for (int32_t i = batch->sends.first; i < batch->sends.first + batch->sends.count; i++) {
@@ -174,6 +205,7 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t step, lar_er
     if (batch->sends.count) dawdle(worker);
     for (int32_t i = 0; i < batch->sends.count && !status; i++)
         status = send(worker, &p->packet[batch->sends.first + i], step, error);
+    pack_parcels(worker, b);
     if (!status) __atomic_store_n(&p->mark[b].step, step, __ATOMIC_RELEASE);
     return status;
 }
@@ -182,6 +214,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_processor *p = worker->processor;
     uint64_t step = worker->state.step + 1; /* comm and marks count from 1 */
     lar_status status = LAR_OK;
+    fetch_foreign(worker);
     if (!p->check)
         lar_step_begin(&p->domain, &worker->conditions, &worker->context, &worker->state,
                        &worker->trip);
@@ -191,6 +224,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
         __atomic_store_n(&p->failed, 1, __ATOMIC_RELEASE);
         return status;
     }
+    clear_parcels(worker);
     if (p->check)
         worker->state.step++;
     else

@@ -132,38 +132,106 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
 
 /* ---- threads ------------------------------------------------------------------------------ */
 
-/* The nodes that a thread moves and others add to. adds[local node]: a bit for each thread that
- * recovers an element there or receives for it. */
-static lar_status list_joints(lar_processor *p, const uint16_t *adds, lar_worker *worker,
-                              lar_error *error) {
-    const lar_condition_context *context = &worker->context;
-    unsigned own = 1u << worker->thread;
-    worker->joint = lar_calloc((size_t)(context->end - context->first), sizeof *worker->joint);
-    if (!worker->joint)
-        return lar_fail_memory(error, 4 * (size_t)p->domain.layout.node_padded, "joint nodes");
-    for (lar_lid n = context->first; n < context->end; n++)
-        if (adds[n] & ~own) worker->joint[worker->joint_count++] = 4 * n;
-    return LAR_OK;
+/* Who has something to do with a local node: a bit for each thread. */
+typedef struct node_use {
+    uint16_t *reads; /* recovers an element there */
+    uint16_t *adds;  /* that, or receives for it */
+    bool *replaced;  /* a whole force may come */
+} node_use;
+
+static void clear_use(node_use *use) {
+    free(use->reads);
+    free(use->adds);
+    free(use->replaced);
 }
 
-static uint16_t *list_adders(const lar_schedule *schedule, const assignment *a,
-                             const lar_processor *p) {
+static lar_status find_use(const lar_schedule *schedule, const assignment *a,
+                           const lar_processor *p, node_use *use, lar_error *error) {
     const lar_layout *layout = &p->domain.layout;
     const lar_mesh *mesh = &p->domain.model->mesh;
-    uint16_t *adds = lar_calloc((size_t)layout->node_padded, sizeof *adds);
-    if (!adds) return NULL;
+    size_t nodes = (size_t)layout->node_padded;
+    *use = (node_use){lar_calloc(nodes, sizeof *use->reads), lar_calloc(nodes, sizeof *use->adds),
+                      lar_calloc(nodes, sizeof *use->replaced)};
+    if (!use->reads || !use->adds || !use->replaced)
+        return lar_fail_memory(error, 5 * nodes, "who uses the nodes");
     for (int32_t e = 0; e < mesh->element_count; e++)
         for (int k = 0; a->thread[e] >= 0 && k < 8; k++)
-            adds[layout->local[mesh->element[e][k]]] |= (uint16_t)(1u << a->thread[e]);
+            use->reads[layout->local[mesh->element[e][k]]] |= (uint16_t)(1u << a->thread[e]);
+    memcpy(use->adds, use->reads, nodes * sizeof *use->adds);
     for (int32_t b = 0; b < schedule->batch_count; b++) {
         lar_span receives = schedule->batch[b].receives;
         for (int32_t i = receives.first; i < receives.first + receives.count; i++) {
-            lar_span vectors = schedule->transfer[i].vectors;
-            for (int32_t v = vectors.first; v < vectors.first + vectors.count; v++)
-                adds[p->value[v] / 4] |= (uint16_t)(1u << thread_of_batch(schedule, b));
+            const lar_transfer *t = &schedule->transfer[i];
+            for (int32_t v = 0; v < t->vectors.count; v++) {
+                lar_lid n = p->value[t->vectors.first + v] / 4;
+                use->adds[n] |= (uint16_t)(1u << thread_of_batch(schedule, b));
+                use->replaced[n] = use->replaced[n] || v >= t->vectors.count - t->whole;
+            }
         }
     }
-    return adds;
+    return LAR_OK;
+}
+
+/* The last batch of thread `from` that is known to be finished when the nodes of `to` move. */
+static int32_t batch_waited_for(const lar_schedule *schedule, int32_t from, int32_t to) {
+    int32_t latest = -1;
+    for (int32_t b = schedule->thread_first[to]; b < schedule->thread_first[to + 1]; b++) {
+        const lar_batch *batch = &schedule->batch[b];
+        for (int32_t i = 0; i < batch->waits.count; i++) {
+            int32_t other = schedule->wait[batch->waits.first + i];
+            if (thread_of_batch(schedule, other) == from && other > latest) latest = other;
+        }
+        if (batch->positions.count > 0) break;
+    }
+    return latest;
+}
+
+static lar_status create_parcel(const lar_schedule *schedule, const node_use *use, int32_t from,
+                                int32_t to, lar_processor *p, lar_error *error) {
+    lar_parcel *parcel = &p->worker[from].parcel[to];
+    const lar_condition_context *moved = &p->worker[to].context;
+    *parcel = (lar_parcel){.batch = batch_waited_for(schedule, from, to)};
+    for (lar_lid n = moved->first; n < moved->end; n++)
+        parcel->count += use->adds[n] >> from & 1 && !use->replaced[n];
+    if (parcel->count > 0 && parcel->batch < 0)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "the schedule of processor %d lets thread %d move nodes without waiting "
+                        "for thread %d, which has elements there; make the schedules anew with "
+                        "lariat partition",
+                        (int)p->self, (int)to, (int)from);
+    parcel->value = lar_calloc((size_t)parcel->count, sizeof *parcel->value);
+    parcel->vector = lar_calloc_aligned(3 * (size_t)parcel->count, sizeof *parcel->vector);
+    if (!parcel->value || !parcel->vector)
+        return lar_fail_memory(error, 28 * (size_t)parcel->count, "sums between threads");
+    int32_t count = 0;
+    for (lar_lid n = moved->first; n < moved->end; n++)
+        if (use->adds[n] >> from & 1 && !use->replaced[n]) parcel->value[count++] = 4 * n;
+    return LAR_OK;
+}
+
+/* What the threads have to do with each other's nodes. */
+static lar_status join_worker(const lar_schedule *schedule, const node_use *use, int32_t thread,
+                              lar_processor *p, lar_error *error) {
+    lar_worker *worker = &p->worker[thread];
+    const lar_condition_context *own = &worker->context;
+    size_t nodes = (size_t)p->domain.layout.node_padded;
+    worker->parcel = lar_calloc((size_t)p->thread_count, sizeof *worker->parcel);
+    worker->joint = lar_calloc(nodes, sizeof *worker->joint);
+    worker->foreign = lar_calloc(nodes, sizeof *worker->foreign);
+    if (!worker->parcel || !worker->joint || !worker->foreign)
+        return lar_fail_memory(error, 8 * nodes, "sums between threads");
+    for (lar_lid n = 0; n < (lar_lid)nodes; n++) {
+        bool moved = n >= own->first && n < own->end;
+        if (moved && use->replaced[n] && use->adds[n] & ~(1u << thread))
+            worker->joint[worker->joint_count++] = 4 * n;
+        if (!moved && use->reads[n] >> thread & 1) worker->foreign[worker->foreign_count++] = 4 * n;
+    }
+    lar_status status = LAR_OK;
+    for (int32_t to = 0; to < p->thread_count && !status; to++) {
+        worker->parcel[to].batch = -1;
+        if (to != thread) status = create_parcel(schedule, use, thread, to, p, error);
+    }
+    return status;
 }
 
 /* Thread 0 has the processor's state; the others see its u and v and have forces of their own. */
@@ -178,8 +246,8 @@ static lar_status create_state(lar_processor *p, lar_worker *worker, lar_error *
 }
 
 static lar_status create_worker(const lar_schedule *schedule, const lar_processor_setting *setting,
-                                const assignment *a, const uint16_t *adds, int32_t thread,
-                                lar_processor *p, lar_error *error) {
+                                const assignment *a, int32_t thread, lar_processor *p,
+                                lar_error *error) {
     lar_worker *worker = &p->worker[thread];
     const lar_layout *layout = &p->domain.layout;
     worker->processor = p;
@@ -205,7 +273,6 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
                         "a thread moves all its nodes in one batch: put them together",
                         (int)p->self, (int)thread, (int)moving);
     lar_status status = create_state(p, worker, error);
-    if (!status) status = list_joints(p, adds, worker, error);
     if (!status && !(worker->gather = lar_calloc_aligned(largest, 1)))
         status = lar_fail_memory(error, largest, "a packet");
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};
@@ -218,13 +285,15 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
 static lar_status create_workers(const lar_schedule *schedule, const lar_processor_setting *setting,
                                  const assignment *a, lar_processor *p, lar_error *error) {
     size_t bytes = (size_t)p->thread_count * sizeof *p->worker;
-    uint16_t *adds = list_adders(schedule, a, p);
+    node_use use = {0};
     p->worker = lar_calloc_aligned((size_t)p->thread_count, sizeof *p->worker);
-    lar_status status =
-        adds && p->worker ? LAR_OK : lar_fail_memory(error, bytes, "the threads of a processor");
+    if (!p->worker) return lar_fail_memory(error, bytes, "the threads of a processor");
+    lar_status status = find_use(schedule, a, p, &use, error);
     for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = create_worker(schedule, setting, a, adds, t, p, error);
-    free(adds);
+        status = create_worker(schedule, setting, a, t, p, error);
+    for (int32_t t = 0; t < p->thread_count && !status; t++)
+        status = join_worker(schedule, &use, t, p, error);
+    clear_use(&use);
     return status;
 }
 
@@ -254,7 +323,13 @@ void lar_processor_destroy(lar_processor *p) {
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
         lar_conditions_destroy(&worker->conditions);
+        for (int32_t to = 0; worker->parcel && to < p->thread_count; to++) {
+            free(worker->parcel[to].value);
+            free(worker->parcel[to].vector);
+        }
+        free(worker->parcel);
         free(worker->joint);
+        free(worker->foreign);
         free(worker->gather);
         if (t == 0)
             lar_state_destroy(&worker->state);

@@ -38,6 +38,15 @@ typedef struct lar_batch_mark {
     uint64_t step;
 } __attribute__((aligned(64))) lar_batch_mark;
 
+/* What one thread has for the nodes that another moves: packed, because the few cache lines of a
+ * parcel come over much faster than those of all the nodes, and stay out of each other's way. */
+typedef struct lar_parcel {
+    int32_t batch; /* packed at its end: the one that the other waits for; -1: nothing */
+    int32_t count;
+    int32_t *value;  /* [count] 4 * local node */
+    int64_t *vector; /* [3 count] */
+} lar_parcel;
+
 struct lar_processor;
 
 /* One thread of a processor. */
@@ -48,8 +57,12 @@ typedef struct lar_worker {
     lar_state state; /* u, v: the processor's; force, step and work are its own */
     lar_conditions conditions;
     lar_condition_context context; /* the nodes that it moves */
+    lar_parcel *parcel;            /* [threads] for each of them */
     int32_t joint_count;
-    int32_t *joint; /* 4 * local node: moved here, and other threads add to it */
+    int32_t *joint; /* 4 * local node: moved here, summed by others too, and in no parcel because a
+                       whole force may replace all sums */
+    int32_t foreign_count;
+    int32_t *foreign; /* 4 * local node: read here, moved by others */
     lar_trip trip;
     unsigned char *gather; /* where packets are put together that the backend has no room for */
     uint64_t random;       /* of the delays; 0: none */
