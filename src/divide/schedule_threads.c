@@ -226,7 +226,8 @@ static lar_status run_search(lar_plan *plan, unit *units, int32_t count, search 
         int64_t gain[UNITS_MOST];
         memcpy(s->clock, plan->clock, sizeof s->clock);
         s->enough = earliest_end(s, find_gains(s, gain));
-        s->most = plan->site->options->search - plan->tried;
+        /* Half of what is left: the groups that follow want to search, too. */
+        s->most = (plan->site->options->search - plan->tried + 1) / 2;
         explore(s, 0, 0);
         plan->tried += s->tried;
     }
