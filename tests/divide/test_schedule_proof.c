@@ -186,6 +186,8 @@ static void foreign_schedules(void **state) {
     REFUSED(&p, "schedule 1 of 4", "processor 2");
     square(&p, LAR_SCHEME_ALL, 1)[1].batch[0].elements.count = 1000;
     REFUSED(&p, "processor 1, thread 0, batch 0", "outside");
+    square(&p, LAR_SCHEME_ALL, 1)[1].batch[0].elements.count--;
+    REFUSED(&p, "processor 1: its batches have 7 elements");
     square(&p, LAR_SCHEME_ALL, 1)[1].transfer[0].peer = 1;
     REFUSED(&p, "processor 1", "packet 0", "none that can be");
     square(&p, LAR_SCHEME_ALL, 2)[1].wait[0] = 0;
