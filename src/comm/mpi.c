@@ -45,6 +45,7 @@ typedef struct mpi_state {
     int tag;
     int *ranks; /* [count] */
     bool begun;
+    bool broken;          /* MPI has failed; who is lost is the watch's to say */
     int receives, oldest; /* the ring */
     size_t receive_bytes; /* of one */
     unsigned char *incoming;
@@ -122,7 +123,8 @@ static lar_status mpi_connect(lar_comm *comm, lar_error *error) {
 
 static void post(mpi_state *state, int i) {
     void *there = state->incoming + (size_t)i * state->receive_bytes;
-    state->world->mpi->receive(there, (int)state->receive_bytes, state->tag, &state->posted[i]);
+    if (state->world->mpi->receive(there, (int)state->receive_bytes, state->tag, &state->posted[i]))
+        state->broken = true;
 }
 
 /* What comes before this waits in MPI. */
@@ -151,12 +153,18 @@ static void store(lar_comm *comm, const message *m) {
     __atomic_store_n(tail, m->step, __ATOMIC_RELEASE);
 }
 
-/* An error of MPI says nothing about who is lost: the watch does. The caller has the lock. */
+/* Whether a request is done. The caller has the lock. */
+static bool is_done(mpi_state *state, lar_mpi_request *request) {
+    bool done = false;
+    if (!state->broken && state->world->mpi->test(request, &done)) state->broken = true;
+    return done && !state->broken;
+}
+
+/* The caller has the lock. */
 static void receive_some(lar_comm *comm) {
     mpi_state *state = comm->state;
     for (int i = 0; i < state->receives; i++) {
-        bool done = false;
-        if (state->world->mpi->test(&state->posted[state->oldest], &done) || !done) return;
+        if (!is_done(state, &state->posted[state->oldest])) return;
         const unsigned char *at = state->incoming + (size_t)state->oldest * state->receive_bytes;
         store(comm, (const message *)(const void *)at);
         post(state, state->oldest);
@@ -178,9 +186,7 @@ static lar_status mpi_progress(lar_comm *comm, int32_t peer) {
 /* Forgets what is sent. The caller has the lock. */
 static void reclaim(mpi_state *state) {
     while (state->sents > 0) {
-        bool done = false;
-        if (state->world->mpi->test(&state->sends[state->first_sent].request, &done) || !done)
-            return;
+        if (!is_done(state, &state->sends[state->first_sent].request)) return;
         state->first_sent = (state->first_sent + 1) % SENDS;
         state->sents--;
     }
@@ -248,8 +254,7 @@ static bool all_said(lar_comm *comm) {
     reclaim(state);
     bool all = state->sents == 0 && state->heard == comm->options.count - 1;
     for (int32_t p = 0; p < comm->options.count && all; p++)
-        if (p != comm->options.self && state->world->mpi->test(&state->goodbyes[p], &all))
-            all = false;
+        all = p == comm->options.self || is_done(state, &state->goodbyes[p]);
     return all;
 }
 

@@ -118,7 +118,7 @@ static lar_status complain(const lar_mpi *mpi, int code, const char *what, lar_e
 static lar_status join(const char *wanted, lar_error *error) {
     char path[PATH_BYTES];
     const lar_mpi *mpi = NULL;
-    if (where == INSIDE) return LAR_OK;
+    if (where == INSIDE || (where == LEFT && only.size == 1)) return LAR_OK;
     if (where == LEFT)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "this process has left MPI, which can be joined once only; start all "
