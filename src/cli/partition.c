@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/json.h"
+#include "cli/parallel.h"
 #include "study/partition.h"
 
 static const double DEFAULT_SECONDS = 25;
@@ -64,6 +65,16 @@ static void write_json(const lar_partition_report *r) {
     json_close(&json);
     json_integer(&json, "generations", r->generations);
     json_number(&json, "seconds", r->seconds);
+    json_integer(&json, "threads", r->schedules.threads);
+    json_text(&json, "channels", r->schedules.channels);
+    json_open(&json, "schedules", '{');
+    json_text(&json, "scheme", r->schedules.scheme);
+    json_number(&json, "batches_mean", r->schedules.batches_mean);
+    json_integer(&json, "batches_max", r->schedules.batches_most);
+    json_number(&json, "waits_mean", r->schedules.waits_mean);
+    json_integer(&json, "waits_max", r->schedules.waits_most);
+    json_integer(&json, "buffer_bytes_max", r->schedules.buffer_bytes_most);
+    json_close(&json);
     json_open(&json, "schemes", '[');
     for (int s = 0; s < LAR_PARTITION_SCHEMES; s++) write_scheme(&json, &r->scheme[s]);
     json_close(&json);
@@ -98,6 +109,16 @@ static void print_schemes(const lar_partition_report *r) {
     }
 }
 
+static void print_schedules(const lar_partition_report *r) {
+    const lar_partition_schedules *s = &r->schedules;
+    printf("\nschedules of scheme %s, per processor, mean (most)\n%-17s%.1f (%" PRId64 ")",
+           s->scheme, "batches", s->batches_mean, s->batches_most);
+    if (s->threads > 1)
+        printf(", on %d threads that wait for each other %.1f (%" PRId64 ") times", (int)s->threads,
+               s->waits_mean, s->waits_most);
+    printf("\n%-17s%" PRId64 " bytes at most\n", "receive buffer", s->buffer_bytes_most);
+}
+
 static void print_table(const lar_partition_report *r) {
     printf("%-17s%d elements, %d nodes\n", "model", (int)r->elements, (int)r->nodes);
     printf("%-17s%d x %d x %d, %d processors, diameter %d\n", "grid", (int)r->grid[0],
@@ -109,6 +130,7 @@ static void print_table(const lar_partition_report *r) {
            "nodes", r->mean_processors, (int)r->shared, (int)r->irregular, "", (int)r->scattered);
     print_costs(r);
     print_schemes(r);
+    print_schedules(r);
 }
 
 /* ---- progress --------------------------------------------------------------------------- */
@@ -165,7 +187,7 @@ static int partition_main(int argc, char **argv) {
     static const char *const methods[] = {"best", "cut", "genetic", "metis", "random", NULL};
     lar_partition_options wanted = {0};
     int method = -1;
-    int64_t seed = 1;
+    int64_t seed = 1, threads = 1;
     bool json = false;
     wanted.seconds = -1;
     const cli_option options[] = {
@@ -178,7 +200,14 @@ static int partition_main(int argc, char **argv) {
         CLI_REAL("--seconds", "S", "time for the genetic search (25)", &wanted.seconds, 0.01, 1e6),
         CLI_COUNT("--generations", "N", "end it after so many: the same result everywhere",
                   &wanted.generations, 1, 1e12),
+        CLI_COUNT("--threads", "N", "of each processor (1)", &threads, 1, 16),
+        CLI_CHOICE("--scheme", "NAME", "of the schedules: all (default), local, one, two",
+                   &wanted.scheme, cli_scheme_names),
+        CLI_CHOICE("--channels", "NAME", "of scheme local: sequential (default), concurrent",
+                   &wanted.channels, cli_channel_names),
         CLI_TEXT("--out", "FILE", "write the distribution", &wanted.out),
+        CLI_TEXT("--schedules", "DIR", "write the schedules, a file per processor",
+                 &wanted.schedules),
         CLI_TEXT("--vtu", "FILE", "write the mesh with its processors as a cell field",
                  &wanted.vtu),
         CLI_FLAG("--json", "one JSON object on standard output", &json),
@@ -191,6 +220,7 @@ static int partition_main(int argc, char **argv) {
     wanted.method =
         wanted.read ? LAR_PARTITION_FILE : (lar_partition_method)(method < 0 ? 0 : method);
     wanted.seed = (uint64_t)seed;
+    wanted.threads = (int32_t)threads;
     if (wanted.seconds < 0) wanted.seconds = wanted.generations > 0 ? 0 : DEFAULT_SECONDS;
     return run_partition(path, &wanted, json);
 }
@@ -203,9 +233,12 @@ const cli_command cli_partition = {
         "Gives every element of a scene or mesh a processor of a grid: by cutting, by genetic\n"
         "adaptation of the cuts, or with METIS; the best is kept. Prints the load, the cost of\n"
         "communication (the fitness of the thesis, its eq. 6.8), and what each communication\n"
-        "scheme sends in a step.",
+        "scheme sends in a step. Writes what run and verify read: the distribution, and the\n"
+        "schedules, which say what every thread of every processor does in a step.",
     .examples = "  lariat partition demo/uterus.yaml --grid 2x2x3\n"
                 "  lariat partition demo/uterus.yaml --grid 2x2x3 --method genetic --seconds 5 \\\n"
                 "      --out uterus.dist --vtu uterus-processors.vtu\n"
-                "  lariat partition demo/uterus.yaml --distribution uterus.dist --json\n",
+                "  lariat partition demo/uterus.yaml --distribution uterus.dist --json\n"
+                "  lariat partition demo/uterus.yaml --grid 2x1x1 --threads 2 --schedules plan\n"
+                "  lariat run demo/uterus.yaml --schedules plan\n",
     .main = partition_main};

@@ -5,7 +5,7 @@
 
 #include "divide/distribution.h"
 #include "divide/genetic.h"
-#include "divide/traffic.h"
+#include "divide/schedule_file.h"
 #include "model/format/mesh_io.h"
 #include "model/model.h"
 
@@ -26,14 +26,12 @@ typedef struct partition {
     lar_sharing sharing;
     lar_distribution kept;
     lar_cost kept_cost;
-    lar_traffic *traffic; /* [grid.count] */
 } partition;
 
 static void partition_clear(partition *p) {
     lar_incidence_clear(&p->incidence);
     lar_sharing_clear(&p->sharing);
     lar_distribution_clear(&p->kept);
-    free(p->traffic);
 }
 
 /* ---- making distributions --------------------------------------------------------------- */
@@ -182,25 +180,22 @@ static int64_t larger(int64_t a, int64_t b) {
     return a > b ? a : b;
 }
 
-static lar_status report_scheme(partition *p, lar_scheme scheme) {
-    lar_partition_scheme *r = &p->report->scheme[scheme];
-    lar_status status = lar_traffic_measure(&p->sharing, scheme, p->traffic, p->error);
-    if (status) return status;
+static void report_traffic(const lar_schedule_set *set, lar_partition_scheme *r) {
     int64_t local = 0, global = 0, packets = 0, largest = 0;
-    for (int32_t i = 0; i < p->grid.count; i++) {
-        const lar_traffic *t = &p->traffic[i];
-        int64_t of_this = t->local_packets + t->global_packets;
-        local += t->local;
-        global += t->global;
+    for (int32_t i = 0; i < set->count; i++) {
+        lar_traffic t;
+        lar_schedule_traffic(&set->of[i], &t);
+        int64_t of_this = t.local_packets + t.global_packets;
+        local += t.local;
+        global += t.global;
         packets += of_this;
-        largest = larger(largest, t->largest_packet);
-        r->local_most = larger(r->local_most, t->local);
-        r->global_most = larger(r->global_most, t->global);
-        r->vectors_most = larger(r->vectors_most, t->local + t->global);
+        largest = larger(largest, t.largest_packet);
+        r->local_most = larger(r->local_most, t.local);
+        r->global_most = larger(r->global_most, t.global);
+        r->vectors_most = larger(r->vectors_most, t.local + t.global);
         r->packets_most = larger(r->packets_most, of_this);
     }
-    double n = p->grid.count, vectors = (double)(local + global);
-    r->name = lar_scheme_name[scheme];
+    double n = set->count, vectors = (double)(local + global);
     r->local_mean = (double)local / n;
     r->global_mean = (double)global / n;
     r->vectors_mean = vectors / n;
@@ -209,7 +204,43 @@ static lar_status report_scheme(partition *p, lar_scheme scheme) {
     r->packets_mean = (double)packets / n;
     r->packet_bytes_most = LAR_VECTOR_BYTES * largest;
     r->packet_bytes_mean = packets > 0 ? LAR_VECTOR_BYTES * vectors / (double)packets : 0;
-    return LAR_OK;
+}
+
+static void report_schedules(const lar_schedule_set *set, lar_partition_schedules *r) {
+    int64_t batches = 0, waits = 0;
+    for (int32_t i = 0; i < set->count; i++) {
+        const lar_schedule *s = &set->of[i];
+        batches += s->batch_count;
+        waits += s->wait_count;
+        r->batches_most = larger(r->batches_most, s->batch_count);
+        r->waits_most = larger(r->waits_most, s->wait_count);
+        r->buffer_bytes_most = larger(r->buffer_bytes_most, 2 * s->receive_bytes);
+    }
+    r->threads = set->of[0].threads;
+    r->scheme = lar_scheme_name[set->of[0].scheme];
+    r->channels = lar_channel_use_name[set->of[0].channels];
+    r->batches_mean = (double)batches / set->count;
+    r->waits_mean = (double)waits / set->count;
+}
+
+/* Threads make no difference to what is sent: they are searched for where they are asked for. */
+static lar_status report_scheme(partition *p, lar_scheme scheme) {
+    const lar_partition_options *o = p->options;
+    lar_schedule_options options = lar_schedule_options_default();
+    lar_schedule_set set = {0};
+    bool chosen = (int)scheme == o->scheme;
+    options.scheme = scheme;
+    options.channels = (lar_channel_use)o->channels;
+    if (chosen && o->threads > 1) options.threads = o->threads;
+    lar_status status =
+        lar_schedule_build(p->mesh, &p->incidence, &p->kept, &options, &set, p->error);
+    if (status) return status;
+    p->report->scheme[scheme].name = lar_scheme_name[scheme];
+    report_traffic(&set, &p->report->scheme[scheme]);
+    if (chosen) report_schedules(&set, &p->report->schedules);
+    if (chosen && o->schedules) status = lar_schedule_write(o->schedules, &set, p->error);
+    lar_schedule_set_clear(&set);
+    return status;
 }
 
 static lar_status report_all(partition *p) {
@@ -225,8 +256,6 @@ static lar_status report_all(partition *p) {
     if (!status) status = lar_sharing_build(&p->incidence, &p->kept, &p->sharing, p->error);
     if (status) return status;
     report_nodes(p);
-    p->traffic = lar_calloc((size_t)p->grid.count, sizeof *p->traffic);
-    if (!p->traffic) return lar_fail_memory(p->error, (size_t)p->grid.count, "traffic");
     for (int s = 0; s < LAR_SCHEMES && !status; s++) status = report_scheme(p, (lar_scheme)s);
     return status;
 }

@@ -31,10 +31,13 @@ typedef struct lar_partition_options {
     lar_partition_method method;
     const char *read; /* LAR_PARTITION_FILE: the distribution file */
     uint64_t seed;
-    double seconds;      /* of the genetic search; 0: no limit */
-    int64_t generations; /* of the genetic search; 0: no limit */
-    const char *out;     /* distribution file to write, or NULL */
-    const char *vtu;     /* mesh with the cell field "processor" to write, or NULL */
+    double seconds;        /* of the genetic search; 0: no limit */
+    int64_t generations;   /* of the genetic search; 0: no limit */
+    int scheme, channels;  /* lar_scheme, lar_channel_use: whose schedules are written */
+    int32_t threads;       /* of a processor; 0: one */
+    const char *out;       /* distribution file to write, or NULL */
+    const char *schedules; /* folder for schedule files, or NULL */
+    const char *vtu;       /* mesh with the cell field "processor" to write, or NULL */
     lar_partition_watch *watch;
     void *context;
 } lar_partition_options;
@@ -46,7 +49,7 @@ typedef struct lar_partition_cost {
 } lar_partition_cost;
 
 /* What processors send in one step under one scheme of T 3.7: the greatest of all processors, and
- * the mean. A vector has 24 bytes. */
+ * the mean, counted from the scheme's schedules. A vector has 24 bytes. */
 typedef struct lar_partition_scheme {
     const char *name;
     int64_t local_most, global_most, vectors_most; /* vectors */
@@ -58,6 +61,15 @@ typedef struct lar_partition_scheme {
     int64_t packet_bytes_most; /* the largest packet */
     double packet_bytes_mean;
 } lar_partition_scheme;
+
+/* The chosen schedules: the greatest of all processors, and the mean. */
+typedef struct lar_partition_schedules {
+    int32_t threads;
+    const char *scheme, *channels;
+    int64_t batches_most, waits_most; /* of a processor, all threads */
+    double batches_mean, waits_mean;
+    int64_t buffer_bytes_most; /* of a receive buffer, both halves */
+} lar_partition_schedules;
 
 typedef struct lar_partition_report {
     int32_t grid[3], processors, elements, nodes;
@@ -73,6 +85,7 @@ typedef struct lar_partition_report {
     int64_t generations; /* of the genetic search, and how long it took */
     double seconds;
     lar_partition_scheme scheme[LAR_PARTITION_SCHEMES];
+    lar_partition_schedules schedules;
 } lar_partition_report;
 
 /* Names of the methods, in their order; NULL ends them. */
