@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/parcel.h"
+
 /* Who does what, by global element and node, while a schedule is compiled. */
 typedef struct assignment {
     int32_t *thread, *batch; /* [elements] */
@@ -16,12 +18,6 @@ static void clear_assignment(assignment *a) {
     free(a->owner);
     free(a->loads);
     free(a->counted);
-}
-
-static int32_t thread_of_batch(const lar_schedule *schedule, int32_t batch) {
-    int32_t thread = 0;
-    while (batch >= schedule->thread_first[thread + 1]) thread++;
-    return thread;
 }
 
 static lar_status allocate_assignment(assignment *a, const lar_mesh *mesh, lar_error *error) {
@@ -49,7 +45,7 @@ static lar_status assign(const lar_schedule *schedule, const lar_processor_setti
     if (status) return status;
     for (int32_t b = 0; b < schedule->batch_count; b++) {
         const lar_batch *batch = &schedule->batch[b];
-        int32_t thread = thread_of_batch(schedule, b);
+        int32_t thread = lar_thread_of_batch(schedule, b);
         for (int32_t i = 0; i < batch->elements.count; i++) {
             int32_t e = schedule->element[batch->elements.first + i];
             a->thread[e] = thread;
@@ -132,108 +128,6 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
 
 /* ---- threads ------------------------------------------------------------------------------ */
 
-/* Who has something to do with a local node: a bit for each thread. */
-typedef struct node_use {
-    uint16_t *reads; /* recovers an element there */
-    uint16_t *adds;  /* that, or receives for it */
-    bool *replaced;  /* a whole force may come */
-} node_use;
-
-static void clear_use(node_use *use) {
-    free(use->reads);
-    free(use->adds);
-    free(use->replaced);
-}
-
-static lar_status find_use(const lar_schedule *schedule, const assignment *a,
-                           const lar_processor *p, node_use *use, lar_error *error) {
-    const lar_layout *layout = &p->domain.layout;
-    const lar_mesh *mesh = &p->domain.model->mesh;
-    size_t nodes = (size_t)layout->node_padded;
-    *use = (node_use){lar_calloc(nodes, sizeof *use->reads), lar_calloc(nodes, sizeof *use->adds),
-                      lar_calloc(nodes, sizeof *use->replaced)};
-    if (!use->reads || !use->adds || !use->replaced)
-        return lar_fail_memory(error, 5 * nodes, "who uses the nodes");
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int k = 0; a->thread[e] >= 0 && k < 8; k++)
-            use->reads[layout->local[mesh->element[e][k]]] |= (uint16_t)(1u << a->thread[e]);
-    memcpy(use->adds, use->reads, nodes * sizeof *use->adds);
-    for (int32_t b = 0; b < schedule->batch_count; b++) {
-        lar_span receives = schedule->batch[b].receives;
-        for (int32_t i = receives.first; i < receives.first + receives.count; i++) {
-            const lar_transfer *t = &schedule->transfer[i];
-            for (int32_t v = 0; v < t->vectors.count; v++) {
-                lar_lid n = p->value[t->vectors.first + v] / 4;
-                use->adds[n] |= (uint16_t)(1u << thread_of_batch(schedule, b));
-                use->replaced[n] = use->replaced[n] || v >= t->vectors.count - t->whole;
-            }
-        }
-    }
-    return LAR_OK;
-}
-
-/* The last batch of thread `from` that is known to be finished when the nodes of `to` move. */
-static int32_t batch_waited_for(const lar_schedule *schedule, int32_t from, int32_t to) {
-    int32_t latest = -1;
-    for (int32_t b = schedule->thread_first[to]; b < schedule->thread_first[to + 1]; b++) {
-        const lar_batch *batch = &schedule->batch[b];
-        for (int32_t i = 0; i < batch->waits.count; i++) {
-            int32_t other = schedule->wait[batch->waits.first + i];
-            if (thread_of_batch(schedule, other) == from && other > latest) latest = other;
-        }
-        if (batch->positions.count > 0) break;
-    }
-    return latest;
-}
-
-static lar_status create_parcel(const lar_schedule *schedule, const node_use *use, int32_t from,
-                                int32_t to, lar_processor *p, lar_error *error) {
-    lar_parcel *parcel = &p->worker[from].parcel[to];
-    const lar_condition_context *moved = &p->worker[to].context;
-    *parcel = (lar_parcel){.batch = batch_waited_for(schedule, from, to)};
-    for (lar_lid n = moved->first; n < moved->end; n++)
-        parcel->count += use->adds[n] >> from & 1 && !use->replaced[n];
-    if (parcel->count > 0 && parcel->batch < 0)
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "the schedule of processor %d lets thread %d move nodes without waiting "
-                        "for thread %d, which has elements there; make the schedules anew with "
-                        "lariat partition",
-                        (int)p->self, (int)to, (int)from);
-    parcel->value = lar_calloc((size_t)parcel->count, sizeof *parcel->value);
-    parcel->vector = lar_calloc_aligned(3 * (size_t)parcel->count, sizeof *parcel->vector);
-    if (!parcel->value || !parcel->vector)
-        return lar_fail_memory(error, 28 * (size_t)parcel->count, "sums between threads");
-    int32_t count = 0;
-    for (lar_lid n = moved->first; n < moved->end; n++)
-        if (use->adds[n] >> from & 1 && !use->replaced[n]) parcel->value[count++] = 4 * n;
-    return LAR_OK;
-}
-
-/* What the threads have to do with each other's nodes. */
-static lar_status join_worker(const lar_schedule *schedule, const node_use *use, int32_t thread,
-                              lar_processor *p, lar_error *error) {
-    lar_worker *worker = &p->worker[thread];
-    const lar_condition_context *own = &worker->context;
-    size_t nodes = (size_t)p->domain.layout.node_padded;
-    worker->parcel = lar_calloc((size_t)p->thread_count, sizeof *worker->parcel);
-    worker->joint = lar_calloc(nodes, sizeof *worker->joint);
-    worker->foreign = lar_calloc(nodes, sizeof *worker->foreign);
-    if (!worker->parcel || !worker->joint || !worker->foreign)
-        return lar_fail_memory(error, 8 * nodes, "sums between threads");
-    for (lar_lid n = 0; n < (lar_lid)nodes; n++) {
-        bool moved = n >= own->first && n < own->end;
-        if (moved && use->replaced[n] && use->adds[n] & ~(1u << thread))
-            worker->joint[worker->joint_count++] = 4 * n;
-        if (!moved && use->reads[n] >> thread & 1) worker->foreign[worker->foreign_count++] = 4 * n;
-    }
-    lar_status status = LAR_OK;
-    for (int32_t to = 0; to < p->thread_count && !status; to++) {
-        worker->parcel[to].batch = -1;
-        if (to != thread) status = create_parcel(schedule, use, thread, to, p, error);
-    }
-    return status;
-}
-
 /* Thread 0 has the processor's state; the others see its u and v and have forces of their own. */
 static lar_status create_state(lar_processor *p, lar_worker *worker, lar_error *error) {
     int32_t nodes = p->domain.layout.node_padded;
@@ -285,16 +179,12 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
 static lar_status create_workers(const lar_schedule *schedule, const lar_processor_setting *setting,
                                  const assignment *a, lar_processor *p, lar_error *error) {
     size_t bytes = (size_t)p->thread_count * sizeof *p->worker;
-    node_use use = {0};
     p->worker = lar_calloc_aligned((size_t)p->thread_count, sizeof *p->worker);
     if (!p->worker) return lar_fail_memory(error, bytes, "the threads of a processor");
-    lar_status status = find_use(schedule, a, p, &use, error);
+    lar_status status = LAR_OK;
     for (int32_t t = 0; t < p->thread_count && !status; t++)
         status = create_worker(schedule, setting, a, t, p, error);
-    for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = join_worker(schedule, &use, t, p, error);
-    clear_use(&use);
-    return status;
+    return status ? status : lar_parcels_create(schedule, a->thread, p, error);
 }
 
 /* ---- the processor ------------------------------------------------------------------------ */
@@ -323,13 +213,7 @@ void lar_processor_destroy(lar_processor *p) {
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
         lar_conditions_destroy(&worker->conditions);
-        for (int32_t to = 0; worker->parcel && to < p->thread_count; to++) {
-            free(worker->parcel[to].value);
-            free(worker->parcel[to].vector);
-        }
-        free(worker->parcel);
-        free(worker->joint);
-        free(worker->foreign);
+        lar_parcels_destroy(worker);
         free(worker->gather);
         if (t == 0)
             lar_state_destroy(&worker->state);

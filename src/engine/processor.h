@@ -59,8 +59,7 @@ typedef struct lar_worker {
     lar_condition_context context; /* the nodes that it moves */
     lar_parcel *parcel;            /* [threads] for each of them */
     int32_t joint_count;
-    int32_t *joint; /* 4 * local node: moved here, summed by others too, and in no parcel because a
-                       whole force may replace all sums */
+    int32_t *joint; /* 4 * local node: moved here, and summed where it is (parcel.h) */
     int32_t foreign_count;
     int32_t *foreign; /* 4 * local node: read here, moved by others */
     lar_trip trip;
