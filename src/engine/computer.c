@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "base/pin.h"
 #include "engine/identity.h"
 
@@ -113,6 +114,8 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     computer->checking = options->verify != 0;
     computer->identity =
         lar_identity(computer->whole, computer->start, computer->division.schedules.of[0].division);
+    /* Forces are nothing to who expects lists. */
+    computer->identity = lar_hash_word(computer->identity, computer->checking);
     if (computer->checking) status = lar_verification_create(model, &computer->check, error);
     if (!status) status = size_buffers(computer, several, error);
     if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
@@ -237,6 +240,8 @@ static void advance_seat(void *context, int32_t number) {
         if (seat->status) break;
         after_step(computer, worker, number, &tripped);
     }
+    /* Nobody shall wait for this processor; after a verdict this changes nothing. */
+    if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
 }
 
 static lar_status advance_here(lar_computer *computer, uint64_t until, lar_error *error) {
