@@ -1,11 +1,36 @@
 /* lariat bench comm: how fast processors can talk on this machine. */
+#include <stddef.h>
 #include <stdio.h>
 
 #include "cli/commands.h"
 #include "cli/json.h"
 #include "study/bench_comm.h"
 
-static void write_row(json_writer *json, const lar_bench_comm_row *row) {
+/* One size of packet. */
+static void write_figures(json_writer *json, const lar_bench_comm_figures *at) {
+    json_number(json, "half_duplex_mb_s", at->half_duplex);
+    json_number(json, "full_duplex_mb_s", at->full_duplex);
+    json_number(json, "send_ns", at->send);
+    json_number(json, "receive_ns", at->receive);
+    json_number(json, "delay_ns", at->delay);
+    json_number(json, "slowdown", at->slowdown);
+}
+
+static void write_sizes(json_writer *json, const lar_bench_comm_result *r,
+                        const lar_bench_comm_row *row) {
+    json_open(json, "sizes", '[');
+    for (int i = 0; i < r->sizes; i++) {
+        json_open(json, NULL, '{');
+        json_integer(json, "bytes", r->size[i]);
+        json_number(json, "latency_ns", row->at[i].latency);
+        write_figures(json, &row->at[i]);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void write_row(json_writer *json, const lar_bench_comm_result *r,
+                      const lar_bench_comm_row *row) {
     json_open(json, NULL, '{');
     json_text(json, "name", row->name);
     if (row->missing) {
@@ -20,12 +45,11 @@ static void write_row(json_writer *json, const lar_bench_comm_row *row) {
     json_number(json, "max", row->latency.most);
     json_close(json);
     if (row->moves_packets) {
-        json_number(json, "half_duplex_mb_s", row->half_duplex);
-        json_number(json, "full_duplex_mb_s", row->full_duplex);
-        json_number(json, "send_ns", row->send);
-        json_number(json, "receive_ns", row->receive);
+        if (row->over_hand > 0) json_number(json, "over_by_hand", row->over_hand);
+        write_figures(json, &row->at[r->asked]);
         json_number(json, "best_half_duplex_mb_s", row->best_half_duplex);
         json_number(json, "half_bandwidth_bytes", row->half_bandwidth_bytes);
+        write_sizes(json, r, row);
     }
     json_close(json);
 }
@@ -37,24 +61,26 @@ static void write_json(const lar_bench_comm_result *r) {
     json_open(&json, "cores", '[');
     for (int i = 0; i < 2; i++) json_integer(&json, NULL, r->cores[i]);
     json_close(&json);
+    json_number(&json, "portion_ns", r->portion);
     json_open(&json, "rows", '[');
-    for (int i = 0; i < r->rows; i++) write_row(&json, &r->row[i]);
+    for (int i = 0; i < r->rows; i++) write_row(&json, r, &r->row[i]);
     json_end(&json);
 }
 
-static void print_table(const lar_bench_comm_result *r) {
+static void print_summary(const lar_bench_comm_result *r) {
     printf("packets of %d bytes, two ends on ", (int)r->bytes);
     if (r->cores[0] >= 0)
         printf("cores %d and %d", r->cores[0], r->cores[1]);
     else
         printf("one core");
     printf(", median of %d samples\n\n", r->repeat);
-    printf("%-13s %21s %11s %11s %8s %8s %9s\n", "", "latency one way", "half duplex",
-           "full duplex", "send", "receive", "half size");
-    printf("%-13s %21s %11s %11s %8s %8s %9s\n", "", "us (least to most)", "MB/s", "MB/s", "us",
-           "us", "bytes");
+    printf("%-13s %21s %8s %11s %11s %7s %7s %7s %9s\n", "", "latency one way", "times", "half",
+           "full duplex", "send", "receive", "delay", "half size");
+    printf("%-13s %21s %8s %11s %11s %7s %7s %7s %9s\n", "", "us (least to most)", "by hand",
+           "MB/s", "MB/s", "us", "us", "us", "bytes");
     for (int i = 0; i < r->rows; i++) {
         const lar_bench_comm_row *row = &r->row[i];
+        const lar_bench_comm_figures *at = &row->at[r->asked];
         if (row->missing) {
             printf("%-13s missing: %s\n", row->name, row->missing);
             continue;
@@ -62,27 +88,69 @@ static void print_table(const lar_bench_comm_result *r) {
         printf("%-13s %6.3f (%.3f to %.3f)", row->name, 1e-3 * row->latency.median,
                1e-3 * row->latency.least, 1e-3 * row->latency.most);
         if (row->moves_packets)
-            printf(" %10.0f %11.0f %8.3f %8.3f %9.0f", row->half_duplex, row->full_duplex,
-                   1e-3 * row->send, 1e-3 * row->receive, row->half_bandwidth_bytes);
+            printf(" %8.2f %11.0f %11.0f %7.3f %7.3f %7.3f %9.0f", row->over_hand, at->half_duplex,
+                   at->full_duplex, 1e-3 * at->send, 1e-3 * at->receive, 1e-3 * at->delay,
+                   row->half_bandwidth_bytes);
         printf("\n");
     }
-    printf("\nhalf size: the packet that reaches half of the best half-duplex bandwidth\n");
+    printf("\nhalf size: the packet that reaches half of the best half-duplex bandwidth\n"
+           "delay: of a computation of %.0f us by a packet that goes and one that comes\n",
+           1e-3 * r->portion);
+}
+
+/* A figure over the size of packets, all ways side by side. */
+static void print_curves(const lar_bench_comm_result *r, const char *title, double scale,
+                         size_t offset) {
+    printf("\n%s\n%7s", title, "bytes");
+    for (int i = 0; i < r->rows; i++)
+        if (r->row[i].moves_packets) printf(" %9s", r->row[i].name);
+    printf("\n");
+    for (int size = 0; size < r->sizes; size++) {
+        printf("%7d", (int)r->size[size]);
+        for (int i = 0; i < r->rows; i++) {
+            if (!r->row[i].moves_packets) continue;
+            const char *figures = (const char *)&r->row[i].at[size];
+            double value = scale * *(const double *)(const void *)(figures + offset);
+            printf(" %9.*f", value >= 1000 ? 0 : 3, value);
+        }
+        printf("\n");
+    }
+}
+
+static void print_table(const lar_bench_comm_result *r) {
+    print_summary(r);
+    print_curves(r, "latency one way [us]", 1e-3, offsetof(lar_bench_comm_figures, latency));
+    print_curves(r, "half duplex [MB/s]", 1, offsetof(lar_bench_comm_figures, half_duplex));
+    print_curves(r, "full duplex, both directions together [MB/s]", 1,
+                 offsetof(lar_bench_comm_figures, full_duplex));
+    print_curves(r, "time in send [us]", 1e-3, offsetof(lar_bench_comm_figures, send));
+    print_curves(r, "time in receive, the packet being there [us]", 1e-3,
+                 offsetof(lar_bench_comm_figures, receive));
+    print_curves(r, "slow-down of the computation [%]", 100,
+                 offsetof(lar_bench_comm_figures, slowdown));
 }
 
 static int comm_main(int argc, char **argv) {
     int64_t bytes = 424, repeat = 15;
-    bool json = false;
+    const char *backends = NULL;
+    bool json = false, quick = false;
     const cli_option options[] = {
         CLI_COUNT("--bytes", "N", "of a packet (424)", &bytes, 1, LAR_BENCH_COMM_BYTES_MOST),
         CLI_COUNT("--repeat", "N", "samples (15)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
-        CLI_FLAG("--json", "one JSON object on standard output", &json), CLI_END};
+        CLI_TEXT("--backend", "NAMES", "only these, as in shm,tcp (all)", &backends),
+        CLI_FLAG("--quick", "does it work? few sizes, short samples", &quick),
+        CLI_FLAG("--json", "one JSON object on standard output", &json),
+        CLI_END};
     int status = cli_parse(&cli_bench_comm, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
-    lar_bench_comm_options wanted = {.bytes = (int32_t)bytes, .repeat = (int)repeat};
+    lar_bench_comm_options wanted = {
+        .bytes = (int32_t)bytes, .repeat = (int)repeat, .backends = backends, .quick = quick};
     lar_bench_comm_result result;
     lar_error error;
     if (lar_bench_comm(&wanted, &result, &error))
-        return cli_complain(&cli_bench_comm, CLI_FAILED, "%s", error.message);
+        return cli_complain(&cli_bench_comm,
+                            error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED, "%s",
+                            error.message);
     if (result.rows == 0) return CLI_DONE; /* the other process tells */
     if (json)
         write_json(&result);
@@ -98,9 +166,11 @@ const cli_command cli_bench_comm = {
     .description =
         "Sends packets between two ends on two cores of this machine, by every backend, and "
         "beside\n"
-        "them by a hand-written copy and poll and by a single word from core to core. Samples of\n"
-        "all take turns; medians count. For quiet figures run nothing else on the machine.",
+        "them by a hand-written copy and poll and by a single word from core to core; and "
+        "computes\n"
+        "while they travel. Samples of all take turns; medians count. For quiet figures run "
+        "nothing else on the machine.",
     .examples = "  lariat bench comm\n"
                 "  mpirun -n 2 lariat bench comm\n"
-                "  lariat bench comm --bytes 1000 --json\n",
+                "  lariat bench comm --backend shm,tcp --bytes 1000 --json\n",
     .main = comm_main};

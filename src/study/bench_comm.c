@@ -1,282 +1,210 @@
 #include "study/bench_comm.h"
 
-#include <pthread.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/memory.h"
-#include "comm/comm.h"
-#include "comm/job.h"
+#include "study/comm_pair.h"
 
-enum { BLOCK_BYTES = 65536, BLOCK_MOST = 64, HALF_BYTES = BLOCK_BYTES + 8 * BLOCK_MOST + 64 };
-static const double SAMPLE_TIME = 2e-3; /* [s] at least */
+static const double SAMPLE_TIME = 2e-3, SHORT_TIME = 1e-4; /* [s] at least */
+static const double PORTION = 20e-6;                       /* of computation [s] */
+enum { COMPUTED = 2048 /* doubles: half of a first-level cache */ };
 
-static double now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
-}
+/* What is measured, in the order in which samples lie. */
+typedef enum figure { LATENCY, HALF_DUPLEX, FULL_DUPLEX, SEND, RECEIVE, DELAY, FIGURES } figure;
 
-/* ---- two ends and what is between them ----------------------------------------------------- */
-
-typedef enum pair_kind { PAIR_WORD, PAIR_HAND, PAIR_COMM } pair_kind;
-
-typedef struct pair {
-    pair_kind kind;
-    const char *backend;
-    lar_comm *comm[2];
-    lar_comm_team *team;
-    int listener;
-    char master[LAR_COMM_ADDRESS_TEXT];
-    unsigned char *buffer[2]; /* by hand: two halves each */
-    uint64_t *word;           /* the word of the core-to-core probe, 64 bytes from its neighbours */
-    uint64_t step[2];         /* of each end */
-    uint64_t arrived;         /* atomic: the step whose packets lie there (time in receive) */
-    unsigned char *payload;
-    lar_comm_job *launched; /* the ends are processes of mpirun, one is here; else NULL: both are */
-} pair;
-
-/* A job is done by both ends; end 0 measures. */
-typedef struct job {
-    pair *with;
-    lar_status (*run)(struct job *job, int end, lar_error *error);
-    const int *cores;
-    size_t bytes;
-    int packets; /* of a block */
-    uint64_t rounds;
-    double seconds, send, receive; /* of all rounds */
-    lar_status status[2];
-    lar_error error[2];
-} job;
-
-static void bind_to(int core) {
-    cpu_set_t one;
-    if (core < 0) return;
-    CPU_ZERO(&one);
-    CPU_SET(core, &one);
-    sched_setaffinity(0, sizeof one, &one);
-}
-
-static void *other_end(void *context) {
-    job *j = context;
-    bind_to(j->cores[1]);
-    j->status[1] = j->run(j, 1, &j->error[1]);
-    return NULL;
-}
-
-static lar_status run_both(job *j, lar_error *error) {
-    pthread_t thread;
-    if (j->with->launched) return j->run(j, j->with->launched->self, error);
-    if (pthread_create(&thread, NULL, other_end, j) != 0)
-        return lar_fail(error, LAR_ERROR_MEMORY,
-                        "no second thread could be started; raise the "
-                        "limit on threads");
-    j->status[0] = j->run(j, 0, &j->error[0]);
-    pthread_join(thread, NULL);
-    for (int end = 0; end < 2; end++) {
-        if (!j->status[end]) continue;
-        if (error) *error = j->error[end];
-        return j->status[end];
-    }
-    return LAR_OK;
-}
-
-/* ---- put and wait -------------------------------------------------------------------------- */
-
-static uint64_t *tail_at(unsigned char *buffer, size_t offset, size_t bytes, uint64_t step) {
-    return (uint64_t *)(void *)(buffer + (step & 1 ? HALF_BYTES : 0) + offset +
-                                lar_comm_padded(bytes));
-}
-
-/* Polls; yields only when the other end seems to wait for this very core. */
-static void poll_for(const uint64_t *word, uint64_t value) {
-    for (int polls = 1; __atomic_load_n(word, __ATOMIC_ACQUIRE) != value; polls++) {
-        if (polls % 10000 == 0) sched_yield();
-#if defined(__x86_64__)
-        __builtin_ia32_pause(); /* two threads of one core: leave it to the other */
-#endif
-    }
-}
-
-static lar_status put(pair *p, int end, size_t offset, size_t bytes, lar_error *error) {
-    uint64_t step = p->step[end];
-    if (p->kind == PAIR_COMM)
-        return lar_comm_put(p->comm[end], 1 - end, offset, p->payload, bytes, step, error);
-    if (p->kind == PAIR_HAND) {
-        unsigned char *there = p->buffer[1 - end];
-        memcpy(there + (step & 1 ? HALF_BYTES : 0) + offset, p->payload, bytes);
-        __atomic_store_n(tail_at(there, offset, bytes, step), step, __ATOMIC_RELEASE);
-    } else {
-        __atomic_store_n(p->word, 2 * step + (uint64_t)end, __ATOMIC_RELEASE);
-    }
-    return LAR_OK;
-}
-
-static lar_status await(pair *p, int end, size_t offset, size_t bytes, lar_error *error) {
-    uint64_t step = p->step[end];
-    if (p->kind == PAIR_COMM)
-        return lar_comm_wait(p->comm[end], 1 - end, offset, bytes, step, NULL, error);
-    if (p->kind == PAIR_HAND)
-        poll_for(tail_at(p->buffer[end], offset, bytes, step), step);
-    else
-        poll_for(p->word, 2 * step + (uint64_t)(1 - end));
-    return LAR_OK;
-}
-
-static lar_status put_block(job *j, int end, lar_error *error) {
-    lar_status status = LAR_OK;
-    size_t each = lar_comm_packet_bytes(j->bytes);
-    for (int i = 0; i < j->packets && !status; i++)
-        status = put(j->with, end, (size_t)i * each, j->bytes, error);
-    return status;
-}
-
-static lar_status await_block(job *j, int end, lar_error *error) {
-    lar_status status = LAR_OK;
-    size_t each = lar_comm_packet_bytes(j->bytes);
-    for (int i = 0; i < j->packets && !status; i++)
-        status = await(j->with, end, (size_t)i * each, j->bytes, error);
-    return status;
-}
+typedef struct bench {
+    const lar_bench_comm_options *options;
+    lar_bench_comm_result *result;
+    lar_comm_job *launched; /* or NULL */
+    lar_pair pairs[LAR_BENCH_COMM_ROWS];
+    uint64_t latency_rounds[LAR_BENCH_COMM_ROWS];
+    double *samples; /* [rows][sizes][FIGURES][repeat] */
+    double *numbers; /* [COMPUTED] */
+    int sweeps;      /* of a portion */
+    uint64_t portions;
+} bench;
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
 
 /* There and back, the whole block. Blocks of one packet: latency. The first round, before the clock
  * starts, waits until the other thread runs. */
-static lar_status half_duplex(job *j, int end, lar_error *error) {
+static lar_status half_duplex(lar_pair_job *j, int end, lar_error *error) {
     lar_status status = LAR_OK;
     double begin = 0;
     for (uint64_t i = 0; i <= j->rounds && !status; i++) {
         j->with->step[end]++;
-        if (end == 0) status = put_block(j, end, error);
-        if (!status) status = await_block(j, end, error);
-        if (end == 1 && !status) status = put_block(j, end, error);
-        if (i == 0) begin = now();
+        if (end == 0) status = lar_pair_put(j, end, error);
+        if (!status) status = lar_pair_await(j, end, error);
+        if (end == 1 && !status) status = lar_pair_put(j, end, error);
+        if (i == 0) begin = lar_pair_now();
     }
-    if (end == 0) j->seconds = now() - begin;
+    if (end == 0) j->seconds = lar_pair_now() - begin;
     return status;
 }
 
-static lar_status full_duplex(job *j, int end, lar_error *error) {
+static lar_status full_duplex(lar_pair_job *j, int end, lar_error *error) {
     lar_status status = LAR_OK;
     double begin = 0, sending = 0;
     for (uint64_t i = 0; i <= j->rounds && !status; i++) {
         j->with->step[end]++;
-        double before = now();
-        status = put_block(j, end, error);
-        if (i > 0) sending += now() - before;
-        if (!status) status = await_block(j, end, error);
-        if (i == 0) begin = now();
+        double before = lar_pair_now();
+        status = lar_pair_put(j, end, error);
+        if (i > 0) sending += lar_pair_now() - before;
+        if (!status) status = lar_pair_await(j, end, error);
+        if (i == 0) begin = lar_pair_now();
     }
     if (end == 0) {
-        j->seconds = now() - begin;
-        j->send = sending;
+        j->seconds = lar_pair_now() - begin;
+        j->part = sending;
     }
     return status;
 }
 
 /* Receives what has arrived already. A network needs a moment more than the sender's last put. */
-static lar_status late_receive(job *j, int end, lar_error *error) {
-    pair *p = j->with;
+static lar_status late_receive(lar_pair_job *j, int end, lar_error *error) {
+    lar_pair *p = j->with;
     lar_status status = LAR_OK;
     double receiving = 0;
     for (uint64_t i = 0; i < j->rounds && !status; i++) {
         p->step[end]++;
-        status = put_block(j, end, error);
+        status = lar_pair_put(j, end, error);
         if (end == 1) {
             __atomic_store_n(&p->arrived, p->step[end], __ATOMIC_RELEASE);
-            if (!status) status = await_block(j, end, error);
+            if (!status) status = lar_pair_await(j, end, error);
             continue;
         }
-        double until = now() + (p->launched ? 200e-6 : 1); /* another process has another word */
-        while (__atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[end] && now() < until)
+        double until = lar_pair_now() + (p->launched ? 200e-6 : 1); /* a process: another word */
+        while (__atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[end] &&
+               lar_pair_now() < until)
             sched_yield();
-        for (double moment = now() + 50e-6; now() < moment;) continue;
-        double before = now();
-        if (!status) status = await_block(j, end, error);
-        receiving += now() - before;
+        for (double moment = lar_pair_now() + 50e-6; lar_pair_now() < moment;) continue;
+        double before = lar_pair_now();
+        if (!status) status = lar_pair_await(j, end, error);
+        receiving += lar_pair_now() - before;
     }
-    if (end == 0) j->receive = j->seconds = receiving;
+    if (end == 0) j->part = receiving;
     return status;
 }
 
-/* Under mpirun: the other end learns how long it took, and so decides the same. */
-static lar_status share_time(job *j, lar_error *error) {
-    pair *p = j->with;
-    int end = p->launched->self;
-    uint64_t step = ++p->step[end];
-    const void *seconds;
-    if (end == 0) {
-        lar_status status =
-            lar_comm_put(p->comm[0], 1, 0, &j->seconds, sizeof j->seconds, step, error);
-        return status ? status : lar_comm_wait(p->comm[0], 1, 0, 0, step, NULL, error);
+static void compute(const bench *b) {
+    double *x = b->numbers;
+    for (int sweep = 0; sweep < b->sweeps; sweep++)
+        for (int i = 0; i < COMPUTED; i++) x[i] = x[i] * 0.75 + 0.25;
+}
+
+/* End 0 computes, end 1 polls, whether there are packets or not. */
+static lar_status computing(lar_pair_job *j, int end, lar_error *error) {
+    lar_pair *p = j->with;
+    lar_status status = LAR_OK;
+    double begin = 0;
+    for (uint64_t i = 0; i <= j->rounds && !status; i++) {
+        p->step[end]++;
+        status = lar_pair_put(j, end, error);
+        if (end == 0) compute(j->context);
+        if (!status) status = lar_pair_await(j, end, error);
+        if (i == 0) begin = lar_pair_now();
     }
-    lar_status status = lar_comm_wait(p->comm[1], 0, 0, sizeof j->seconds, step, &seconds, error);
+    if (end == 0) j->seconds = lar_pair_now() - begin;
+    if (end == 0) __atomic_store_n(&p->arrived, p->step[0], __ATOMIC_RELEASE);
+    while (!p->launched && end == 1 && __atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[1])
+        sched_yield();
+    return status;
+}
+
+/* ---- samples --------------------------------------------------------------------------------- */
+
+static double *samples_of(const bench *b, int row, int size, figure what) {
+    const lar_bench_comm_result *r = b->result;
+    return b->samples +
+           (((size_t)row * (size_t)r->sizes + (size_t)size) * FIGURES + what) * (size_t)r->repeat;
+}
+
+static double sample_time(const bench *b) {
+    return b->options->quick ? SHORT_TIME : SAMPLE_TIME;
+}
+
+static int packets_of(size_t bytes) {
+    size_t packets = LAR_PAIR_BLOCK_BYTES / lar_comm_packet_bytes(bytes);
+    return packets > LAR_PAIR_BLOCK_MOST ? LAR_PAIR_BLOCK_MOST : (int)packets;
+}
+
+static lar_status take_latency(bench *b, int row, int size, int k, lar_error *error) {
+    lar_pair_job j = {.with = &b->pairs[row],
+                      .run = half_duplex,
+                      .cores = b->result->cores,
+                      .bytes = (size_t)b->result->size[size],
+                      .packets = 1};
+    lar_status status = lar_pair_measure(&j, sample_time(b), &b->latency_rounds[row], error);
+    samples_of(b, row, size, LATENCY)[k] = 0.5e9 * j.seconds / (double)j.rounds;
+    return status;
+}
+
+static lar_status take_blocks(bench *b, int row, int size, int k, lar_error *error) {
+    size_t bytes = (size_t)b->result->size[size];
+    uint64_t rounds = 4;
+    lar_pair_job j = {.with = &b->pairs[row],
+                      .run = half_duplex,
+                      .cores = b->result->cores,
+                      .bytes = bytes,
+                      .packets = packets_of(bytes)};
+    lar_status status = lar_pair_measure(&j, sample_time(b), &rounds, error);
     if (status) return status;
-    memcpy(&j->seconds, seconds, sizeof j->seconds);
-    return lar_comm_put(p->comm[1], 0, 0, NULL, 0, step, error);
+    double packets = (double)j.packets * (double)j.rounds;
+    samples_of(b, row, size, HALF_DUPLEX)[k] = 2e-6 * (double)bytes * packets / j.seconds;
+    j.run = full_duplex;
+    if ((status = lar_pair_measure(&j, sample_time(b), &rounds, error))) return status;
+    packets = (double)j.packets * (double)j.rounds;
+    samples_of(b, row, size, FULL_DUPLEX)[k] = 2e-6 * (double)bytes * packets / j.seconds;
+    samples_of(b, row, size, SEND)[k] = 1e9 * j.part / packets;
+    j.run = late_receive;
+    j.rounds = b->options->quick ? 2 : 20;
+    status = lar_pair_run(&j, error);
+    samples_of(b, row, size, RECEIVE)[k] = 1e9 * j.part / ((double)j.packets * (double)j.rounds);
+    return status;
 }
 
-/* Repeats with more rounds until a sample is long enough. *rounds is where to begin and what was
- * found. */
-static lar_status measure(job *j, uint64_t *rounds, lar_error *error) {
-    for (;;) {
-        j->rounds = *rounds;
-        lar_status status = run_both(j, error);
-        if (!status && j->with->launched) status = share_time(j, error);
-        if (status || j->seconds >= SAMPLE_TIME || *rounds >= 1 << 20) return status;
-        *rounds *= 2;
-    }
+static lar_status take_delay(bench *b, int row, int size, int k, lar_error *error) {
+    lar_pair_job j = {.with = &b->pairs[row],
+                      .run = computing,
+                      .cores = b->result->cores,
+                      .bytes = (size_t)b->result->size[size],
+                      .rounds = b->portions,
+                      .context = b};
+    lar_status status = lar_pair_run(&j, error);
+    double alone = j.seconds;
+    j.packets = 1;
+    if (!status) status = lar_pair_run(&j, error);
+    samples_of(b, row, size, DELAY)[k] = 1e9 * (j.seconds - alone) / (double)j.rounds;
+    return status;
 }
 
-/* ---- opening and closing -------------------------------------------------------------------- */
-
-static lar_status open_end(job *j, int end, lar_error *error) {
-    pair *p = j->with;
-    lar_comm_options o = lar_comm_options_default();
-    o.backend = p->backend;
-    o.self = end;
-    o.count = 2;
-    o.receive_bytes = HALF_BYTES;
-    o.team = p->team;
-    o.master = p->master;
-    if (end == 0) o.listener = p->listener;
-    lar_status status = p->launched ? lar_comm_job_meet(p->launched, &o, error) : LAR_OK;
-    return status ? status : lar_comm_open(&o, &p->comm[end], error);
+/* All rows in turns; k = -1 finds the rounds and warms up. */
+static lar_status take_turn(bench *b, int size, int k, lar_error *error) {
+    const lar_bench_comm_result *r = b->result;
+    lar_status status = LAR_OK;
+    for (int i = 0; i < r->rows && !status; i++)
+        if (!r->row[i].missing) status = take_latency(b, i, size, k < 0 ? 0 : k, error);
+    for (int i = 0; i < r->rows && !status && k >= 0; i++)
+        if (r->row[i].moves_packets) status = take_blocks(b, i, size, k, error);
+    for (int i = 0; i < r->rows && !status && k >= 0; i++)
+        if (r->row[i].moves_packets) status = take_delay(b, i, size, k, error);
+    return status;
 }
 
-/* Both at once: each waits for the other's goodbye. */
-static lar_status close_end(job *j, int end, lar_error *error) {
-    (void)error;
-    lar_comm_close(j->with->comm[end]);
-    j->with->comm[end] = NULL;
-    return LAR_OK;
+static int samples_at(const bench *b, int size) {
+    const lar_bench_comm_result *r = b->result;
+    return size == r->asked ? r->repeat : (r->repeat + 2) / 3;
 }
 
-static lar_status open_pair(pair *p, const int cores[2], lar_error *error) {
-    p->payload = lar_calloc_aligned(LAR_BENCH_COMM_BYTES_MOST, 1);
-    p->word = lar_calloc_aligned(64, 1);
-    for (int end = 0; end < 2; end++) p->buffer[end] = lar_calloc_aligned(2 * HALF_BYTES, 1);
-    if (!p->payload || !p->word || !p->buffer[0] || !p->buffer[1])
-        return lar_fail_memory(error, 4 * HALF_BYTES, "the benchmark's buffers");
-    if (p->kind != PAIR_COMM) return LAR_OK;
-    lar_status status = p->launched ? LAR_OK
-                        : strcmp(p->backend, "threads") == 0
-                            ? lar_comm_team_create(2, &p->team, error)
-                            : lar_comm_listen("127.0.0.1:0", &p->listener, p->master, error);
-    job j = {.with = p, .run = open_end, .cores = cores};
-    return status ? status : run_both(&j, error);
-}
-
-static void close_pair(pair *p, const int cores[2]) {
-    job j = {.with = p, .run = close_end, .cores = cores};
-    if (p->comm[0] || p->comm[1]) run_both(&j, NULL);
-    lar_comm_team_destroy(p->team);
-    for (int end = 0; end < 2; end++) free(p->buffer[end]);
-    free(p->word);
-    free(p->payload);
+static lar_status take_samples(bench *b, lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int i = 0; i < LAR_BENCH_COMM_ROWS; i++) b->latency_rounds[i] = 16;
+    for (int size = 0; size < b->result->sizes; size++)
+        for (int k = -1; k < samples_at(b, size) && !status; k++)
+            status = take_turn(b, size, k, error);
+    return status;
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -291,114 +219,126 @@ static lar_spread spread_of(double *samples, int count) {
     return (lar_spread){samples[0], samples[count / 2], samples[count - 1]};
 }
 
-static int packets_of(size_t bytes) {
-    size_t packets = BLOCK_BYTES / lar_comm_packet_bytes(bytes);
-    return packets > BLOCK_MOST ? BLOCK_MOST : (int)packets;
-}
-
-/* [MB/s] of blocks of packets of this size. */
-static lar_status bandwidth(pair *p, const int cores[2], size_t bytes, double *half,
-                            lar_error *error) {
-    uint64_t rounds = 4;
-    job j = {.with = p,
-             .run = half_duplex,
-             .cores = cores,
-             .bytes = bytes,
-             .packets = packets_of(bytes)};
-    lar_status status = measure(&j, &rounds, error);
-    *half = 2e-6 * (double)bytes * j.packets * (double)j.rounds / j.seconds;
-    return status;
-}
-
 /* The least size, between those tried, that reaches half of the best bandwidth. */
-static lar_status find_half_bandwidth(pair *p, const int cores[2], lar_bench_comm_row *row,
-                                      lar_error *error) {
-    enum { SIZES = 12 };
-    double speed[SIZES], best = 0;
-    for (int i = 0; i < SIZES; i++) {
-        lar_status status = bandwidth(p, cores, (size_t)8 << i, &speed[i], error);
-        if (status) return status;
-        if (speed[i] > best) best = speed[i];
-    }
+static void find_half_bandwidth(const lar_bench_comm_result *r, lar_bench_comm_row *row) {
+    double best = 0;
+    for (int i = 0; i < r->sizes; i++)
+        if (row->at[i].half_duplex > best) best = row->at[i].half_duplex;
     int i = 0;
-    while (speed[i] < 0.5 * best) i++;
+    while (row->at[i].half_duplex < 0.5 * best) i++;
     row->best_half_duplex = best;
-    row->half_bandwidth_bytes = (double)(8 << i);
-    if (i > 0)
-        row->half_bandwidth_bytes =
-            (8 << (i - 1)) * (1 + (0.5 * best - speed[i - 1]) / (speed[i] - speed[i - 1]));
-    return LAR_OK;
+    row->half_bandwidth_bytes = (double)r->size[i];
+    if (i == 0) return;
+    double below = row->at[i - 1].half_duplex, above = row->at[i].half_duplex;
+    row->half_bandwidth_bytes =
+        r->size[i - 1] + (r->size[i] - r->size[i - 1]) * (0.5 * best - below) / (above - below);
 }
 
-static lar_status fill_row(pair *p, const int cores[2], size_t bytes, lar_bench_comm_row *row,
-                           lar_error *error) {
-    uint64_t rounds = 4;
-    row->moves_packets = p->kind != PAIR_WORD;
-    if (!row->moves_packets) return LAR_OK;
-    lar_status status = bandwidth(p, cores, bytes, &row->half_duplex, error);
-    job j = {.with = p,
-             .run = full_duplex,
-             .cores = cores,
-             .bytes = bytes,
-             .packets = packets_of(bytes)};
-    if (!status) status = measure(&j, &rounds, error);
-    if (status) return status;
-    double packets = (double)j.packets * (double)j.rounds;
-    row->full_duplex = 2e-6 * (double)bytes * packets / j.seconds;
-    row->send = 1e9 * j.send / packets;
-    j.run = late_receive;
-    j.rounds = 50;
-    status = run_both(&j, error);
-    row->receive = 1e9 * j.receive / ((double)j.packets * (double)j.rounds);
-    return status ? status : find_half_bandwidth(p, cores, row, error);
+/* Before samples are sorted: turn by turn. */
+static void compare_with_hand(bench *b, int hand, int row, double *scratch) {
+    const lar_bench_comm_result *r = b->result;
+    const double *own = samples_of(b, row, r->asked, LATENCY);
+    const double *best = samples_of(b, hand, r->asked, LATENCY);
+    for (int k = 0; k < r->repeat; k++) scratch[k] = own[k] / best[k];
+    b->result->row[row].over_hand = spread_of(scratch, r->repeat).median;
 }
 
-/* Latencies of all rows in turns. */
-static lar_status measure_latencies(pair *pairs, lar_bench_comm_result *r, double *samples,
-                                    lar_error *error) {
-    uint64_t rounds[LAR_BENCH_COMM_ROWS];
-    for (int i = 0; i < r->rows; i++) rounds[i] = 16;
-    for (int k = -1; k < r->repeat; k++) /* the first finds the rounds and warms up */
-        for (int i = 0; i < r->rows; i++) {
-            if (r->row[i].missing) continue;
-            job j = {.with = &pairs[i],
-                     .run = half_duplex,
-                     .cores = r->cores,
-                     .bytes = (size_t)r->bytes,
-                     .packets = 1};
-            lar_status status = measure(&j, &rounds[i], error);
-            if (status) return status;
-            if (k >= 0) samples[i * r->repeat + k] = 0.5e9 * j.seconds / (double)j.rounds;
-        }
+static void fill_row(bench *b, int row) {
+    lar_bench_comm_result *r = b->result;
+    lar_bench_comm_row *to = &r->row[row];
+    for (int size = 0; size < r->sizes; size++) {
+        lar_spread of[FIGURES];
+        for (figure what = 0; what < FIGURES; what++)
+            of[what] = spread_of(samples_of(b, row, size, what), samples_at(b, size));
+        if (size == r->asked) to->latency = of[LATENCY];
+        to->at[size] = (lar_bench_comm_figures){.latency = of[LATENCY].median,
+                                                .half_duplex = of[HALF_DUPLEX].median,
+                                                .full_duplex = of[FULL_DUPLEX].median,
+                                                .send = of[SEND].median,
+                                                .receive = of[RECEIVE].median,
+                                                .delay = of[DELAY].median,
+                                                .slowdown = of[DELAY].median / r->portion};
+    }
+    if (to->moves_packets) find_half_bandwidth(r, to);
+}
+
+static lar_status fill_rows(bench *b, lar_error *error) {
+    lar_bench_comm_result *r = b->result;
+    double *scratch = lar_calloc((size_t)r->repeat, sizeof *scratch);
+    if (!scratch) return lar_fail_memory(error, (size_t)r->repeat * sizeof *scratch, "samples");
+    for (int hand = 0; hand < r->rows; hand++)
+        for (int i = 0; b->pairs[hand].kind == LAR_PAIR_HAND && i < r->rows; i++)
+            if (r->row[i].moves_packets) compare_with_hand(b, hand, i, scratch);
+    free(scratch);
     for (int i = 0; i < r->rows; i++)
-        if (!r->row[i].missing) r->row[i].latency = spread_of(samples + i * r->repeat, r->repeat);
+        if (!r->row[i].missing) fill_row(b, i);
     return LAR_OK;
+}
+
+/* ---- what to measure ------------------------------------------------------------------------ */
+
+static bool name_in_list(const char *name, const char *list) {
+    size_t length = strlen(name);
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0'))
+            return true;
+    return false;
+}
+
+/* Every word of the list must be a backend. */
+static lar_status check_list(const char *list, lar_error *error) {
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        lar_comm_backend_info info;
+        size_t length = strcspn(at, ",");
+        bool found = false;
+        for (int i = 0; !found && lar_comm_backend_list(i, &info); i++)
+            found = strlen(info.name) == length && strncmp(at, info.name, length) == 0;
+        if (!found)
+            return lar_fail(error, LAR_ERROR_ARGUMENT,
+                            "there is no communication backend %.*s; lariat bench comm lists them",
+                            (int)length, at);
+    }
+    return LAR_OK;
+}
+
+static void add_row(bench *b, lar_pair pair, const char *name, const char *missing) {
+    lar_bench_comm_result *r = b->result;
+    if (r->rows == LAR_BENCH_COMM_ROWS) return;
+    b->pairs[r->rows] = pair;
+    r->row[r->rows++] = (lar_bench_comm_row){
+        .name = name, .missing = missing, .moves_packets = !missing && pair.kind != LAR_PAIR_WORD};
 }
 
 /* Under mpirun: what joins processes. */
-static void list_launched_rows(pair *pairs, lar_bench_comm_result *r, lar_comm_job *launched) {
+static void list_rows(bench *b) {
+    const char *only = b->options->backends;
     lar_comm_backend_info info;
-    for (int i = 0; r->rows < LAR_BENCH_COMM_ROWS && lar_comm_backend_list(i, &info); i++) {
-        if (info.missing || info.start == LAR_COMM_BY_TEAM) continue;
-        pairs[r->rows] = (pair){.kind = PAIR_COMM, .backend = info.name, .launched = launched};
-        r->row[r->rows++].name = info.name;
+    if (!b->launched) {
+        add_row(b, (lar_pair){.kind = LAR_PAIR_WORD}, "core to core", NULL);
+        add_row(b, (lar_pair){.kind = LAR_PAIR_HAND}, "by hand", NULL);
+    }
+    for (int i = 0; lar_comm_backend_list(i, &info); i++) {
+        if (only && !name_in_list(info.name, only)) continue;
+        if (b->launched && (info.missing || info.start == LAR_COMM_BY_TEAM)) continue;
+        if (!info.missing && !b->launched && info.start == LAR_COMM_BY_LAUNCHER)
+            info.missing = "mpirun -n 2 lariat bench comm measures it";
+        lar_pair pair = {.kind = LAR_PAIR_COMM,
+                         .backend = info.name,
+                         .start = info.start,
+                         .launched = b->launched};
+        add_row(b, pair, info.name, info.missing);
     }
 }
 
-static void list_rows(pair *pairs, lar_bench_comm_result *r) {
-    lar_comm_backend_info info;
-    pairs[0].kind = PAIR_WORD;
-    r->row[0].name = "core to core";
-    pairs[1].kind = PAIR_HAND;
-    r->row[1].name = "by hand";
-    for (r->rows = 2; r->rows < LAR_BENCH_COMM_ROWS; r->rows++) {
-        if (!lar_comm_backend_list(r->rows - 2, &info)) return;
-        pairs[r->rows].kind = PAIR_COMM;
-        pairs[r->rows].backend = r->row[r->rows].name = info.name;
-        r->row[r->rows].missing = info.missing;
-        if (!info.missing && info.start == LAR_COMM_BY_LAUNCHER)
-            r->row[r->rows].missing = "mpirun -n 2 lariat bench comm measures it";
-    }
+static void list_sizes(const lar_bench_comm_options *options, lar_bench_comm_result *r) {
+    for (int32_t size = 8; size <= LAR_BENCH_COMM_BYTES_MOST; size *= options->quick ? 2048 : 2)
+        r->size[r->sizes++] = size;
+    int at = 0;
+    while (at < r->sizes && r->size[at] < options->bytes) at++;
+    r->asked = at;
+    if (at < r->sizes && r->size[at] == options->bytes) return;
+    memmove(&r->size[at + 1], &r->size[at], (size_t)(r->sizes++ - at) * sizeof r->size[0]);
+    r->size[at] = options->bytes;
 }
 
 static void choose_cores(const cpu_set_t *allowed, int cores[2]) {
@@ -409,29 +349,58 @@ static void choose_cores(const cpu_set_t *allowed, int cores[2]) {
         if (CPU_ISSET(core, allowed)) cores[found++] = core;
 }
 
-static lar_status measure_rows(lar_bench_comm_result *r, lar_comm_job *launched, lar_error *error) {
+/* How many sweeps are a portion; the best of several, because something else may run. */
+static void calibrate(bench *b) {
+    double best = 1;
+    b->portions = b->options->quick ? 5 : 100;
+    b->sweeps = 100;
+    for (int i = 0; i < 10; i++) {
+        double begin = lar_pair_now();
+        compute(b);
+        double time = lar_pair_now() - begin;
+        if (time < best) best = time;
+    }
+    double sweeps = 100 * PORTION / best;
+    b->sweeps = sweeps > 1 ? (int)(sweeps + 0.5) : 1;
+    b->result->portion = 1e9 * best * b->sweeps / 100;
+}
+
+static lar_status measure(bench *b, lar_error *error) {
+    lar_bench_comm_result *r = b->result;
+    size_t samples = (size_t)(r->rows * r->sizes * FIGURES * r->repeat);
+    b->samples = lar_calloc(samples, sizeof *b->samples);
+    b->numbers = lar_calloc_aligned(COMPUTED, sizeof *b->numbers);
+    if (!b->samples || !b->numbers)
+        return lar_fail_memory(error, samples * sizeof *b->samples, "samples");
+    calibrate(b);
+    lar_status status = LAR_OK;
+    for (int i = 0; i < r->rows && !status; i++)
+        if (!r->row[i].missing) status = lar_pair_open(&b->pairs[i], r->cores, error);
+    if (!status) status = take_samples(b, error);
+    if (!status) status = fill_rows(b, error);
+    for (int i = 0; i < r->rows; i++) lar_pair_close(&b->pairs[i], r->cores);
+    return status;
+}
+
+static lar_status measure_bound(const lar_bench_comm_options *options, lar_comm_job *launched,
+                                lar_bench_comm_result *r, lar_error *error) {
+    bench *b = lar_calloc(1, sizeof *b);
+    if (!b) return lar_fail_memory(error, sizeof *b, "the benchmark");
+    b->options = options;
+    b->result = r;
+    b->launched = launched;
     cpu_set_t before;
     CPU_ZERO(&before);
     sched_getaffinity(0, sizeof before, &before);
-    pair pairs[LAR_BENCH_COMM_ROWS] = {{.kind = PAIR_WORD}};
-    if (launched)
-        list_launched_rows(pairs, r, launched);
-    else
-        list_rows(pairs, r);
+    list_sizes(options, r);
+    list_rows(b);
     choose_cores(&before, r->cores);
-    double *samples = lar_calloc((size_t)(r->rows * r->repeat), sizeof *samples);
-    lar_status status =
-        samples ? LAR_OK : lar_fail_memory(error, sizeof *samples * 1000, "samples");
-    bind_to(r->cores[launched ? launched->self : 0]);
-    for (int i = 0; i < r->rows && !status; i++)
-        if (!r->row[i].missing) status = open_pair(&pairs[i], r->cores, error);
-    if (!status) status = measure_latencies(pairs, r, samples, error);
-    for (int i = 0; i < r->rows && !status; i++)
-        if (!r->row[i].missing)
-            status = fill_row(&pairs[i], r->cores, (size_t)r->bytes, &r->row[i], error);
-    for (int i = 0; i < r->rows; i++) close_pair(&pairs[i], r->cores);
+    lar_pair_bind(r->cores[launched ? launched->self : 0]);
+    lar_status status = measure(b, error);
     if (r->cores[0] >= 0) sched_setaffinity(0, sizeof before, &before);
-    free(samples);
+    free(b->samples);
+    free(b->numbers);
+    free(b);
     return status;
 }
 
@@ -443,18 +412,25 @@ lar_status lar_bench_comm(const lar_bench_comm_options *options, lar_bench_comm_
                         "packets of %d bytes, %d samples; take 1 to %d bytes and 1 to %d samples",
                         (int)options->bytes, options->repeat, LAR_BENCH_COMM_BYTES_MOST,
                         LAR_BENCH_REPEAT_MOST);
+    lar_status status = check_list(options->backends, error);
     lar_comm_job launched;
-    lar_status status = lar_comm_job_find(&launched, error);
+    if (!status) status = lar_comm_job_find(&launched, error);
     if (status) return status;
-    lar_bench_comm_result r = {.bytes = options->bytes, .repeat = options->repeat};
-    if (launched.count > 2)
+    lar_bench_comm_result *r = lar_calloc(1, sizeof *r);
+    if (!r) status = lar_fail_memory(error, sizeof *r, "the benchmark");
+    if (!status && launched.count > 2)
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
                           "%d processors; latency is between two: mpirun -n 2 lariat bench comm",
                           (int)launched.count);
-    if (!status) status = measure_rows(&r, launched.count == 2 ? &launched : NULL, error);
-    if (launched.self > 0) r.rows = 0;
+    if (!status) {
+        r->bytes = options->bytes;
+        r->repeat = options->repeat;
+        status = measure_bound(options, launched.count == 2 ? &launched : NULL, r, error);
+        if (launched.self > 0) r->rows = 0;
+    }
     lar_status left = lar_comm_job_end(&launched, status != LAR_OK, status ? NULL : error);
     if (!status) status = left;
-    if (!status) *result = r;
+    if (!status) *result = *r;
+    free(r);
     return status;
 }

@@ -22,13 +22,18 @@ value_of scaled_jacobian_min | awk '{ exit !($1 > 0.999999) }' || fail "boxes ar
 expect 0 "$LARIAT" bench kernel --elements 1 --repeat 1
 says 'of the peak'
 
-expect 0 "$LARIAT" bench comm --repeat 2 --json
-has_keys packet_bytes samples cores rows
-[ "$(grep -c '"latency_ns":' "$SCRATCH/out")" -ge 5 ] || fail "fewer than five ways measured"
-grep '"[a-z_]*_\(ns\|mb_s\|bytes\)":' "$SCRATCH/out" | grep -v '{' |
+expect 0 "$LARIAT" bench comm --quick --repeat 2 --json
+has_keys packet_bytes samples cores portion_ns rows
+[ "$(grep -c '"latency_ns_spread":' "$SCRATCH/out")" -ge 5 ] || fail "fewer than five ways measured"
+[ "$(grep -c '"slowdown":' "$SCRATCH/out")" -ge 16 ] || fail "not every size of every way"
+grep '"[a-z_]*_\(ns\|mb_s\|bytes\|hand\)":' "$SCRATCH/out" | grep -v '{\|"delay_ns"' |
     awk -F': *' '!($2 + 0 > 0) { exit 1 }' || fail "a figure that is not positive"
-expect 0 "$LARIAT" bench comm --repeat 1 --bytes 1
+expect 0 "$LARIAT" bench comm --quick --repeat 1 --bytes 1 --backend tcp,shm
 says 'by hand'
+says 'slow-down of the computation'
+! grep -q 'threads' "$SCRATCH/out" || fail "a backend that was not asked for"
+expect 2 "$LARIAT" bench comm --backend pigeons
+complains 'no communication backend pigeons'
 expect 2 "$LARIAT" bench com
 complains 'did you mean comm'
 expect 2 "$LARIAT" bench comm --bytes 0
