@@ -1,0 +1,149 @@
+#!/bin/sh
+# Processors as processes: the same hash, who is lost is named, nothing stays behind.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+expect 0 "$LARIAT" demo-model demo
+scene=demo/uterus.yaml
+expect 0 "$LARIAT" run $scene --steps 40 --json
+hash=$(value_of state_hash)
+
+# Process K of the run that process PID has started.
+other() {
+    for stat in /proc/[0-9]*/stat; do
+        read -r pid _ _ parent _ 2>/dev/null <"$stat" || continue
+        [ "$parent" = "$1" ] || continue
+        tr '\0' ' ' <"/proc/$pid/cmdline" | grep -q -e "--processor $2 " && echo "$pid"
+    done
+}
+# Nobody runs and nothing of ours is left in shared memory; what another test uses is locked.
+nothing_left() {
+    for pid in "$@"; do
+        for _ in 1 2 3 4 5 6 7 8 9 10; do
+            [ -e "/proc/$pid" ] || break
+            sleep 0.2
+        done
+        [ ! -e "/proc/$pid" ] || fail "process $pid is left"
+    done
+    for object in /dev/shm/lariat-comm-*; do
+        [ -e "$object" ] && command -v flock >/dev/null && flock -n "$object" true &&
+            fail "$object is left"
+    done
+}
+
+comms='shm tcp'
+"$LARIAT" run $scene --steps 1 --grid 1x1x1 --comm ucx >/dev/null 2>&1 && comms="$comms ucx"
+for comm in $comms; do
+    for grid in 2x1x1 3x1x1 2x2x1; do
+        expect 0 "$LARIAT" run $scene --steps 40 --json --grid $grid --comm $comm
+        [ "$(value_of state_hash)$(value_of comm)" = "$hash\"$comm\"" ] ||
+            fail "$comm, $grid: $(value_of state_hash), not $hash"
+        [ ! -s err ] || fail "messages during a good run by $comm"
+    done
+    expect 0 "$LARIAT" verify $scene --grid 2x1x1 --threads 2 --comm $comm --steps 40 --json
+    [ "$(value_of state_hash)" = "$hash" ] || fail "verify by $comm: $(value_of state_hash)"
+done
+
+# One is killed or stopped: every other one says so, in time.
+lose() {
+    signal=$1 comm=$2 victim=$3
+    "$LARIAT" run $scene --steps 100000000 --grid 3x1x1 --comm "$comm" --json >out 2>err &
+    zero=$!
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        one=$(other $zero 1) two=$(other $zero 2)
+        # Its watch runs when it has met the others.
+        [ -n "$one" ] && [ -n "$two" ] && [ "$(ls "/proc/$two/task" 2>/dev/null | wc -l)" -gt 1 ] &&
+            break
+        sleep 0.1
+    done
+    sleep 0.5
+    case $victim in 0) pid=$zero ;; 1) pid=$one ;; 2) pid=$two ;; esac
+    kill "-$signal" "$pid" || fail "no processor $victim to lose"
+    case $signal$victim in
+    STOP0)
+        sleep 2.5
+        for pid in $one $two; do
+            [ ! -e "/proc/$pid" ] || [ "$(cut -d ' ' -f 3 "/proc/$pid/stat")" = Z ] ||
+                fail "process $pid still runs"
+        done
+        kill -CONT $zero
+        ;;
+    esac
+    wait $zero
+    status=$?
+    [ $status -ne 0 ] || fail "success without processor $victim"
+    silent
+    nothing_left "$one" "$two"
+    for who in 0 1 2; do
+        [ $who = "$victim" ] && continue
+        prefix="processor $who: "
+        [ $who = 0 ] && prefix=
+        grep -q "^lariat run: ${prefix}processor $victim is lost: .*last complete step of processor $who is [0-9]" err || {
+            fail "processor $who does not tell that $victim is lost ($signal, $comm)"
+            cat err >&2
+        }
+    done
+}
+for comm in shm tcp; do
+    lose KILL $comm 2
+    complains 'processor 2 was ended by signal 9'
+done
+lose KILL shm 0
+lose STOP shm 1
+complains 'processor 1 was stopped by signal'
+lose STOP tcp 0
+
+# By hand; and who does not belong to it.
+port=$((20000 + $$ % 20000))
+by_hand() {
+    "$LARIAT" "$@" --grid 2x1x1 --comm tcp --processor 1 --master 127.0.0.1:$port >other 2>complaint &
+    pid=$!
+}
+by_hand run $scene --steps 40 --json --out not-here
+expect 0 "$LARIAT" run $scene --steps 40 --json --grid 2x1x1 --comm tcp --processor 0 \
+    --master 127.0.0.1:$port
+wait $pid || fail "processor 1 failed"
+[ "$(value_of state_hash)" = "$hash" ] || fail "by hand: $(value_of state_hash), not $hash"
+[ ! -s other ] && [ ! -e not-here ] || fail "processor 1 wrote something"
+for wrong in "run $SOURCE/examples/beam.yaml" "run $scene --distribution random" "verify $scene"; do
+    port=$((port + 1))
+    # shellcheck disable=SC2086
+    by_hand $wrong
+    expect 1 "$LARIAT" run $scene --steps 40 --grid 2x1x1 --comm tcp --processor 0 \
+        --master 127.0.0.1:$port
+    complains 'processor 1 has another model or schedule'
+    wait $pid && fail "processor 1 joined as $wrong"
+    grep -q 'processor 1: processor 1 has another model' complaint || fail "no word: $wrong"
+done
+
+refuse() {
+    wanted=$1 sentence=$2
+    shift 2
+    expect "$wanted" "$LARIAT" run $scene --steps 1 --grid 2x1x1 "$@"
+    complains "$sentence"
+    silent
+}
+refuse 2 'threads, shm, ucx, mpi, tcp' --comm pigeon
+refuse 2 'give --master' --comm tcp --processor 1
+refuse 2 'give --comm' --processor 1 --master 127.0.0.1:1
+refuse 2 'say which one' --comm tcp --master 127.0.0.1:1
+refuse 1 'they count from 0' --comm tcp --processor 2 --master 127.0.0.1:1
+refuse 1 'write host:port' --comm tcp --processor 0 --master nowhere
+refuse 1 'cannot be used as a folder' --comm shm --out /dev/null/x
+refuse 1 'stable step' --comm shm --time-step 1
+[ "$(wc -l <err)" -eq 1 ] || fail "one failure is told $(wc -l <err) times"
+[ -n "${OMPI_COMM_WORLD_RANK-}${PMI_RANK-}${SLURM_PROCID-}" ] ||
+    refuse 1 'mpirun -n N lariat' --comm mpi
+
+# Ctrl-C in a terminal reaches all of them; processor zero ends the run.
+"$LARIAT" run $scene --time 3600 --realtime --grid 2x1x1 --comm shm --json >out 2>err &
+zero=$!
+sleep 1.5
+one=$(other $zero 1)
+kill -INT $zero "$one"
+wait $zero
+status=$?
+[ $status -eq 130 ] || fail "exit status $status instead of 130 after SIGINT"
+[ "$(value_of interrupted)" = true ] || fail "the summary does not say interrupted"
+[ ! -s err ] || fail "messages after Ctrl-C"
+nothing_left "$one"
+finish "processes: the same hash by $comms, losses told, nothing left"
