@@ -112,11 +112,13 @@ lar_status lar_comm_put(lar_comm *comm, int32_t peer, size_t offset, const void 
  * elsewhere. */
 void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
 
-/* Hints, for offsets that are right: that a packet will be put soon, and that one will be waited for
- * soon. Where processors share memory they bring its lines near, while something else is computed;
- * the second only what has come already. */
+/* Hints, for places that are right. Where processors share memory they bring cache lines near while
+ * something else is computed: parts of a packet that will be put soon; whether a packet has come
+ * (without letting the backend work), and then parts of it. Before that its lines are the sender's
+ * to write. */
 void lar_comm_prepare(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
-void lar_comm_expect(lar_comm *comm, size_t offset, size_t bytes, uint64_t step);
+bool lar_comm_expect(lar_comm *comm, size_t offset, size_t bytes, uint64_t step);
+void lar_comm_fetch(lar_comm *comm, size_t offset, size_t bytes, uint64_t step);
 
 /* Waits for the packet of `step` from `peer` at `offset` of the own buffer. *payload (may be NULL)
  * is valid until this processor's first packet of step + 1 to that peer: with it the peer may go

@@ -17,15 +17,17 @@ void lar_comm_prepare(lar_comm *comm, int32_t peer, size_t offset, size_t bytes,
     const lar_comm_peer *to = &comm->peers[peer];
     if (!to->direct) return;
     const unsigned char *first = to->direct + (step & 1 ? to->half : 0) + offset;
-    for (size_t at = 0; at < lar_comm_packet_bytes(bytes); at += LINE)
-        fetch_for_writing(first + at);
+    for (size_t at = 0; at < bytes; at += LINE) fetch_for_writing(first + at);
 }
 
-void lar_comm_expect(lar_comm *comm, size_t offset, size_t bytes, uint64_t step) {
+bool lar_comm_expect(lar_comm *comm, size_t offset, size_t bytes, uint64_t step) {
     size_t half = comm->options.receive_bytes;
-    const uint64_t *tail = lar_comm_tail(comm->receive, half, offset, bytes, step);
-    /* Before the sender is done with them the lines are its own to write. */
-    if (__atomic_load_n(tail, __ATOMIC_ACQUIRE) != step) return;
-    const unsigned char *first = comm->receive + (step & 1 ? half : 0) + offset;
+    return __atomic_load_n(lar_comm_tail(comm->receive, half, offset, bytes, step),
+                           __ATOMIC_ACQUIRE) == step;
+}
+
+void lar_comm_fetch(lar_comm *comm, size_t offset, size_t bytes, uint64_t step) {
+    const unsigned char *first =
+        comm->receive + (step & 1 ? comm->options.receive_bytes : 0) + offset;
     for (size_t at = 0; at < bytes; at += LINE) __builtin_prefetch(first + at);
 }

@@ -157,27 +157,52 @@ static void fetch_foreign(const lar_worker *worker) {
         __builtin_prefetch(worker->state.u + worker->foreign[i]);
 }
 
-/* While the last run of a batch is recovered, the memory of its packets comes near. */
-static void bring_near(const lar_processor *p, const lar_batch_plan *batch, uint64_t step) {
-    for (int32_t i = batch->sends.first; i < batch->sends.first + batch->sends.count; i++) {
-        const lar_packet_plan *packet = &p->packet[i];
-        lar_comm_prepare(p->comm, packet->peer, packet->offset, packet->bytes, step);
+/* How far the memory of a batch's packets has been asked for. */
+typedef struct near_cursor {
+    lar_span packets;
+    size_t at; /* in the first of them */
+} near_cursor;
+
+/* Asks for at most so many bytes of the packets that will be sent, or have come. */
+static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, size_t bytes,
+                       uint64_t step) {
+    while (cursor->packets.count > 0 && bytes > 0) {
+        const lar_packet_plan *packet = &p->packet[cursor->packets.first];
+        size_t left = lar_comm_packet_bytes(packet->bytes) - cursor->at;
+        size_t part = left < bytes ? left : bytes;
+        if (sends)
+            lar_comm_prepare(p->comm, packet->peer, packet->offset + cursor->at, part, step);
+        else if (lar_comm_expect(p->comm, packet->offset, packet->bytes, step))
+            lar_comm_fetch(p->comm, packet->offset + cursor->at, part, step);
+        else
+            return;
+        bytes -= part;
+        cursor->at += part;
+        if (part < left) return;
+        cursor->packets.first++;
+        cursor->packets.count--;
+        cursor->at = 0;
     }
-    for (int32_t i = batch->receives.first; i < batch->receives.first + batch->receives.count; i++)
-        lar_comm_expect(p->comm, p->packet[i].offset, p->packet[i].bytes, step);
 }
 
+/* Between the runs of elements the memory of the batch's packets comes near, a little each time:
+ * a core can wait for a few dozen lines at once, and does not compute while it asks for more. */
 static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t step) {
+    enum { PORTION = 4096 };
     lar_processor *p = worker->processor;
-    int32_t first = batch->run_first, last = first + batch->run_count - 1;
     if (p->check) {
-        lar_verification_recover(p->check, &p->domain, first, batch->run_count, &worker->state);
+        lar_verification_recover(p->check, &p->domain, batch->run_first, batch->run_count,
+                                 &worker->state);
         return;
     }
-    if (batch->run_count == 0) return;
-    lar_step_recover(&p->domain, first, last - first, &worker->state, &worker->trip);
-    bring_near(p, batch, step);
-    lar_step_recover(&p->domain, last, 1, &worker->state, &worker->trip);
+    near_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
+    for (int32_t r = 0; r < batch->run_count; r++) {
+        if (r > 0 || batch->run_count == 1) {
+            bring_near(p, &sends, true, PORTION, step);
+            bring_near(p, &receives, false, PORTION, step);
+        }
+        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->trip);
+    }
 }
 
 static lar_status move(lar_worker *worker, lar_error *error) {

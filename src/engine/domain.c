@@ -115,19 +115,24 @@ static bool same_run(const lar_lanes *a, const lar_lanes *b) {
            a->shape == b->shape && a->turn == b->turn && a->rows == b->rows;
 }
 
-/* The runs of equal blocks, and the memory they need. */
-static lar_status list_runs(lar_domain *domain, lar_error *error) {
+/* The runs of equal blocks, of at most so many, and the memory they need. */
+static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) {
     const lar_layout *layout = &domain->layout;
     int32_t runs = 0;
-    for (int32_t b = 0; b < layout->block_count; b++)
-        runs += b == 0 || !same_run(&layout->block[b - 1], &layout->block[b]);
+    for (int32_t b = 0, length = 0; b < layout->block_count; b++) {
+        bool begins =
+            b == 0 || length == most || !same_run(&layout->block[b - 1], &layout->block[b]);
+        runs += begins;
+        length = begins ? 1 : length + 1;
+    }
     domain->run = lar_calloc((size_t)runs, sizeof *domain->run);
     domain->run_first = lar_calloc((size_t)runs, sizeof *domain->run_first);
     if (!domain->run || !domain->run_first)
         return lar_fail_memory(error, (size_t)runs * sizeof *domain->run, "the runs of elements");
     for (int32_t b = 0; b < layout->block_count; b++) {
         const lar_lanes *lanes = &layout->block[b];
-        if (b == 0 || !same_run(lanes - 1, lanes)) {
+        if (b == 0 || domain->run[domain->run_count - 1].count == most ||
+            !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
             domain->run[domain->run_count++] =
                 (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL};
@@ -238,7 +243,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
-    if (!status) status = list_runs(domain, error);
+    if (!status) status = list_runs(domain, INT32_MAX, error);
     if (!status) {
         choose_scale(domain);
         prepare_motion(domain);
@@ -278,7 +283,8 @@ static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_d
 }
 
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
-                                  const bool *counted, lar_domain *domain, lar_error *error) {
+                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  lar_error *error) {
     *domain = (lar_domain){.model = whole->model,
                            .kernels = whole->kernels,
                            .kind = whole->kind,
@@ -291,7 +297,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
         lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = copy_nodes(whole, counted, domain, error);
-    if (!status) status = list_runs(domain, error);
+    if (!status) status = list_runs(domain, run_most, error);
     if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     domain->limits = whole->limits; /* a run stops for the same reason on any grid */
     if (status) lar_domain_destroy(domain);

@@ -56,10 +56,11 @@ void lar_domain_destroy(lar_domain *domain); /* idempotent */
 
 /* The domain of one processor of several: the same scale, step, limits and turned corners as the
  * whole, which must outlive it. counted[node of the model]: whether this processor accounts for the
- * node's energies, for one of several has to. Conditions are left to the caller: they belong to
- * threads. */
+ * node's energies, for one of several has to. Runs have at most run_most blocks. Conditions are
+ * left to the caller: they belong to threads. */
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
-                                  const bool *counted, lar_domain *domain, lar_error *error);
+                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  lar_error *error);
 
 /* The elements' bound of the time step at rest and the element that sets it. */
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,

@@ -187,6 +187,10 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
     return status ? status : lar_parcels_create(schedule, a->thread, p, error);
 }
 
+/* Between two runs a processor that exchanges asks for some memory of its packets (batch.c): often
+ * enough, and so seldom that calling the kernel does not count. */
+enum { RUN_BLOCKS = 128 };
+
 /* ---- the processor ------------------------------------------------------------------------ */
 
 lar_status lar_processor_create(const lar_processor_setting *setting, const lar_schedule *schedule,
@@ -200,7 +204,9 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
     lar_part part = {
         .threads = schedule->threads, .thread = a.thread, .batch = a.batch, .owner = a.owner};
     if (!status)
-        status = lar_domain_create_part(setting->whole, &part, a.counted, &p->domain, error);
+        status = lar_domain_create_part(setting->whole, &part, a.counted,
+                                        schedule->transfer_count ? RUN_BLOCKS : INT32_MAX,
+                                        &p->domain, error);
     if (!status) status = compile_batches(schedule, p, error);
     if (!status) status = compile_packets(schedule, p, error);
     if (!status) status = create_workers(schedule, setting, &a, p, error);
