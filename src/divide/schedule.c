@@ -31,7 +31,7 @@ void lar_schedule_set_clear(lar_schedule_set *set) {
 void lar_schedule_traffic(const lar_schedule *schedule, lar_traffic *traffic) {
     *traffic = (lar_traffic){0};
     for (int32_t b = 0; b < schedule->batch_count; b++) {
-        lar_span sends = schedule->batch[b].sends;
+        lar_range sends = schedule->batch[b].sends;
         for (int32_t i = sends.first; i < sends.first + sends.count; i++) {
             const lar_transfer *t = &schedule->transfer[i];
             if (t->vectors.count == 0) continue;
@@ -52,7 +52,7 @@ static uint64_t hash_numbers(uint64_t hash, const int32_t *number, int32_t count
     return hash;
 }
 
-static uint64_t hash_span(uint64_t hash, lar_span span) {
+static uint64_t hash_span(uint64_t hash, lar_range span) {
     return lar_hash_word(hash, (uint64_t)span.first << 32 | (uint64_t)span.count);
 }
 

@@ -57,26 +57,26 @@ typedef struct lar_schedule_options {
 lar_schedule_options lar_schedule_options_default(void);
 
 /* Entries first .. first + count - 1 of an array of the schedule. */
-typedef struct lar_span {
+typedef struct lar_range {
     int32_t first, count;
-} lar_span;
+} lar_range;
 
 /* One packet, as its sender or its receiver sees it. Sender, receiver and stage name it. */
 typedef struct lar_transfer {
     int32_t peer;  /* where it goes to, or comes from */
     int32_t stage; /* 0 .. LAR_STAGES - 1 */
     int32_t whole; /* so many of its vectors, the last ones, are whole forces */
-    lar_span
+    lar_range
         vectors;    /* in schedule->vector: nodes, the added ones ascending, then the whole ones */
     int64_t offset; /* in a half of the RECEIVER's buffer */
 } lar_transfer;
 
 typedef struct lar_batch {
-    lar_span elements;  /* in schedule->element, ascending */
-    lar_span waits;     /* in schedule->wait */
-    lar_span receives;  /* in schedule->transfer */
-    lar_span positions; /* in schedule->node, ascending */
-    lar_span sends;     /* in schedule->transfer */
+    lar_range elements;  /* in schedule->element, ascending */
+    lar_range waits;     /* in schedule->wait */
+    lar_range receives;  /* in schedule->transfer */
+    lar_range positions; /* in schedule->node, ascending */
+    lar_range sends;     /* in schedule->transfer */
 } lar_batch;
 
 /* One processor's schedule. Elements and nodes are those of the mesh. */

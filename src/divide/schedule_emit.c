@@ -21,14 +21,14 @@ static lar_packet *packets_of(const lar_plan *plan) {
     return plan->site->packets.packet;
 }
 
-static lar_span sent(const lar_plan *plan) {
+static lar_range sent(const lar_plan *plan) {
     const int32_t *first = plan->site->packets.sent_first + plan->processor;
-    return (lar_span){first[0], first[1] - first[0]};
+    return (lar_range){first[0], first[1] - first[0]};
 }
 
-static lar_span received(const lar_plan *plan) {
+static lar_range received(const lar_plan *plan) {
     const int32_t *first = plan->site->packets.received_first + plan->processor;
-    return (lar_span){first[0], first[1] - first[0]};
+    return (lar_range){first[0], first[1] - first[0]};
 }
 
 static lar_packet *received_packet(const lar_plan *plan, int32_t i) {
@@ -38,7 +38,7 @@ static lar_packet *received_packet(const lar_plan *plan, int32_t i) {
 /* Returns whether empty packets leave. */
 static bool count_transfers(emission *em) {
     const lar_plan *plan = em->plan;
-    lar_span out = sent(plan), in = received(plan);
+    lar_range out = sent(plan), in = received(plan);
     bool empty = false;
     for (int32_t i = out.first; i < out.first + out.count; i++) {
         const lar_packet *packet = &packets_of(plan)[i];
@@ -86,7 +86,7 @@ static void number_batches(emission *em, bool empty) {
 static void close_spans(emission *em, size_t member) {
     int32_t first = 0;
     for (int32_t b = 0; b < em->to->batch_count; b++) {
-        lar_span *span = (lar_span *)(void *)((char *)&em->to->batch[b] + member);
+        lar_range *span = (lar_range *)(void *)((char *)&em->to->batch[b] + member);
         span->first = first;
         first += span->count;
         span->count = 0;
@@ -99,7 +99,7 @@ static void put_elements(emission *em) {
     for (int put = 0; put < 2; put++) {
         for (int32_t i = 0; i < plan->element_count; i++) {
             int32_t e = plan->element[i];
-            lar_span *span = &em->to->batch[em->number[plan->site->batch[e]]].elements;
+            lar_range *span = &em->to->batch[em->number[plan->site->batch[e]]].elements;
             if (put) em->to->element[span->first + span->count] = e;
             span->count++;
         }
@@ -112,7 +112,7 @@ static void put_positions(emission *em) {
     for (int put = 0; put < 2; put++) {
         for (int32_t k = 0; k < plan->node_count; k++) {
             int32_t batch = em->number[plan->last[plan->owner[k]]];
-            lar_span *span = &em->to->batch[batch].positions;
+            lar_range *span = &em->to->batch[batch].positions;
             if (put) em->to->node[span->first + span->count] = plan->node[k];
             span->count++;
         }
@@ -126,7 +126,7 @@ static int32_t sending_batch(const emission *em, const lar_packet *packet) {
 
 static void place_transfers(emission *em) {
     const lar_plan *plan = em->plan;
-    lar_span out = sent(plan), in = received(plan);
+    lar_range out = sent(plan), in = received(plan);
     for (int32_t i = out.first; i < out.first + out.count; i++)
         em->to->batch[sending_batch(em, &packets_of(plan)[i])].sends.count++;
     for (int32_t i = in.first; i < in.first + in.count; i++)
@@ -141,7 +141,7 @@ static void place_transfers(emission *em) {
     }
 }
 
-static void put_transfer(emission *em, const lar_packet *packet, int32_t peer, lar_span *span) {
+static void put_transfer(emission *em, const lar_packet *packet, int32_t peer, lar_range *span) {
     em->to->transfer[span->first + span->count++] =
         (lar_transfer){.peer = peer,
                        .stage = packet->stage,
@@ -154,7 +154,7 @@ static void put_transfer(emission *em, const lar_packet *packet, int32_t peer, l
 static void put_vectors(emission *em) {
     int32_t first = 0;
     for (int32_t i = 0; i < em->to->transfer_count; i++) {
-        lar_span *vectors = &em->to->transfer[i].vectors;
+        lar_range *vectors = &em->to->transfer[i].vectors;
         const int32_t *node = em->plan->site->packets.node;
         node += packets_of(em->plan)[vectors->first].first;
         if (vectors->count > 0)
@@ -166,7 +166,7 @@ static void put_vectors(emission *em) {
 
 static void put_transfers(emission *em) {
     const lar_plan *plan = em->plan;
-    lar_span out = sent(plan), in = received(plan);
+    lar_range out = sent(plan), in = received(plan);
     place_transfers(em);
     for (int32_t i = out.first; i < out.first + out.count; i++) {
         const lar_packet *packet = &packets_of(plan)[i];

@@ -153,7 +153,7 @@ typedef struct list {
 } list;
 
 /* "COUNT NUMBER NUMBER ...", over any number of lines, to the end of an array. */
-static lar_status read_list(reader *r, const list *l, lar_span *out) {
+static lar_status read_list(reader *r, const list *l, lar_range *out) {
     int64_t count, value;
     lar_status status = number(r, "a count", 1, INT32_MAX, &count);
     if (status) return status;
@@ -161,7 +161,7 @@ static lar_status read_list(reader *r, const list *l, lar_span *out) {
                         (size_t)(r->file.end - r->file.word)))
         return REFUSE(r, "the file is too short for %" PRId64 " numbers; count them again", count);
     status = advance(r);
-    *out = (lar_span){*l->used, (int32_t)count};
+    *out = (lar_range){*l->used, (int32_t)count};
     int32_t before = -1;
     for (int64_t i = 0; i < count && !status; i++) {
         status = number(r, l->what, 0, l->limit - 1, &value);
@@ -247,7 +247,7 @@ static lar_status read_positions(reader *r, lar_batch *b) {
 static lar_status read_vectors(reader *r, lar_transfer *t) {
     list l = {"a node",           r->mesh->node_count, &r->s.vector,
               &r->s.vector_count, &r->vector_room,     accept_added};
-    lar_span added = {r->s.vector_count, 0}, whole = {0};
+    lar_range added = {r->s.vector_count, 0}, whole = {0};
     lar_status status = LAR_OK;
     if (next_is(r, "add")) {
         status = advance(r);
@@ -259,7 +259,7 @@ static lar_status read_vectors(reader *r, lar_transfer *t) {
         if (!status) status = read_list(r, &l, &whole);
     }
     t->whole = whole.count;
-    t->vectors = (lar_span){added.first, added.count + whole.count};
+    t->vectors = (lar_range){added.first, added.count + whole.count};
     return status;
 }
 
@@ -285,7 +285,7 @@ static lar_status read_address(reader *r, lar_transfer *t) {
     return status;
 }
 
-static lar_status read_transfer(reader *r, bool received, lar_span *span) {
+static lar_status read_transfer(reader *r, bool received, lar_range *span) {
     lar_transfer t = {0};
     int line = r->file.number;
     lar_status status = read_address(r, &t);

@@ -18,7 +18,7 @@ char *lar_schedule_path(const char *folder, int32_t processor) {
 
 /* "KEY COUNT  NUMBER ...", nothing without numbers; long lists go on in lines further in. */
 static void print_list(FILE *file, int indent, const char *key, const int32_t *array,
-                       lar_span span) {
+                       lar_range span) {
     enum { WIDTH = 100 };
     if (span.count == 0) return;
     int column = fprintf(file, "%*s%s %d ", indent, "", key, (int)span.count);
@@ -31,14 +31,14 @@ static void print_list(FILE *file, int indent, const char *key, const int32_t *a
     fputc('\n', file);
 }
 
-static void print_transfers(FILE *file, const char *key, const lar_schedule *s, lar_span span) {
+static void print_transfers(FILE *file, const char *key, const lar_schedule *s, lar_range span) {
     for (int32_t i = 0; i < span.count && !ferror(file); i++) {
         const lar_transfer *t = &s->transfer[span.first + i];
         int32_t added = t->vectors.count - t->whole;
         fprintf(file, "  %s %d stage %d offset %" PRId64 "\n", key, (int)t->peer, (int)t->stage,
                 t->offset);
-        print_list(file, 4, "add", s->vector, (lar_span){t->vectors.first, added});
-        print_list(file, 4, "whole", s->vector, (lar_span){t->vectors.first + added, t->whole});
+        print_list(file, 4, "add", s->vector, (lar_range){t->vectors.first, added});
+        print_list(file, 4, "whole", s->vector, (lar_range){t->vectors.first + added, t->whole});
     }
 }
 

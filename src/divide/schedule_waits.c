@@ -32,7 +32,7 @@ static void note(book *b, int32_t node, int32_t batch, int32_t when) {
         b->first[k + 1]++;
 }
 
-static void note_transfers(book *b, int32_t batch, lar_span span, int32_t first_when) {
+static void note_transfers(book *b, int32_t batch, lar_range span, int32_t first_when) {
     for (int32_t i = span.first; i < span.first + span.count; i++) {
         const lar_transfer *t = &b->schedule->transfer[i];
         for (int32_t j = 0; j < t->vectors.count; j++)
@@ -126,7 +126,7 @@ static int32_t write_waits(const book *b, lar_schedule *s, bool put) {
                 if (put) s->wait[count] = latest;
                 count++;
             }
-            if (put) s->batch[i].waits = (lar_span){first, count - first};
+            if (put) s->batch[i].waits = (lar_range){first, count - first};
         }
     }
     return count;

@@ -159,7 +159,7 @@ static void fetch_foreign(const lar_worker *worker) {
 
 /* How far the memory of a batch's packets has been asked for. */
 typedef struct near_cursor {
-    lar_span packets;
+    lar_range packets;
     size_t at; /* in the first of them */
 } near_cursor;
 

@@ -70,7 +70,7 @@ static lar_status find_use(const lar_schedule *schedule, const int32_t *thread,
             use->reads[layout->local[mesh->element[e][k]]] |= (uint16_t)(1u << thread[e]);
     memcpy(use->adds, use->reads, nodes * sizeof *use->adds);
     for (int32_t b = 0; b < schedule->batch_count; b++) {
-        lar_span receives = schedule->batch[b].receives;
+        lar_range receives = schedule->batch[b].receives;
         for (int32_t i = receives.first; i < receives.first + receives.count; i++) {
             const lar_transfer *t = &schedule->transfer[i];
             for (int32_t v = 0; v < t->vectors.count; v++) {

@@ -111,7 +111,7 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
     }
     for (int32_t b = 0; b < schedule->batch_count; b++)
         for (int direction = 0; direction < 2; direction++) {
-            lar_span span = direction ? schedule->batch[b].sends : schedule->batch[b].receives;
+            lar_range span = direction ? schedule->batch[b].sends : schedule->batch[b].receives;
             for (int32_t i = span.first; i < span.first + span.count; i++) {
                 const lar_transfer *t = &schedule->transfer[i];
                 p->packet[i] = (lar_packet_plan){
@@ -157,7 +157,7 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
     size_t largest = 64;
     for (int32_t b = worker->batch_first; b < worker->batch_end; b++) {
         moving += p->batch[b].moves;
-        lar_span sends = p->batch[b].sends;
+        lar_range sends = p->batch[b].sends;
         for (int32_t i = sends.first; i < sends.first + sends.count; i++)
             if (p->packet[i].bytes > largest) largest = p->packet[i].bytes;
     }

@@ -28,8 +28,8 @@ typedef struct lar_packet_plan {
 
 typedef struct lar_batch_plan {
     int32_t run_first, run_count; /* of the domain */
-    lar_span waits;               /* in the schedule's list: batches of other threads */
-    lar_span receives, sends;     /* in processor->packet */
+    lar_range waits;              /* in the schedule's list: batches of other threads */
+    lar_range receives, sends;    /* in processor->packet */
     bool moves;                   /* the thread's nodes */
 } lar_batch_plan;
 

@@ -112,7 +112,7 @@ static void plain_share(lar_schedule *s, int rank, int32_t first) {
     for (int32_t t = 0; t < s->threads; t++) {
         lar_batch *b = &s->batch[t * n + rank];
         int32_t begin = first + count * t / s->threads, end = first + count * (t + 1) / s->threads;
-        *(rank & 1 ? &b->sends : &b->receives) = (lar_span){begin, end - begin};
+        *(rank & 1 ? &b->sends : &b->receives) = (lar_range){begin, end - begin};
     }
 }
 
@@ -156,11 +156,11 @@ static void plain_work(lar_schedule *s, const divided *d) {
     for (int32_t t = 0; t < s->threads; t++) {
         int32_t e = s->element_count * t / s->threads, f = s->element_count * (t + 1) / s->threads;
         int32_t k = s->node_count * t / s->threads, l = s->node_count * (t + 1) / s->threads;
-        s->batch[t * n].elements = (lar_span){e, f - e};
-        s->batch[t * n + 7].positions = (lar_span){k, l - k};
+        s->batch[t * n].elements = (lar_range){e, f - e};
+        s->batch[t * n + 7].positions = (lar_range){k, l - k};
         s->thread_first[t + 1] = (t + 1) * n;
         for (int32_t r = 1; r < n; r++) {
-            s->batch[t * n + r].waits = (lar_span){s->wait_count, s->threads - 1};
+            s->batch[t * n + r].waits = (lar_range){s->wait_count, s->threads - 1};
             for (int32_t u = 0; u < s->threads; u++)
                 if (u != t) s->wait[s->wait_count++] = u * n + r - 1;
         }

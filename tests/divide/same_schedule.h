@@ -5,15 +5,15 @@
 #include "divide/schedule.h"
 #include "testing.h"
 
-static inline void assert_same_numbers(const int32_t *a, lar_span of_a, const int32_t *b,
-                                       lar_span of_b) {
+static inline void assert_same_numbers(const int32_t *a, lar_range of_a, const int32_t *b,
+                                       lar_range of_b) {
     assert_int_equal(of_a.count, of_b.count);
     if (of_a.count > 0)
         assert_memory_equal(a + of_a.first, b + of_b.first, (size_t)of_a.count * sizeof *a);
 }
 
-static inline void assert_same_transfers(const lar_schedule *a, lar_span of_a,
-                                         const lar_schedule *b, lar_span of_b) {
+static inline void assert_same_transfers(const lar_schedule *a, lar_range of_a,
+                                         const lar_schedule *b, lar_range of_b) {
     assert_int_equal(of_a.count, of_b.count);
     for (int32_t i = 0; i < of_a.count; i++) {
         const lar_transfer *t = &a->transfer[of_a.first + i], *u = &b->transfer[of_b.first + i];

@@ -121,7 +121,7 @@ static bool play_event(player *p, play_thread *at) {
         return true;
     }
     const lar_batch *b = &s->batch[at->batch];
-    const lar_span span[5] = {b->elements, b->waits, b->receives, b->positions, b->sends};
+    const lar_range span[5] = {b->elements, b->waits, b->receives, b->positions, b->sends};
     if (at->item == span[at->part].count) {
         at->item = 0;
         at->part = (at->part + 1) % 5;

@@ -183,7 +183,7 @@ static void covers(const divided *d, const lar_schedule *s) {
 /* The transfer of a processor with a peer and stage; NULL: none. */
 static const lar_transfer *transfer_of(const lar_schedule *s, bool sends, int32_t peer, int stage) {
     for (int32_t b = 0; b < s->batch_count; b++) {
-        lar_span span = sends ? s->batch[b].sends : s->batch[b].receives;
+        lar_range span = sends ? s->batch[b].sends : s->batch[b].receives;
         for (int32_t i = span.first; i < span.first + span.count; i++)
             if (s->transfer[i].peer == peer && s->transfer[i].stage == stage)
                 return &s->transfer[i];

@@ -34,8 +34,8 @@ static lar_schedule_set copy_set(const lar_schedule_set *from) {
 
 /* ---- damage ------------------------------------------------------------------------------ */
 
-static lar_span *some_span(lar_batch *b, int32_t part) {
-    lar_span *const span[] = {&b->elements, &b->waits, &b->receives, &b->positions, &b->sends};
+static lar_range *some_span(lar_batch *b, int32_t part) {
+    lar_range *const span[] = {&b->elements, &b->waits, &b->receives, &b->positions, &b->sends};
     return span[part];
 }
 
@@ -90,8 +90,8 @@ static void damage_transfer(lar_random *r, lar_schedule *s) {
 static void damage_batch(lar_random *r, lar_schedule *s) {
     int32_t b = lar_random_below(r, s->batch_count), part = lar_random_below(r, 5);
     int32_t c = lar_random_below(r, s->batch_count);
-    lar_span *span = some_span(&s->batch[b], part), *other = some_span(&s->batch[c], part);
-    lar_span keep = *span;
+    lar_range *span = some_span(&s->batch[b], part), *other = some_span(&s->batch[c], part);
+    lar_range keep = *span;
     lar_batch whole = s->batch[b];
     switch (lar_random_below(r, 6)) {
     case 0:

@@ -48,7 +48,7 @@ static void refused(patient *p, const char *const *word) {
 
 static int32_t find_end(const lar_schedule *s, bool sends, int32_t peer, int32_t stage) {
     for (int32_t b = 0; b < s->batch_count; b++) {
-        lar_span span = sends ? s->batch[b].sends : s->batch[b].receives;
+        lar_range span = sends ? s->batch[b].sends : s->batch[b].receives;
         for (int32_t i = span.first; i < span.first + span.count; i++)
             if (s->transfer[i].peer == peer && s->transfer[i].stage == stage) return i;
     }
@@ -61,7 +61,7 @@ static lar_transfer *end_of(lar_schedule *s, bool sends, int32_t peer, int32_t s
     return &s->transfer[i];
 }
 
-static void leave_out(lar_span *span, int32_t i) {
+static void leave_out(lar_range *span, int32_t i) {
     if (i < span->first)
         span->first--;
     else if (i < span->first + span->count)
@@ -406,7 +406,7 @@ static void moved_by_the_wrong_thread(void **state) {
     lar_schedule *s = square(&p, LAR_SCHEME_LOCAL, 2);
     s[0].batch[7].positions.first++;
     s[0].batch[7].positions.count--;
-    s[0].batch[9].positions = (lar_span){0, 1};
+    s[0].batch[9].positions = (lar_range){0, 1};
     REFUSED(&p,
             "node 0: processor 0, thread 1, batch 9 moves it and does not wait for processor 0, "
             "thread 0, batch 0, which recovers element 0 at it");

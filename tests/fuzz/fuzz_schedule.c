@@ -14,13 +14,13 @@ static void require(bool good) {
     if (!good) __builtin_trap();
 }
 
-static void check_span(lar_span span, const int32_t *array, int32_t used, int32_t limit) {
+static void check_span(lar_range span, const int32_t *array, int32_t used, int32_t limit) {
     require(span.first >= 0 && span.count >= 0 && span.count <= used - span.first);
     for (int32_t i = 0; i < span.count; i++)
         require(array[span.first + i] >= 0 && array[span.first + i] < limit);
 }
 
-static void check_transfers(const lar_schedule *s, lar_span span, bool received) {
+static void check_transfers(const lar_schedule *s, lar_range span, bool received) {
     require(span.first >= 0 && span.count >= 0 && span.count <= s->transfer_count - span.first);
     for (int32_t i = 0; i < span.count; i++) {
         const lar_transfer *t = &s->transfer[span.first + i];
