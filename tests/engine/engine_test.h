@@ -161,7 +161,7 @@ TEST_UNUSED static void throw_body(lar_model *model, const double translation[3]
 
 /* Everything that a step can do: all laws, supports, motion, loads, pressure, varying gravity,
  * damping. */
-TEST_UNUSED static lar_model *busy_model(const brick *b) {
+TEST_UNUSED static lar_model *everything_model(const brick *b) {
     lar_model *model = brick_model(b);
     static const double points[3][2] = {{0, 0}, {0.02, 1}, {0.05, -0.5}};
     int ramp = add_ramp(model, 0.03), table = add_table(model, LAR_CURVE_SMOOTH, 3, points);

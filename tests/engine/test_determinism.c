@@ -29,7 +29,7 @@ static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AV
 enum { SETS = sizeof sets / sizeof sets[0] };
 
 /* A brick on which everything acts: supports, motion, pressure, load, weight, damping, a throw. */
-static lar_model *law_model(lar_law law, int shape, int x, int y, int z) {
+static lar_model *busy_model(lar_law law, int shape, int x, int y, int z) {
     brick b = {{x, y, z}, 0.01, shape == BOXES ? 0 : 0.12, law, 2e3, 2e4, 1050};
     lar_model *model = brick_model(&b);
     static const double points[3][2] = {{0, 0}, {0.02, 1}, {0.05, -0.5}};
@@ -47,7 +47,7 @@ static lar_model *law_model(lar_law law, int shape, int x, int y, int z) {
 }
 
 static lar_model *golden_model(lar_law law, int shape) {
-    return law_model(law, shape, 3, 3, 3);
+    return busy_model(law, shape, 3, 3, 3);
 }
 
 enum { STEPS = 500, FEW_STEPS = 120 };
@@ -128,7 +128,7 @@ static void bricks_agree(void **unused) {
         for (int law = 0; law < LAR_LAW_COUNT; law++)
             for (int shape = 0; shape < SHAPES; shape++) {
                 lar_model *model =
-                    law_model((lar_law)law, shape, cells[i][0], cells[i][1], cells[i][2]);
+                    busy_model((lar_law)law, shape, cells[i][0], cells[i][1], cells[i][2]);
                 all_sets_agree(model, lar_law_name[law]);
                 lar_model_destroy(model);
             }
@@ -152,7 +152,7 @@ static void the_organ_agrees(void **unused) {
 static void looking_does_not_change_the_run(void **unused) {
     (void)unused;
     const char *name;
-    lar_model *model = law_model(LAR_LAW_neo_hookean, GENERAL, 7, 3, 2);
+    lar_model *model = busy_model(LAR_LAW_neo_hookean, GENERAL, 7, 3, 2);
     lar_simulation *simulation = start(model);
     for (int i = 0; i < 20; i++) {
         lar_energy energy;

@@ -67,7 +67,7 @@ static lar_options combination(int grid, int threads, int scheme, int distributi
 static void the_hash_is_the_same_everywhere(void **unused) {
     (void)unused;
     enum { STEPS = 60 };
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     uint64_t wanted = hash_of(model, lar_options_default(), STEPS);
     for (int grid = 0; grid < GRIDS; grid++)
         for (int scheme = 0; scheme < SCHEMES; scheme++) {
@@ -85,7 +85,7 @@ static void the_full_matrix(void **unused) {
     (void)unused;
     enum { STEPS = 1000 };
     for (int organ = 0; organ < 2; organ++) {
-        lar_model *model = organ ? organ_model() : busy_model(&small);
+        lar_model *model = organ ? organ_model() : everything_model(&small);
         uint64_t wanted = hash_of(model, lar_options_default(), STEPS);
         int step = organ ? 2 : 1; /* half of them are enough for the organ */
         for (int i = 0; i < GRIDS * THREADS * SCHEMES * DISTRIBUTIONS; i += step) {
@@ -106,7 +106,7 @@ static void boxes_and_oracles_agree_with_themselves(void **unused) {
     brick regular = small;
     regular.shift = 0;
     regular.cells[0] = 20;
-    lar_model *model = busy_model(&regular);
+    lar_model *model = everything_model(&regular);
     for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_FULL; kind++) {
         lar_options options = lar_options_default();
         options.element = (lar_element_kind)kind;
@@ -127,7 +127,7 @@ static int stop_at(void *context, uint64_t step) {
 /* Everyone stops in the same step, soon; going on gives what not stopping would have given. */
 static void a_watched_advance_ends_in_a_common_step(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     uint64_t wanted = hash_of(model, lar_options_default(), 200);
     for (int grid = 0; grid < GRIDS; grid++) {
         lar_simulation *simulation = start_with(model, combination(grid, 2, 1, 0));
@@ -148,7 +148,7 @@ static void a_watched_advance_ends_in_a_common_step(void **unused) {
 /* One processor's element breaks: all stop, with the message, and go on no more. */
 static void an_unstable_run_stops_everywhere(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     static const double crash[3] = {-200, 0, 0};
     throw_node(model, brick_node(&small, 3, 2, 2), crash);
     lar_error alone, error;
@@ -179,7 +179,7 @@ static void assert_near(double a, double b, double scale) {
 
 static void energies_do_not_depend_on_the_division(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     lar_simulation *alone = start(model);
     lar_energy wanted, found;
     advance(alone, 300);
@@ -204,7 +204,7 @@ static void energies_do_not_depend_on_the_division(void **unused) {
 
 static void every_element_arrives_at_every_node_once(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     for (int grid = 0; grid < GRIDS; grid++)
         for (int scheme = 0; scheme < SCHEMES; scheme++) {
             lar_options options = combination(grid, 1 + (grid + scheme) % 4, scheme, grid % 3);
@@ -219,7 +219,7 @@ static void every_element_arrives_at_every_node_once(void **unused) {
 /* A program that is wrong in one place is found, whatever the place. */
 static void a_wrong_program_is_found(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     for (int fault = 0; fault < 3; fault++) {
         lar_options options = combination(2, 2, 1, 0);
         options.verify = 1;
@@ -254,7 +254,7 @@ static void refuse(const lar_model *model, lar_options options, const char *why)
 
 static void senseless_options_are_refused(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&small);
+    lar_model *model = everything_model(&small);
     lar_options options = combination(0, 1, 0, 0);
     options.grid = "2x2";
     refuse(model, options, "2x2");

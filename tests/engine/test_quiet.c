@@ -61,7 +61,7 @@ int __wrap_pthread_mutex_lock(pthread_mutex_t *mutex) {
 static void a_step_allocates_and_locks_nothing(void **unused) {
     (void)unused;
     for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_MATRIX; kind++) {
-        lar_model *model = busy_model(&soft_brick);
+        lar_model *model = everything_model(&soft_brick);
         lar_options options = lar_options_default();
         options.element = (lar_element_kind)kind;
         int before = calls;
@@ -92,7 +92,7 @@ static void processors_allocate_and_lock_nothing(void **unused) {
     (void)unused;
     static const char *const schemes[] = {"all", "local", "one", "two"};
     for (int i = 0; i < 4; i++) {
-        lar_model *model = busy_model(&soft_brick);
+        lar_model *model = everything_model(&soft_brick);
         lar_options options = lar_options_default();
         options.grid = "2x2x1";
         options.threads = 2;
@@ -144,7 +144,7 @@ static int in_child(lar_simulation *simulation, uint64_t steps) {
 
 static void a_step_makes_no_system_call(void **unused) {
     (void)unused;
-    lar_model *model = busy_model(&soft_brick);
+    lar_model *model = everything_model(&soft_brick);
     lar_simulation *simulation = start(model);
     advance(simulation, 10);
     int caught = in_child(simulation, 0);
