@@ -74,8 +74,8 @@ static void print_summary(const lar_bench_comm_result *r) {
     else
         printf("one core");
     printf(", median of %d samples\n\n", r->repeat);
-    printf("%-13s %21s %8s %11s %11s %7s %7s %7s %9s\n", "", "latency one way", "times", "half",
-           "full duplex", "send", "receive", "delay", "half size");
+    printf("%-13s %21s %8s %11s %11s %7s %7s %7s %9s\n", "", "latency one way", "times",
+           "half duplex", "full duplex", "send", "receive", "delay", "half size");
     printf("%-13s %21s %8s %11s %11s %7s %7s %7s %9s\n", "", "us (least to most)", "by hand",
            "MB/s", "MB/s", "us", "us", "us", "bytes");
     for (int i = 0; i < r->rows; i++) {
@@ -87,9 +87,13 @@ static void print_summary(const lar_bench_comm_result *r) {
         }
         printf("%-13s %6.3f (%.3f to %.3f)", row->name, 1e-3 * row->latency.median,
                1e-3 * row->latency.least, 1e-3 * row->latency.most);
+        if (row->moves_packets && row->over_hand > 0)
+            printf(" %8.2f", row->over_hand);
+        else if (row->moves_packets)
+            printf(" %8s", "");
         if (row->moves_packets)
-            printf(" %8.2f %11.0f %11.0f %7.3f %7.3f %7.3f %9.0f", row->over_hand, at->half_duplex,
-                   at->full_duplex, 1e-3 * at->send, 1e-3 * at->receive, 1e-3 * at->delay,
+            printf(" %11.0f %11.0f %7.3f %7.3f %7.3f %9.0f", at->half_duplex, at->full_duplex,
+                   1e-3 * at->send, 1e-3 * at->receive, 1e-3 * at->delay,
                    row->half_bandwidth_bytes);
         printf("\n");
     }

@@ -76,7 +76,8 @@ static lar_status late_receive(lar_pair_job *j, int end, lar_error *error) {
             continue;
         }
         double until = lar_pair_now() + (p->launched ? 200e-6 : 1); /* a process: another word */
-        while (__atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[end] &&
+        /* The other end may be a step ahead already. */
+        while (__atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) < p->step[end] &&
                lar_pair_now() < until)
             sched_yield();
         for (double moment = lar_pair_now() + 50e-6; lar_pair_now() < moment;) continue;
