@@ -7,8 +7,9 @@
 #include "base/memory.h"
 #include "study/comm_pair.h"
 
-static const double SAMPLE_TIME = 2e-3, SHORT_TIME = 1e-4; /* [s] at least */
-static const double PORTION = 20e-6;                       /* of computation [s] */
+/* [s] at least. Short, so that most samples are not cut in two by what else runs. */
+static const double SAMPLE_TIME = 3e-4, SHORT_TIME = 1e-4;
+static const double PORTION = 20e-6; /* of computation [s] */
 enum { COMPUTED = 2048 /* doubles: half of a first-level cache */ };
 
 /* What is measured, in the order in which samples lie. */
@@ -160,7 +161,7 @@ static lar_status take_blocks(bench *b, int row, int size, int k, lar_error *err
     samples_of(b, row, size, FULL_DUPLEX)[k] = 2e-6 * (double)bytes * packets / j.seconds;
     samples_of(b, row, size, SEND)[k] = 1e9 * j.part / packets;
     j.run = late_receive;
-    j.rounds = b->options->quick ? 2 : 20;
+    j.rounds = b->options->quick ? 2 : 6;
     status = lar_pair_run(&j, error);
     samples_of(b, row, size, RECEIVE)[k] = 1e9 * j.part / ((double)j.packets * (double)j.rounds);
     return status;
@@ -353,7 +354,7 @@ static void choose_cores(const cpu_set_t *allowed, int cores[2]) {
 /* How many sweeps are a portion; the best of several, because something else may run. */
 static void calibrate(bench *b) {
     double best = 1;
-    b->portions = b->options->quick ? 5 : 100;
+    b->portions = b->options->quick ? 5 : 15;
     b->sweeps = 100;
     for (int i = 0; i < 10; i++) {
         double begin = lar_pair_now();
