@@ -103,8 +103,9 @@ const cli_command cli_bench_kernel = {
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
 static int bench_main(int argc, char **argv) {
-    static const char *const names[] = {"kernel", "comm", NULL};
-    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_comm};
+    static const char *const names[] = {"kernel", "comm", "scaling", NULL};
+    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_comm,
+                                                    &cli_bench_scaling};
     static const cli_option none[] = {CLI_END};
     for (int i = 0; argc > 0 && names[i]; i++)
         if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
@@ -114,8 +115,8 @@ static int bench_main(int argc, char **argv) {
     }
     const char *meant = cli_nearest_name(argv[0], names);
     return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s%s", argv[0],
-                        meant ? "did you mean " : "there are: kernel, comm", meant ? meant : "",
-                        meant ? "?" : "");
+                        meant ? "did you mean " : "there are: kernel, comm, scaling",
+                        meant ? meant : "", meant ? "?" : "");
 }
 
 const cli_command cli_bench = {
@@ -125,7 +126,9 @@ const cli_command cli_bench = {
     .description = "WHAT is\n"
                    "  kernel    time of a step per element, and the share of the core's peak\n"
                    "  comm      latency and bandwidth between processors, for every backend\n"
+                   "  scaling   time of a step with several processors, against one\n"
                    "and has options of its own: lariat bench kernel --help",
     .examples = "  lariat bench kernel\n"
-                "  lariat bench comm\n",
+                "  lariat bench comm\n"
+                "  lariat bench scaling\n",
     .main = bench_main};

@@ -230,7 +230,7 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
             arguments[given++] = argv[at++];
         }
     }
-    if (given < argument_count)
+    if (given < argument_count && command->arguments[0] != '[')
         return cli_complain(command, CLI_USAGE, "%s is missing; usage: lariat %s %s [OPTIONS]",
                             command->arguments, command->name, command->arguments);
     return -1;

@@ -51,7 +51,7 @@ typedef struct cli_option {
 typedef struct cli_command {
     const char *name;                   /* "run" or "bench kernel" */
     const char *summary;                /* one line */
-    const char *arguments;              /* "SCENE", "FILE" or "" */
+    const char *arguments;              /* "SCENE", "[SCENE]": may be left out, or "" */
     const char *description;            /* a paragraph */
     const char *examples;               /* lines */
     int (*main)(int argc, char **argv); /* behind the command's name; returns the exit status */
