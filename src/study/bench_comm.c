@@ -161,8 +161,8 @@ static lar_status take_blocks(bench *b, int row, int size, int k, lar_error *err
     samples_of(b, row, size, FULL_DUPLEX)[k] = 2e-6 * (double)bytes * packets / j.seconds;
     samples_of(b, row, size, SEND)[k] = 1e9 * j.part / packets;
     j.run = late_receive;
-    j.rounds = b->options->quick ? 2 : 6;
-    status = lar_pair_run(&j, error);
+    rounds = b->options->quick ? 2 : 6;
+    status = lar_pair_measure(&j, 0, &rounds, error);
     samples_of(b, row, size, RECEIVE)[k] = 1e9 * j.part / ((double)j.packets * (double)j.rounds);
     return status;
 }
@@ -172,12 +172,12 @@ static lar_status take_delay(bench *b, int row, int size, int k, lar_error *erro
                       .run = computing,
                       .cores = b->result->cores,
                       .bytes = (size_t)b->result->size[size],
-                      .rounds = b->portions,
                       .context = b};
-    lar_status status = lar_pair_run(&j, error);
+    uint64_t rounds = b->portions;
+    lar_status status = lar_pair_measure(&j, 0, &rounds, error);
     double alone = j.seconds;
     j.packets = 1;
-    if (!status) status = lar_pair_run(&j, error);
+    if (!status) status = lar_pair_measure(&j, 0, &rounds, error);
     samples_of(b, row, size, DELAY)[k] = 1e9 * (j.seconds - alone) / (double)j.rounds;
     return status;
 }
