@@ -246,7 +246,8 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, step, error);
     if (status) {
-        __atomic_store_n(&p->failed, 1, __ATOMIC_RELEASE);
+        worker->follows = __atomic_exchange_n(&p->failed, 1, __ATOMIC_ACQ_REL) != 0;
+        if (!worker->follows && status != LAR_ERROR_PEER && p->comm) lar_comm_abort(p->comm);
         return status;
     }
     clear_parcels(worker);

@@ -19,14 +19,20 @@ static lar_processor *processor_of(const lar_computer *computer, int32_t seat) {
 
 /* ---- what went wrong ----------------------------------------------------------------------- */
 
-/* The first cause among the seats: a loss of a peer is often the consequence of something else. */
+/* How little a seat's failure says: it may be a consequence of another one. */
+static int consequence(const lar_computer *computer, int32_t seat) {
+    const lar_processor *p = processor_of(computer, seat);
+    if (p->worker && p->worker[seat % computer->threads].follows) return 2;
+    return computer->seat[seat].status == LAR_ERROR_PEER;
+}
+
 static lar_status first_failure(lar_computer *computer, lar_error *error) {
     const lar_seat *chosen = NULL;
+    int least = 3;
     for (int32_t i = 0; i < seats(computer); i++) {
-        const lar_seat *seat = &computer->seat[i];
-        if (!seat->status) continue;
-        if (!chosen || (chosen->status == LAR_ERROR_PEER && seat->status != LAR_ERROR_PEER))
-            chosen = seat;
+        if (!computer->seat[i].status || consequence(computer, i) >= least) continue;
+        chosen = &computer->seat[i];
+        least = consequence(computer, i);
     }
     if (!chosen) return LAR_OK;
     computer->broken = true;
@@ -60,6 +66,9 @@ static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error 
     comm.team = computer->team;
     comm.master = options->master;
     comm.listener = p->self == 0 ? options->listener : -1;
+    /* A processor that lives may be slow on a busy machine; whether it lives is watched anyway, and
+     * within one process it cannot die alone. */
+    comm.patience = computer->team ? 120 : 20;
     return lar_comm_open(&comm, &p->comm, error);
 }
 

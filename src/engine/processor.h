@@ -65,6 +65,7 @@ typedef struct lar_worker {
     lar_trip trip;
     unsigned char *gather; /* where packets are put together that the backend has no room for */
     uint64_t random;       /* of the delays; 0: none */
+    bool follows;          /* it failed because another thread of the processor had */
 } __attribute__((aligned(64))) lar_worker;
 
 typedef struct lar_processor {
