@@ -8,6 +8,8 @@
  * that is used in a circle: a message's memory is free again when MPI says that it is sent. A put
  * that finds no room receives meanwhile, so two that send to each other cannot block each other.
  *
+ * Large packets leave only while their sender waits, puts or closes: MPI works inside its calls.
+ *
  * Leaving: everyone tells everyone goodbye (step 0), with sends that are complete only when they
  * are received. Messages do not overtake each other, so nothing is on the way after that.
  *

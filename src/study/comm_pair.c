@@ -31,23 +31,8 @@ static void *other_end(void *context) {
     return NULL;
 }
 
-lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
-    pthread_t thread;
-    if (j->with->launched) return j->run(j, j->with->launched->self, error);
-    if (pthread_create(&thread, NULL, other_end, j) != 0)
-        return lar_fail(error, LAR_ERROR_MEMORY,
-                        "no second thread could be started; raise the limit on threads");
-    j->status[0] = j->run(j, 0, &j->error[0]);
-    pthread_join(thread, NULL);
-    for (int end = 0; end < 2; end++) {
-        if (!j->status[end]) continue;
-        if (error) *error = j->error[end];
-        return j->status[end];
-    }
-    return LAR_OK;
-}
-
-/* Under mpirun: the other end learns how long it took, and so decides the same. */
+/* Under mpirun: the other end learns how long it took, and so decides the same. Both have then
+ * received everything: MPI sends large packets only while the sender waits or puts. */
 static lar_status share_time(lar_pair_job *j, lar_error *error) {
     lar_pair *p = j->with;
     int end = p->launched->self;
@@ -64,11 +49,31 @@ static lar_status share_time(lar_pair_job *j, lar_error *error) {
     return lar_comm_put(p->comm[1], 0, 0, NULL, 0, step, error);
 }
 
+lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
+    pthread_t thread;
+    if (j->with->launched) {
+        int self = j->with->launched->self;
+        lar_status status = j->run(j, self, error);
+        bool open = j->with->comm[self] != NULL; /* not after closing */
+        return status || !open ? status : share_time(j, error);
+    }
+    if (pthread_create(&thread, NULL, other_end, j) != 0)
+        return lar_fail(error, LAR_ERROR_MEMORY,
+                        "no second thread could be started; raise the limit on threads");
+    j->status[0] = j->run(j, 0, &j->error[0]);
+    pthread_join(thread, NULL);
+    for (int end = 0; end < 2; end++) {
+        if (!j->status[end]) continue;
+        if (error) *error = j->error[end];
+        return j->status[end];
+    }
+    return LAR_OK;
+}
+
 lar_status lar_pair_measure(lar_pair_job *j, double least, uint64_t *rounds, lar_error *error) {
     for (;;) {
         j->rounds = *rounds;
         lar_status status = lar_pair_run(j, error);
-        if (!status && j->with->launched) status = share_time(j, error);
         if (status || j->seconds >= least || *rounds >= 1 << 20) return status;
         *rounds *= 2;
     }
