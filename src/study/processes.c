@@ -68,13 +68,14 @@ static void end_soon(int signal_number) {
 }
 #endif
 
-/* When processor zero ends, this process has two seconds to find out and to say so. */
+/* When processor zero ends, this process has two seconds to find out and to say so. The signal may
+ * come more than once: for each thread of the dying process that was the parent for a moment. */
 static void follow_parent(void) {
 #ifdef __linux__
-    struct sigaction action = {.sa_handler = end_soon, .sa_flags = SA_RESTART | SA_RESETHAND};
+    struct sigaction action = {.sa_handler = end_soon, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
-    sigaction(SIGALRM, &action, NULL);
-    prctl(PR_SET_PDEATHSIG, SIGALRM);
+    sigaction(SIGUSR1, &action, NULL);
+    prctl(PR_SET_PDEATHSIG, SIGUSR1);
 #endif
 }
 

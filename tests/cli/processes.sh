@@ -2,8 +2,7 @@
 # Processors as processes: the same hash, who is lost is named, nothing stays behind.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 "$LARIAT" demo-model demo
-scene=demo/uterus.yaml
+scene=$SOURCE/examples/beam.yaml # small: processes share the cores of whatever machine this is
 expect 0 "$LARIAT" run $scene --steps 40 --json
 hash=$(value_of state_hash)
 
@@ -33,7 +32,7 @@ nothing_left() {
 comms='shm tcp'
 "$LARIAT" run $scene --steps 1 --grid 1x1x1 --comm ucx >/dev/null 2>&1 && comms="$comms ucx"
 for comm in $comms; do
-    for grid in 2x1x1 3x1x1 2x2x1; do
+    for grid in 2x1x1 2x2x1; do
         expect 0 "$LARIAT" run $scene --steps 40 --json --grid $grid --comm $comm
         [ "$(value_of state_hash)$(value_of comm)" = "$hash\"$comm\"" ] ||
             fail "$comm, $grid: $(value_of state_hash), not $hash"
@@ -43,18 +42,25 @@ for comm in $comms; do
     [ "$(value_of state_hash)" = "$hash" ] || fail "verify by $comm: $(value_of state_hash)"
 done
 
+# Until process K of the run runs: it has a second thread, its watch, when all have met. Sets $pid.
+await_other() {
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        pid=$(other $zero "$1")
+        [ -n "$pid" ] && [ "$(find "/proc/$pid/task" -maxdepth 1 | wc -l)" -gt 2 ] && return
+        sleep 0.2
+    done
+    fail "processor $1 does not start"
+}
+
 # One is killed or stopped: every other one says so, in time.
 lose() {
     signal=$1 comm=$2 victim=$3
-    "$LARIAT" run $scene --steps 100000000 --grid 3x1x1 --comm "$comm" --json >out 2>err &
+    "$LARIAT" run $scene --steps 1000000000 --grid 3x1x1 --comm "$comm" --json >out 2>err &
     zero=$!
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-        one=$(other $zero 1) two=$(other $zero 2)
-        # Its watch runs when it has met the others.
-        [ -n "$one" ] && [ -n "$two" ] && [ "$(ls "/proc/$two/task" 2>/dev/null | wc -l)" -gt 1 ] &&
-            break
-        sleep 0.1
-    done
+    await_other 1
+    one=$pid
+    await_other 2
+    two=$pid
     sleep 0.5
     case $victim in 0) pid=$zero ;; 1) pid=$one ;; 2) pid=$two ;; esac
     kill "-$signal" "$pid" || fail "no processor $victim to lose"
@@ -104,7 +110,7 @@ expect 0 "$LARIAT" run $scene --steps 40 --json --grid 2x1x1 --comm tcp --proces
 wait $pid || fail "processor 1 failed"
 [ "$(value_of state_hash)" = "$hash" ] || fail "by hand: $(value_of state_hash), not $hash"
 [ ! -s other ] && [ ! -e not-here ] || fail "processor 1 wrote something"
-for wrong in "run $SOURCE/examples/beam.yaml" "run $scene --distribution random" "verify $scene"; do
+for wrong in "run $scene --time-step 1e-6" "run $scene --distribution random" "verify $scene"; do
     port=$((port + 1))
     # shellcheck disable=SC2086
     by_hand $wrong
@@ -137,13 +143,13 @@ refuse 1 'stable step' --comm shm --time-step 1
 # Ctrl-C in a terminal reaches all of them; processor zero ends the run.
 "$LARIAT" run $scene --time 3600 --realtime --grid 2x1x1 --comm shm --json >out 2>err &
 zero=$!
-sleep 1.5
-one=$(other $zero 1)
-kill -INT $zero "$one"
+await_other 1
+sleep 0.5
+kill -INT $zero "$pid"
 wait $zero
 status=$?
 [ $status -eq 130 ] || fail "exit status $status instead of 130 after SIGINT"
 [ "$(value_of interrupted)" = true ] || fail "the summary does not say interrupted"
 [ ! -s err ] || fail "messages after Ctrl-C"
-nothing_left "$one"
+nothing_left "$pid"
 finish "processes: the same hash by $comms, losses told, nothing left"

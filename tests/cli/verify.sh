@@ -18,7 +18,6 @@ for word in '^schedules ' '^proved ' '^verified ' '^compared ' 'no races' 'at mo
     says "$word"
 done
 expect 0 "$LARIAT" verify "$SOURCE/examples/beam.yaml" --grid 2x2x1 --distribution random --steps 5
-expect 0 "$LARIAT" verify $scene --steps 1
 
 # Files: good ones, then what can be wrong with them.
 expect 0 "$LARIAT" partition $scene --grid 2x1x1 --method cut --schedules good
