@@ -35,7 +35,7 @@ typedef struct lar_bench_scaling_options {
     const char *processors;   /* "1,2": how many, in grids with the least communication; 1 is one
                                  processor with a schedule */
     const char *grids;        /* "2x1x1,1x2x1": instead; NULL: none */
-    const char *threads;      /* "2,3": of one processor; NULL: none */
+    const char *threads;      /* "2,3": of one processor, not under mpirun; NULL: none */
     const char *comm;         /* "threads,shm": for two processors and more; NULL: these, and under
                                  mpirun mpi */
     const char *scheme;       /* as in lar_options, NULL: its default */

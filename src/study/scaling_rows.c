@@ -177,7 +177,9 @@ lar_status lar_scaling_rows(const lar_bench_scaling_options *options, int32_t la
     if (!status)
         status = options->grids ? add_grids(options, launched, r, error)
                                 : add_counts(options, launched, r, error);
-    for (const char *list = options->threads; !status && next_word(&list, word, sizeof word);) {
+    /* The other processes of mpirun, while they wait, keep cores busy. */
+    const char *list = launched > 1 ? NULL : options->threads;
+    while (!status && next_word(&list, word, sizeof word)) {
         status = read_count(word, THREADS_MOST, "threads", &count, error);
         if (!status && count > 1) status = add_row(r, "1x1x1", 1, count, THREADS, NULL, error);
     }

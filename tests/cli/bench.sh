@@ -37,4 +37,33 @@ complains 'no communication backend pigeons'
 expect 2 "$LARIAT" bench com
 complains 'did you mean comm'
 expect 2 "$LARIAT" bench comm --bytes 0
+
+expect 0 "$LARIAT" bench scaling --elements 64 --quick --repeat 2 --comm threads,shm,tcp,mpi --json
+has_keys title elements nodes isa scheme pinned state_hash rows --numbers cores samples \
+    warm_up_steps steps_per_sample core_to_core_ns.median
+[ "$(grep -c '"us_per_step":' "$SCRATCH/out")" -eq 6 ] || fail "not six ways measured"
+[ "$(grep -c '"missing":' "$SCRATCH/out")" -eq 1 ] || fail "mpi without mpirun"
+grep '"\(over_plain\|speed_up\|efficiency\|us_per_step\)":' "$SCRATCH/out" |
+    awk -F': *' '!($2 + 0 > 0) { exit 1 }' || fail "a figure that is not positive"
+# A scene, whose processes read it themselves; the state is the one that a run comes to.
+expect 0 "$LARIAT" demo-model "$SCRATCH/demo"
+expect 0 "$LARIAT" bench scaling "$SCRATCH/demo/uterus.yaml" --grid 1x1x1,1x2x1 --comm shm \
+    --scheme local --threads 3 --no-pin --quick --repeat 1 --json
+hash=$(value_of state_hash) steps=$(($(value_of warm_up_steps) + $(value_of steps_per_sample)))
+[ "$(grep -c '"us_per_step":' "$SCRATCH/out")" -eq 4 ] || fail "not four ways measured"
+expect 0 "$LARIAT" run "$SCRATCH/demo/uterus.yaml" --steps $steps --json
+[ "$(value_of state_hash)" = "$hash" ] || fail "the benchmark computes something else"
+expect 0 "$LARIAT" bench scaling --quick --repeat 1 --processors 1 --threads 1
+says 'plain loop'
+! grep -q 'by threads' "$SCRATCH/out" || fail "a way that was not asked for"
+expect 2 "$LARIAT" bench scaling --comm pigeons
+complains 'no communication by pigeons'
+expect 2 "$LARIAT" bench scaling --processors 1,two
+complains 'two'
+expect 2 "$LARIAT" bench scaling --processor 1 --grid 2x1x1 --comm shm
+complains 'belong together'
+expect 2 "$LARIAT" bench scaling scene.yaml --elements 8
+complains 'its own elements'
+expect 1 "$LARIAT" bench scaling nothing.yaml --quick
+complains 'nothing.yaml'
 finish "benchmark: keys and limits"
