@@ -99,6 +99,15 @@ static lar_status call_processes(const bench *b, const lar_bench_scaling_row *ro
     return status;
 }
 
+/* How a process ended says more than that its connection did. */
+static lar_status end_processes(lar_processes *processes, lar_status status, lar_error *error) {
+    lar_error end;
+    lar_status left = lar_processes_end(processes, status, &end);
+    if (!left || (status && status != LAR_ERROR_PEER)) return status;
+    if (error) *error = end;
+    return left;
+}
+
 static lar_status meet_in_job(bench *b, lar_options *options, lar_error *error) {
     lar_comm_options comm = lar_comm_options_default();
     lar_status status = lar_comm_job_meet(&b->job, &comm, error);
@@ -133,8 +142,7 @@ lar_status lar_bench_scaling_serve(const lar_bench_scaling_options *o, int32_t p
     status = lar_processes_meet(processes, &options, error);
     if (!status) status = serve(o->model, &options, error);
     if (status && status != LAR_ERROR_PEER) lar_processes_hesitate(processes);
-    lar_status left = lar_processes_end(processes, status, status ? NULL : error);
-    return status ? status : left;
+    return end_processes(processes, status, error);
 }
 
 /* What the other processes of mpirun do: as many samples, in the same order. */
@@ -241,8 +249,7 @@ static lar_status take_sample(bench *b, int i, int k, lar_error *error) {
         status = b->job.count > 1 ? meet_in_job(b, &options, error)
                                   : call_processes(b, row, &processes, &options, error);
     if (!status) status = run_steps(b, row, &options, sample, error);
-    lar_status left = lar_processes_end(processes, status, status ? NULL : error);
-    return status ? status : left;
+    return end_processes(processes, status, error);
 }
 
 /* ---- all samples ---------------------------------------------------------------------------- */
