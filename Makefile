@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 
-.PHONY: all setup demo check fuzz install format clean help
+.PHONY: all setup demo check check-long fuzz install format clean help
 .NOTPARALLEL:
 
 all: setup
@@ -28,6 +28,11 @@ check:
 	@tools/setup.sh build check
 	@JOBS=$(JOBS) tools/check.sh
 
+check-long: setup
+	cmake --preset release --log-level=NOTICE
+	cmake --build --preset release -j $(JOBS)
+	ctest --preset long -j 1
+
 fuzz:
 	@tools/setup.sh build fuzz
 	@JOBS=$(JOBS) FUZZ_SECONDS=$(FUZZ_SECONDS) tools/fuzz.sh
@@ -45,6 +50,7 @@ help:
 	@echo "make          build the library and the command into build/"
 	@echo "make demo     build, write the demonstration organ, simulate it"
 	@echo "make check    every test, then the fast ones again under the sanitizers"
+	@echo "make check-long  what takes longer: every combination, ten million packets"
 	@echo "make fuzz     fuzz every reader, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make install  library, header and command under PREFIX=$(PREFIX)"
 	@echo "make format   clang-format over all C files"

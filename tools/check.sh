@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # What `make check` runs: the fast tests and the fuzz smoke tests with the address and
-# undefined-behaviour sanitizers, then every test on the release build. Both parts always run;
-# the release build's closing line comes last. Where clang is there it builds the sanitized half,
-# so that both compilers see the code.
+# undefined-behaviour sanitizers, what has several threads with the thread sanitizer, then the tests
+# on the release build (all but those labelled long). All parts always run; the release build's
+# closing line comes last. Where clang is there it builds the sanitized parts, so that both
+# compilers see the code.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 jobs=${JOBS:-2}
@@ -20,10 +21,13 @@ if [ -z "$sanitizer_cc" ]; then
 fi
 
 # A build folder keeps its compiler for life: start again when it was made with another one.
-if [ -f build-asan/CMakeCache.txt ] &&
-    ! grep -q "^CMAKE_C_COMPILER:[A-Z]*=\(.*/\)\?$sanitizer_cc\$" build-asan/CMakeCache.txt; then
-    rm -rf build-asan
-fi
+for preset in asan tsan; do
+    if [ -f build-$preset/CMakeCache.txt ] &&
+        ! grep -q "^CMAKE_C_COMPILER:[A-Z]*=\(.*/\)\?$sanitizer_cc\$" \
+            build-$preset/CMakeCache.txt; then
+        rm -rf build-$preset
+    fi
+done
 
 cmake --preset release --log-level=NOTICE -DLARIAT_WERROR="$werror" &&
     cmake --build --preset release -j "$jobs" || exit 1
@@ -38,23 +42,30 @@ closing_line() {
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 
-sanitized=yes
-{
-    cmake --preset asan --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" \
+# sanitized PRESET: builds and tests with a sanitizer.
+sanitized() {
+    cmake --preset "$1" --log-level=NOTICE -DCMAKE_C_COMPILER="$sanitizer_cc" \
         -DLARIAT_WERROR="$werror" &&
-        cmake --build --preset asan -j "$jobs" &&
-        suite asan
-} || sanitized=no
+        cmake --build --preset "$1" -j "$jobs" &&
+        suite "$1"
+}
+failed=""
+for preset in asan tsan; do
+    sanitized $preset || failed="$failed $preset"
+done
 
 release=yes
 suite release || release=no
 
 echo
-if [ $sanitized = yes ]; then
-    echo "sanitizers ($sanitizer_cc): $(closing_line asan)"
-else
-    echo "check: the part with the sanitizers ($sanitizer_cc) FAILED, see above; alone:" \
-        "ctest --preset asan" >&2
-fi
+for preset in asan tsan; do
+    case " $failed " in
+    *" $preset "*)
+        echo "check: the part with the sanitizer $preset ($sanitizer_cc) FAILED, see above; alone:" \
+            "ctest --preset $preset" >&2
+        ;;
+    *) echo "sanitizer $preset ($sanitizer_cc): $(closing_line $preset)" ;;
+    esac
+done
 closing_line release
-[ $sanitized = yes ] && [ $release = yes ]
+[ -z "$failed" ] && [ $release = yes ]

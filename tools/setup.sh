@@ -5,7 +5,7 @@
 #   tools/setup.sh [build] [check] [fuzz]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
-#   check   what widens the tests: a second compiler, METIS, UCX, MPI, the cross compiler and emulator
+#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, the cross compiler and emulator
 #           for NEON
 #   fuzz    clang with libFuzzer
 #
@@ -28,6 +28,8 @@ CLANG_PACKAGES="
 clang             c:clang"
 METIS_PACKAGES="
 libmetis-dev      -"
+HWLOC_PACKAGES="
+libhwloc-dev      m:hwloc"
 UCX_PACKAGES="
 libucx-dev        m:ucx"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
@@ -146,6 +148,7 @@ for group in "$@"; do
     check)
         want_clang "the sanitizers run with gcc instead of clang"
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
+        want "$HWLOC_PACKAGES" "threads are not bound to cores" || true
         want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true

@@ -29,6 +29,12 @@ render --out "$images/uterus_von_mises.png" "$pulled" --size 900 520 \
     --color von_mises --range 0 1200 --legend 'von Mises\nstress [Pa]' \
     --azimuth 36 --elevation 20 --zoom 1.42
 
+# The organ divided among 2 x 2 x 3 processors.
+"$lariat" partition "$work/demo/uterus.yaml" --grid 2x2x3 --method genetic --generations 800 \
+    --vtu "$work/processors.vtu" >"$work/log"
+render --out "$images/uterus_processors.png" "$work/processors.vtu" --size 900 560 \
+    --color processor --apart 0.4 --crease 50 --azimuth 36 --elevation 20 --zoom 1.75
+
 # A soft cantilever of 40 x 4 x 4 elements, 0.1 x 0.01 x 0.01 m, E = 3 kPa, at rest under growing
 # shares of its weight: the beam of docs/validation.md.
 awk 'BEGIN {

@@ -22,8 +22,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonTransforms import vtkTransform
-from vtkmodules.vtkFiltersCore import (vtkCellDataToPointData, vtkFeatureEdges, vtkImageAppend,
-                                       vtkPolyDataNormals)
+from vtkmodules.vtkFiltersCore import (vtkAppendFilter, vtkCellDataToPointData, vtkFeatureEdges,
+                                       vtkImageAppend, vtkPolyDataNormals, vtkThreshold)
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter, vtkWarpVector
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkFiltersSources import vtkArrowSource
@@ -38,6 +38,10 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkRenderStepsPass, vtkSSAOPass
 # Colours of the parts of the demonstration organ by cell tag (1 to 4), then of other tags.
 PARTS = [(208, 112, 102), (224, 148, 128), (236, 208, 182), (200, 160, 148),
          (150, 170, 200), (170, 200, 160)]
+# Of processors, in turn: neighbours in number differ in hue.
+PROCESSORS = [(208, 112, 102), (110, 160, 180), (232, 190, 110), (140, 168, 120), (176, 132, 172),
+              (226, 150, 110), (96, 128, 160), (200, 180, 150), (120, 176, 160), (196, 116, 140),
+              (170, 170, 120), (140, 140, 190)]
 FINE = 2  # drawn so many times larger and averaged: no jagged edges
 INK = (0.16, 0.16, 0.18)
 # Light where nothing happens, dark where most does; the lightness falls evenly.
@@ -45,7 +49,27 @@ STOPS = [(0.00, (240, 232, 222)), (0.22, (250, 200, 140)), (0.48, (238, 118, 82)
          (0.74, (180, 44, 92)), (1.00, (66, 16, 82))]
 
 
-def read_grid(path, scale, color):
+def pull_apart(grid, factor):
+    """Moves the part of each processor away from the middle, by this share of its distance."""
+    middle = numpy.array(grid.GetCenter())
+    parts = vtkAppendFilter()
+    count = int(grid.GetCellData().GetArray("processor").GetRange()[1]) + 1
+    for p in range(count):
+        part = vtkThreshold()
+        part.SetInputData(grid)
+        part.SetInputArrayToProcess(0, 0, 0, 1, "processor")
+        part.SetLowerThreshold(p - 0.5)
+        part.SetUpperThreshold(p + 0.5)
+        part.Update()
+        piece = part.GetOutput()
+        points = vtk_to_numpy(piece.GetPoints().GetData())
+        points += (factor * (points.mean(axis=0) - middle)).astype(points.dtype)
+        parts.AddInputData(piece)
+    parts.Update()
+    return parts.GetOutput()
+
+
+def read_grid(path, scale, color, apart):
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(path)
     reader.Update()
@@ -63,7 +87,7 @@ def read_grid(path, scale, color):
         warp.SetScaleFactor(scale)
         warp.Update()
         grid = warp.GetOutput()
-    return grid
+    return pull_apart(grid, apart) if color == "processor" and apart > 0 else grid
 
 
 def surface_of(grid, crease):
@@ -82,11 +106,14 @@ def surface_of(grid, crease):
     return normals.GetOutput()
 
 
-def color_by_parts(surface):
+def color_by_parts(surface, processors):
     """Mixes the colours of the parts at their common nodes, as tissue does."""
-    tags = vtk_to_numpy(surface.GetCellData().GetArray("tag")).astype(int)
-    palette = numpy.array(PARTS, dtype=float)
-    cell = palette[numpy.clip(tags - 1, 0, len(PARTS) - 1)]
+    if processors:
+        number = vtk_to_numpy(surface.GetCellData().GetArray("processor")).astype(int)
+        cell = numpy.array(PROCESSORS, dtype=float)[number % len(PROCESSORS)]
+    else:
+        tags = vtk_to_numpy(surface.GetCellData().GetArray("tag")).astype(int)
+        cell = numpy.array(PARTS, dtype=float)[numpy.clip(tags - 1, 0, len(PARTS) - 1)]
     total = numpy.zeros((surface.GetNumberOfPoints(), 3))
     count = numpy.zeros(surface.GetNumberOfPoints())
     for c in range(surface.GetNumberOfCells()):
@@ -116,8 +143,8 @@ def lookup_table(low, high):
 
 def body_actor(surface, options, table):
     mapper = vtkPolyDataMapper()
-    if options.color == "parts":
-        color_by_parts(surface)
+    if options.color in ("parts", "processor"):
+        color_by_parts(surface, options.color == "processor")
     else:
         surface.GetPointData().SetActiveScalars(options.color)
         mapper.SetLookupTable(table)
@@ -271,7 +298,10 @@ def parse_arguments():
     parser.add_argument("frames", nargs="+", metavar="FRAME.vtu", help="one panel each")
     parser.add_argument("--out", required=True, metavar="FILE.png")
     parser.add_argument("--color", default="parts",
-                        help="parts (cell tags) or the name of an array, such as von_mises")
+                        help="parts (cell tags), processor (a file of lariat partition --vtu), "
+                        "or the name of an array, such as von_mises")
+    parser.add_argument("--apart", type=float, default=0.0,
+                        help="with --color processor: pulls the parts apart by this share")
     parser.add_argument("--range", nargs=2, type=float, metavar=("LOW", "HIGH"),
                         help="of the colours; the array's own when left out")
     parser.add_argument("--legend", default="", help="title of the colour legend")
@@ -312,14 +342,14 @@ def draw(renderer, width, height):
 
 def picture(options):
     width, height = options.size
-    grids = [read_grid(path, options.scale, options.color) for path in options.frames]
+    grids = [read_grid(path, options.scale, options.color, options.apart) for path in options.frames]
     surfaces = [surface_of(grid, options.crease) for grid in grids]
     all_bounds = [s.GetBounds() for s in surfaces]
     bounds = [(min if i % 2 == 0 else max)(b[i] for b in all_bounds) for i in range(6)]
     for i in (4, 5):
         bounds[i] -= options.shift * (bounds[5] - bounds[4])
     table = None
-    if options.color != "parts":
+    if options.color not in ("parts", "processor"):
         arrays = [vtk_to_numpy(s.GetPointData().GetArray(options.color)) for s in surfaces]
         low, high = options.range or (min(a.min() for a in arrays), max(a.max() for a in arrays))
         table = lookup_table(low, high)
