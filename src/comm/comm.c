@@ -123,6 +123,9 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
     const lar_comm_backend *backend = NULL;
     lar_comm *comm = NULL;
     lar_status status = find_backend(options->backend, &backend, error);
+    /* Who is alone needs no launcher to talk to itself. */
+    if (!status && options->count == 1 && backend->start == LAR_COMM_BY_LAUNCHER)
+        backend = &lar_comm_shm;
     if (!status) status = check_options(options, backend, error);
     if (!status && !(comm = lar_calloc(1, sizeof *comm)))
         status = lar_fail_memory(error, sizeof *comm, "communication");

@@ -112,11 +112,6 @@ static lar_status check_launcher(const lar_processes *p, lar_error *error) {
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "mpirun or srun has started this command more than once, and every one "
                         "would compute everything; give --comm mpi and --grid, or start it alone");
-    if (p->several && p->start == LAR_COMM_BY_LAUNCHER && !lar_comm_job_launched())
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "communication by %s needs a launcher: mpirun -n N lariat ..., or srun; "
-                        "without one there are threads, shm and tcp",
-                        p->setting.comm);
     return LAR_OK;
 }
 
@@ -218,6 +213,11 @@ static lar_status check_count(const lar_processes *p, int32_t count, lar_error *
                         "%d processes were started for a grid of %d processors; start as many as "
                         "the grid has, or change --grid",
                         (int)p->job.count, (int)count);
+    if (count > 1 && p->start == LAR_COMM_BY_LAUNCHER && p->job.count == 1)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "communication by %s needs a launcher: mpirun -n %d lariat ..., or srun; "
+                        "without one there are threads, shm and tcp",
+                        p->setting.comm, (int)count);
     if (p->self >= count)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "processor %d of a grid of %d; they count from 0", (int)p->self,
