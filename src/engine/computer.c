@@ -72,6 +72,10 @@ static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error 
     return lar_comm_open(&comm, &p->comm, error);
 }
 
+static bool shares_memory(const lar_options *options) {
+    return options->comm && strcmp(options->comm, "shm") == 0;
+}
+
 /* Every processor is compiled, and meets the others, in its own first thread. */
 static void open_seat(void *context, int32_t number) {
     lar_computer *computer = context;
@@ -84,7 +88,8 @@ static void open_seat(void *context, int32_t number) {
                                      .reporter = computer->division.reporter,
                                      .check = computer->checking ? &computer->check : NULL,
                                      .shift = computer->shift,
-                                     .delays = computer->options->delays};
+                                     .delays = computer->options->delays,
+                                     .near = computer->team || shares_memory(computer->options)};
     seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
     bool listens = schedule->processor == 0 && computer->options->listener >= 0;
     if (seat->status) {

@@ -63,6 +63,28 @@ static lar_status assign(const lar_schedule *schedule, const lar_processor_setti
     return LAR_OK;
 }
 
+/* An element may be recovered earlier than its batch asks for. Where the elements of a processor do
+ * not stay in its core's cache, going through them once is worth more than sending early, as long
+ * as packets need little time: all move to the first batch, but for a tail of some ten microseconds
+ * behind which the exchange still hides (20,000 elements on two cores: 108 instead of 111 us). The
+ * tail is the end of the whole layout's order: one region. */
+static void recover_in_one_sweep(const lar_layout *whole, const lar_mesh *mesh, assignment *a) {
+    enum { CACHED_ELEMENTS = 3000, TAIL = 1024 };
+    int32_t own[LAR_THREADS_MOST] = {0}, kept[LAR_THREADS_MOST] = {0};
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (a->thread[e] >= 0) own[a->thread[e]]++;
+    for (int32_t b = whole->block_count - 1; b >= 0; b--)
+        for (int lane = 0; lane < LAR_BLOCK; lane++) {
+            lar_gid e = whole->block[b].element[lane];
+            int32_t thread = e < 0 ? -1 : a->thread[e];
+            if (thread < 0 || own[thread] < CACHED_ELEMENTS || a->batch[e] == 0) continue;
+            if (kept[thread] < TAIL)
+                kept[thread]++;
+            else
+                a->batch[e] = 0;
+        }
+}
+
 /* ---- batches and packets ------------------------------------------------------------------ */
 
 static lar_status compile_batches(const lar_schedule *schedule, lar_processor *p,
@@ -201,6 +223,8 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
                          .check = setting->check};
     assignment a = {0};
     lar_status status = assign(schedule, setting, &a, error);
+    if (!status && setting->near)
+        recover_in_one_sweep(&setting->whole->layout, &setting->whole->model->mesh, &a);
     lar_part part = {
         .threads = schedule->threads, .thread = a.thread, .batch = a.batch, .owner = a.owner};
     if (!status)
