@@ -70,7 +70,7 @@ void cli_parallel_set(const cli_parallel *p, lar_options *options) {
     options->schedules = p->schedules;
     options->comm = p->comm < 0 ? NULL : cli_comm_names[p->comm];
     options->delays = (uint64_t)p->delays;
-    options->pin = !p->no_pin;
+    options->pin = p->pin ? 1 : p->no_pin ? 0 : 2;
 }
 
 /* ---- processes ------------------------------------------------------------------------------ */

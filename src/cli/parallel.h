@@ -43,7 +43,10 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
                  &(p).schedules),                                                                  \
         CLI_COUNT("--delays", "SEED", "random delays, to see that nothing depends on them",        \
                   &(p).delays, 1, 9e15),                                                           \
-        CLI_FLAG("--pin", "a core for every thread (default where there are\nenough)", &(p).pin),  \
+        CLI_FLAG(                                                                                  \
+            "--pin",                                                                               \
+            "a core for every thread where there are enough\n(default where they take all cores)", \
+            &(p).pin),                                                                             \
         CLI_FLAG("--no-pin", "leave it to the system which thread runs where", &(p).no_pin),       \
         CLI_COUNT("--processor", "K",                                                              \
                   "this process is processor K, 0 the one that reports;\nfor processors that are " \

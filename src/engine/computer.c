@@ -111,6 +111,12 @@ static lar_status size_buffers(lar_computer *computer, bool several, lar_error *
     return LAR_OK;
 }
 
+/* Whether so many threads, in this and other processes, get a core each. */
+static bool pins(const lar_options *options, int32_t threads) {
+    int32_t cores = options->pin ? lar_pin_cores() : 0;
+    return options->pin == 1 ? threads <= cores : cores > 0 && threads == cores;
+}
+
 static lar_status prepare(lar_computer *computer, lar_error *error) {
     const lar_options *options = computer->options;
     const lar_model *model = computer->whole->model;
@@ -139,8 +145,7 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     if (!computer->processor || !computer->seat)
         return lar_fail_memory(error, (size_t)seats(computer) * sizeof *computer->seat,
                                "the processors");
-    int32_t everywhere = count * computer->threads;
-    return lar_crew_create(seats(computer), options->pin && lar_pin_cores() >= everywhere,
+    return lar_crew_create(seats(computer), pins(options, count * computer->threads),
                            computer->first * computer->threads, &computer->crew, error);
 }
 
