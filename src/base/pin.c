@@ -19,12 +19,16 @@ static pthread_once_t once = PTHREAD_ONCE_INIT;
 static void load(void) {
     hwloc_topology_t made;
     if (hwloc_topology_init(&made) != 0) return;
-    /* Only cores that this process may use: of a container, of taskset, of a batch system. */
-    hwloc_topology_set_flags(made, HWLOC_TOPOLOGY_FLAG_RESTRICT_TO_CPUBINDING);
-    if (hwloc_topology_load(made) == 0)
-        topology = made;
-    else
+    if (hwloc_topology_load(made) != 0) {
         hwloc_topology_destroy(made);
+        return;
+    }
+    /* Only cores that this process may use: of a container, of taskset, of a batch system. */
+    hwloc_bitmap_t allowed = hwloc_bitmap_alloc();
+    if (allowed && hwloc_get_cpubind(made, allowed, HWLOC_CPUBIND_PROCESS) == 0)
+        hwloc_topology_restrict(made, allowed, 0);
+    hwloc_bitmap_free(allowed);
+    topology = made;
 }
 
 static bool ready(void) {
