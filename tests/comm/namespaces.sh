@@ -5,8 +5,7 @@
 #     namespaces.sh PEER SCRATCH
 PEER=$1
 SCRATCH=$2
-A=lariat-a-$$ B=lariat-b-$$
-MASTER=10.213.77.1:7077
+. "$(dirname "$0")/two_hosts.sh"
 ZERO= ONE=
 
 fail() {
@@ -18,26 +17,13 @@ fail() {
 clean_up() {
     for process in $ZERO $ONE; do kill -KILL "$process" 2>/dev/null; done
     wait
-    ip netns del "$A" 2>/dev/null
-    ip netns del "$B" 2>/dev/null
+    remove_hosts
 }
 
 mkdir -p "$SCRATCH"
-command -v ip >/dev/null || { echo "skipped: no ip command"; exit 77; }
-ip netns add "$A" 2>/dev/null || { echo "skipped: no network namespaces here"; exit 77; }
 trap clean_up EXIT
 trap 'exit 1' HUP INT TERM
-ip netns add "$B" || fail "no second namespace"
-# Made inside, so that the names of the two ends are nobody else's and go with the namespaces.
-ip -n "$A" link add cable type veth peer name cable netns "$B" 2>/dev/null || {
-    echo "skipped: no veth here"
-    exit 77
-}
-for side in "$A 10.213.77.1" "$B 10.213.77.2"; do
-    set -- $side
-    ip -n "$1" addr add "$2/24" dev cable && ip -n "$1" link set lo up &&
-        ip -n "$1" link set cable up || fail "the cable in $1"
-done
+make_hosts
 
 # start BACKEND STEPS
 start() {
