@@ -188,13 +188,20 @@ static void close_seat(void *context, int32_t number) {
     lar_processor_destroy(p);
 }
 
+/* Processor zero lets the other processes go. Who goes before that, or cannot say so, is given up:
+ * after a goodbye alone the others would wait for as long as they live. */
+static void take_leave(lar_computer *computer) {
+    lar_comm *comm = computer->processor ? computer->processor[0].comm : NULL;
+    if (!comm || computer->hosted == computer->division.grid.count) return;
+    const lar_order finish = {.kind = LAR_ORDER_FINISH};
+    if (computer->first == 0 && computer->control && !computer->broken)
+        computer->finished = lar_control_order(computer->control, &finish, NULL) == LAR_OK;
+    if (!computer->finished) lar_comm_abort(comm);
+}
+
 void lar_computer_destroy(lar_computer *computer) {
     if (!computer) return;
-    bool zero = computer->first == 0 && computer->control != NULL;
-    if (zero && !computer->broken) {
-        const lar_order finish = {.kind = LAR_ORDER_FINISH};
-        lar_control_order(computer->control, &finish, NULL);
-    }
+    take_leave(computer);
     lar_control_destroy(computer->control);
     if (computer->crew) lar_crew_run(computer->crew, close_seat, computer);
     lar_crew_destroy(computer->crew);
@@ -427,10 +434,11 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error) {
     lar_control *control = computer->control;
     lar_answer *answer = control ? control->answer : NULL;
     lar_status status = LAR_OK;
-    while (control && !status) {
+    while (control && !status && !computer->finished) {
         lar_order order;
         status = lar_control_obey(control, &order, error);
-        if (status || order.kind == LAR_ORDER_FINISH) break;
+        computer->finished = !status && order.kind == LAR_ORDER_FINISH;
+        if (status || computer->finished) break;
         if (order.kind == LAR_ORDER_ADVANCE)
             status = advance_here(computer, order.argument, error);
         else

@@ -45,7 +45,8 @@ typedef struct lar_computer {
     uint64_t until;  /* the step before which this advance ends */
     lar_watch *watch;
     void *watch_context;
-    bool broken; /* a processor failed: nothing goes on */
+    bool broken;   /* a processor failed: nothing goes on */
+    bool finished; /* processor zero has let everyone go */
     /* for opening */
     const lar_options *options;
     const lar_domain *whole;
@@ -59,8 +60,9 @@ typedef struct lar_computer {
 lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
                                const lar_options *options, lar_computer **computer,
                                lar_error *error);
-void lar_computer_destroy(
-    lar_computer *computer); /* accepts NULL; ends the other processes' serve */
+/* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
+ * Accepts NULL. */
+void lar_computer_destroy(lar_computer *computer);
 
 /* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
  * stopped everyone: *trip is then the first one. Processor zero only. */
