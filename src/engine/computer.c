@@ -76,8 +76,8 @@ static bool shares_memory(const lar_options *options) {
     return options->comm && strcmp(options->comm, "shm") == 0;
 }
 
-/* Every processor is compiled, and meets the others, in its own first thread. */
-static void open_seat(void *context, int32_t number) {
+/* Every processor is compiled in its own first thread. */
+static void compile_seat(void *context, int32_t number) {
     lar_computer *computer = context;
     lar_seat *seat = &computer->seat[number];
     if (number % computer->threads != 0) return;
@@ -91,13 +91,14 @@ static void open_seat(void *context, int32_t number) {
                                      .delays = computer->options->delays,
                                      .near = computer->team || shares_memory(computer->options)};
     seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
-    bool listens = schedule->processor == 0 && computer->options->listener >= 0;
-    if (seat->status) {
-        if (listens) close(computer->options->listener);
-        return;
-    }
-    lar_processor_scatter(p, computer->whole, computer->start);
-    seat->status = open_comm(computer, p, &seat->error);
+    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->start);
+}
+
+static void meet_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    lar_seat *seat = &computer->seat[number];
+    if (number % computer->threads != 0) return;
+    seat->status = open_comm(computer, processor_of(computer, number), &seat->error);
 }
 
 static lar_status size_buffers(lar_computer *computer, bool several, lar_error *error) {
@@ -149,10 +150,25 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
                            computer->first * computer->threads, &computer->crew, error);
 }
 
+/* They meet when all here are compiled: otherwise the others would wait for one that does not come.
+ */
+static lar_status open_processors(lar_computer *computer, bool *met, lar_error *error) {
+    lar_crew_run(computer->crew, compile_seat, computer);
+    lar_status status = first_failure(computer, error);
+    if (status) return status;
+    *met = true;
+    lar_crew_run(computer->crew, meet_seat, computer);
+    status = first_failure(computer, error);
+    if (!status && computer->hosted < computer->division.grid.count)
+        status = lar_control_create(computer->processor[0].comm, &computer->control, error);
+    return status;
+}
+
 lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
                                const lar_options *options, lar_computer **out, lar_error *error) {
     lar_computer *computer = lar_calloc(1, sizeof *computer);
     lar_status status = LAR_OK;
+    bool met = false;
     if (!computer) {
         status = lar_fail_memory(error, sizeof *computer, "the parallel computer");
     } else {
@@ -160,19 +176,13 @@ lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
         computer->whole = whole;
         computer->start = state;
         status = prepare(computer, error);
+        if (!status) status = open_processors(computer, &met, error);
+        lar_schedule_set_clear(&computer->division.schedules);
+        computer->options = NULL;
+        computer->start = NULL;
     }
-    if (status) {
-        if (options->listener >= 0) close(options->listener);
-        lar_computer_destroy(computer);
-        return status;
-    }
-    lar_crew_run(computer->crew, open_seat, computer);
-    status = first_failure(computer, error);
-    if (!status && computer->hosted < computer->division.grid.count)
-        status = lar_control_create(computer->processor[0].comm, &computer->control, error);
-    lar_schedule_set_clear(&computer->division.schedules);
-    computer->options = NULL;
-    computer->start = NULL;
+    /* Only the meeting of processor zero takes the listener over. */
+    if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
     if (status)
         lar_computer_destroy(computer);
     else

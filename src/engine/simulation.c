@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/hash.h"
 #include "engine/measure.h"
@@ -79,35 +80,40 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
     return LAR_OK;
 }
 
+static lar_status compile(const lar_model *model, const lar_options *options,
+                          lar_simulation *simulation, lar_error *error) {
+    lar_domain *domain = &simulation->domain;
+    lar_status status = lar_domain_create(model, options, domain, error);
+    if (!status) status = check_damping(domain, error);
+    if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
+    if (status) return status;
+    set_initial_displacements(simulation);
+    set_initial_velocities(simulation);
+    simulation->gathered = true;
+    return LAR_OK;
+}
+
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
                                  lar_simulation **simulation, lar_error *error) {
-    if (!model || !simulation)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_simulation_create needs a model and a "
-                        "place for the simulation");
     lar_options chosen = options ? *options : lar_options_default();
-    lar_status status = check_options(&chosen, error);
-    if (status) return status;
-    lar_simulation *made = lar_calloc(1, sizeof *made);
-    if (!made) return lar_fail_memory(error, sizeof *made, "the simulation");
-    status = lar_domain_create(model, &chosen, &made->domain, error);
-    if (!status) status = check_damping(&made->domain, error);
-    if (!status) status = lar_state_create(&made->state, made->domain.layout.node_padded, error);
-    if (status) {
-        lar_simulation_destroy(made);
-        return status;
-    }
-    set_initial_displacements(made);
-    set_initial_velocities(made);
-    if (is_parallel(&chosen))
+    lar_simulation *made = NULL;
+    lar_status status = LAR_OK;
+    if (!model || !simulation)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_simulation_create needs a model and a place for the simulation");
+    if (!status) status = check_options(&chosen, error);
+    if (!status && !(made = lar_calloc(1, sizeof *made)))
+        status = lar_fail_memory(error, sizeof *made, "the simulation");
+    if (!status) status = compile(model, &chosen, made, error);
+    if (!status && is_parallel(&chosen))
         status = lar_computer_create(&made->domain, &made->state, &chosen, &made->computer, error);
-    if (status) {
+    else if (chosen.listener >= 0)
+        close(chosen.listener); /* taken over, and nobody to use it */
+    if (status)
         lar_simulation_destroy(made);
-        return status;
-    }
-    made->gathered = true;
-    *simulation = made;
-    return LAR_OK;
+    else
+        *simulation = made;
+    return status;
 }
 
 void lar_simulation_destroy(lar_simulation *simulation) {

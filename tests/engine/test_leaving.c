@@ -1,7 +1,10 @@
-/* Processors that leave before their time: nobody waits for them for ever. Two processors, each
- * with a simulation of its own as in two processes, but in two threads. */
+/* Processors that leave before their time, or never come: nobody waits for them for ever. Two
+ * processors, each with a simulation of its own as in two processes, but in two threads. */
+#include <fcntl.h>
 #include <pthread.h>
 
+#include "comm/backend.h"
+#include "divide/schedule_file.h"
 #include "engine/engine_test.h"
 
 /* One that notices the end of a connection by itself, and one that does not. */
@@ -101,11 +104,85 @@ static void zero_hears_of_one_who_does_not_serve(void **unused) {
     }
 }
 
+/* ---- at the start -------------------------------------------------------------------------- */
+
+/* Schedules in which processor 1 moves its nodes in two batches: right, but not for this engine. */
+static void write_odd_schedules(const lar_model *model, const char *folder) {
+    lar_incidence incidence = {0};
+    lar_grid grid;
+    lar_distribution distribution = {0};
+    lar_schedule_set set = {0};
+    lar_schedule_options options = lar_schedule_options_default();
+    lar_error error;
+    if (lar_incidence_build(&model->mesh, &incidence, &error) ||
+        lar_grid_make(2, 1, 1, &grid, &error) ||
+        lar_distribution_cut(&model->mesh, &grid, &distribution, &error) ||
+        lar_schedule_build(&model->mesh, &incidence, &distribution, &options, &set, &error))
+        fail_msg("%s", error.message);
+    lar_schedule *s = &set.of[1];
+    lar_batch *longer = lar_calloc((size_t)s->batch_count + 1, sizeof *longer);
+    memcpy(longer, s->batch, (size_t)s->batch_count * sizeof *longer);
+    lar_range *early = &longer[s->batch_count - 1].positions,
+              *late = &longer[s->batch_count].positions;
+    *late = (lar_range){early->first + 1, early->count - 1};
+    early->count = 1;
+    free(s->batch);
+    s->batch = longer;
+    s->thread_first[1] = ++s->batch_count;
+    if (lar_schedule_write(folder, &set, &error)) fail_msg("%s", error.message);
+    lar_schedule_set_clear(&set);
+    lar_distribution_clear(&distribution);
+    lar_incidence_clear(&incidence);
+}
+
+/* Who is compiled does not go to a meeting to which the other cannot come: its limit is 20 s. */
+static void who_cannot_be_compiled_is_not_waited_for(void **unused) {
+    (void)unused;
+    static const char folder[] = LAR_TEST_BUILD "/odd-schedules";
+    lar_model *model = everything_model(&body);
+    write_odd_schedules(model, folder);
+    lar_options options = lar_options_default();
+    options.schedules = folder;
+    lar_simulation *simulation = NULL;
+    lar_error error;
+    double begin = lar_comm_now();
+    assert_int_equal(lar_simulation_create(model, &options, &simulation, &error),
+                     LAR_ERROR_UNSUPPORTED);
+    assert_true(lar_comm_now() - begin < lar_comm_options_default().start_timeout);
+    assert_non_null(strstr(error.message, "processor 1"));
+    assert_null(simulation);
+    lar_model_destroy(model);
+}
+
+/* Whatever is wrong with the options, and whoever they are for. */
+static void the_listener_is_taken_over_in_any_case(void **unused) {
+    (void)unused;
+    lar_model *model = everything_model(&body);
+    for (int i = 0; i < 5; i++) {
+        lar_options options = lar_options_default();
+        lar_simulation *simulation = NULL;
+        lar_error error;
+        char master[LAR_COMM_ADDRESS_TEXT];
+        assert_int_equal(lar_comm_listen("127.0.0.1:0", &options.listener, master, &error), LAR_OK);
+        if (i > 0) options.grid = i < 4 ? "2x2" : "1x1x1"; /* 0: not divided at all */
+        if (i == 1) options.threads = -1;
+        if (i == 2) options.time_step = 1e9;
+        if (i == 4) options.comm = "tcp";
+        assert_int_equal(lar_simulation_create(model, &options, &simulation, &error) == LAR_OK,
+                         i == 0 || i == 4);
+        lar_simulation_destroy(simulation);
+        assert_int_equal(fcntl(options.listener, F_GETFD), -1);
+    }
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_end_is_no_loss),
         cmocka_unit_test(the_others_hear_of_a_failure_of_zero),
         cmocka_unit_test(zero_hears_of_one_who_does_not_serve),
+        cmocka_unit_test(who_cannot_be_compiled_is_not_waited_for),
+        cmocka_unit_test(the_listener_is_taken_over_in_any_case),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
