@@ -44,12 +44,6 @@ lar_status lar_proof_sums(lar_proof *proof, int64_t *sums, lar_error *error);
 
 #define LAR_DISPROVE(error, ...) lar_fail((error), LAR_ERROR_MODEL, __VA_ARGS__)
 
-static inline int32_t lar_batch_thread(const lar_schedule *s, int32_t batch) {
-    int32_t thread = 0;
-    while (batch >= s->thread_first[thread + 1]) thread++;
-    return thread;
-}
-
 /* "processor 3, thread 1, batch 7". */
 enum { LAR_PLACE_TEXT = 64 };
 const char *lar_proof_place(const lar_schedule *s, int32_t batch, char text[LAR_PLACE_TEXT]);

@@ -106,6 +106,13 @@ typedef struct lar_schedule_set {
     lar_schedule *of; /* [count] by processor */
 } lar_schedule_set;
 
+/* The thread that has a batch. */
+static inline int32_t lar_batch_thread(const lar_schedule *schedule, int32_t batch) {
+    int32_t thread = 0;
+    while (batch >= schedule->thread_first[thread + 1]) thread++;
+    return thread;
+}
+
 static inline int64_t lar_packet_payload(int32_t vectors) {
     return LAR_SIGNAL_BYTES + (int64_t)LAR_VECTOR_BYTES * vectors;
 }

@@ -14,11 +14,11 @@ static int32_t *find_known(const lar_schedule *schedule) {
         changed = false;
         for (int32_t b = 0; b < schedule->batch_count; b++) {
             const lar_batch *batch = &schedule->batch[b];
-            int32_t thread = lar_thread_of_batch(schedule, b);
+            int32_t thread = lar_batch_thread(schedule, b);
             bool first = b == schedule->thread_first[thread];
             for (int32_t i = first ? 0 : -1; i < batch->waits.count; i++) {
                 int32_t other = i < 0 ? b - 1 : schedule->wait[batch->waits.first + i];
-                int32_t its_thread = lar_thread_of_batch(schedule, other);
+                int32_t its_thread = lar_batch_thread(schedule, other);
                 for (int32_t t = 0; t < schedule->threads; t++) {
                     int32_t *mine = &known[(size_t)b * threads + (size_t)t];
                     int32_t theirs = known[(size_t)other * threads + (size_t)t];
@@ -75,7 +75,7 @@ static lar_status find_use(const lar_schedule *schedule, const int32_t *thread,
             const lar_transfer *t = &schedule->transfer[i];
             for (int32_t v = 0; v < t->vectors.count; v++) {
                 lar_lid n = p->value[t->vectors.first + v] / 4;
-                use->adds[n] |= (uint16_t)(1u << lar_thread_of_batch(schedule, b));
+                use->adds[n] |= (uint16_t)(1u << lar_batch_thread(schedule, b));
                 use->replaced[n] = use->replaced[n] || v >= t->vectors.count - t->whole;
             }
         }

@@ -15,13 +15,6 @@
 
 #include "engine/processor.h"
 
-/* The thread of a schedule's batch. */
-static inline int32_t lar_thread_of_batch(const lar_schedule *schedule, int32_t batch) {
-    int32_t thread = 0;
-    while (batch >= schedule->thread_first[thread + 1]) thread++;
-    return thread;
-}
-
 /* Fills parcel, joint and foreign of all workers. thread[element of the model]: who recovers it,
  * -1: another processor. A schedule that moves nodes too early is refused. */
 lar_status lar_parcels_create(const lar_schedule *schedule, const int32_t *thread,

@@ -45,7 +45,7 @@ static lar_status assign(const lar_schedule *schedule, const lar_processor_setti
     if (status) return status;
     for (int32_t b = 0; b < schedule->batch_count; b++) {
         const lar_batch *batch = &schedule->batch[b];
-        int32_t thread = lar_thread_of_batch(schedule, b);
+        int32_t thread = lar_batch_thread(schedule, b);
         for (int32_t i = 0; i < batch->elements.count; i++) {
             int32_t e = schedule->element[batch->elements.first + i];
             a->thread[e] = thread;
