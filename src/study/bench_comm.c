@@ -110,8 +110,8 @@ static lar_status computing(lar_pair_job *j, int end, lar_error *error) {
     }
     if (end == 0) j->seconds = lar_pair_now() - begin;
     if (end == 0) __atomic_store_n(&p->arrived, p->step[0], __ATOMIC_RELEASE);
-    while (!p->launched && end == 1 && __atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[1])
-        sched_yield();
+    bool waits = end == 1 && !p->launched && !status;
+    while (waits && __atomic_load_n(&p->arrived, __ATOMIC_ACQUIRE) != p->step[1]) sched_yield();
     return status;
 }
 
@@ -211,16 +211,6 @@ static lar_status take_samples(bench *b, lar_error *error) {
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static lar_spread spread_of(double *samples, int count) {
-    qsort(samples, (size_t)count, sizeof *samples, by_size);
-    return (lar_spread){samples[0], samples[count / 2], samples[count - 1]};
-}
-
 /* The least size, between those tried, that reaches half of the best bandwidth. */
 static void find_half_bandwidth(const lar_bench_comm_result *r, lar_bench_comm_row *row) {
     double best = 0;
@@ -242,7 +232,7 @@ static void compare_with_hand(bench *b, int hand, int row, double *scratch) {
     const double *own = samples_of(b, row, r->asked, LATENCY);
     const double *best = samples_of(b, hand, r->asked, LATENCY);
     for (int k = 0; k < r->repeat; k++) scratch[k] = own[k] / best[k];
-    b->result->row[row].over_hand = spread_of(scratch, r->repeat).median;
+    b->result->row[row].over_hand = lar_spread_of(scratch, r->repeat).median;
 }
 
 static void fill_row(bench *b, int row) {
@@ -251,7 +241,7 @@ static void fill_row(bench *b, int row) {
     for (int size = 0; size < r->sizes; size++) {
         lar_spread of[FIGURES];
         for (figure what = 0; what < FIGURES; what++)
-            of[what] = spread_of(samples_of(b, row, size, what), samples_at(b, size));
+            of[what] = lar_spread_of(samples_of(b, row, size, what), samples_at(b, size));
         if (size == r->asked) to->latency = of[LATENCY];
         to->at[size] = (lar_bench_comm_figures){.latency = of[LATENCY].median,
                                                 .half_duplex = of[HALF_DUPLEX].median,
@@ -369,7 +359,7 @@ static void calibrate(bench *b) {
 
 static lar_status measure(bench *b, lar_error *error) {
     lar_bench_comm_result *r = b->result;
-    size_t samples = (size_t)(r->rows * r->sizes * FIGURES * r->repeat);
+    size_t samples = (size_t)(r->rows * r->sizes) * FIGURES * (size_t)r->repeat;
     b->samples = lar_calloc(samples, sizeof *b->samples);
     b->numbers = lar_calloc_aligned(COMPUTED, sizeof *b->numbers);
     if (!b->samples || !b->numbers)

@@ -178,7 +178,7 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static lar_spread spread_of(double *sample, int count) {
+lar_spread lar_spread_of(double *sample, int count) {
     qsort(sample, (size_t)count, sizeof *sample, compare);
     double median = 0.5 * (sample[(count - 1) / 2] + sample[count / 2]);
     return (lar_spread){sample[0], median, sample[count - 1]};
@@ -197,8 +197,8 @@ static lar_status measure(lar_simulation *simulation, const lar_fma_peak *peak,
         peak_sample[i] = 1e-9 * (double)rounds * peak->operations / took;
     }
     if (status) return status;
-    result->nanoseconds = spread_of(step_sample, result->repeat);
-    result->peak_gflops = spread_of(peak_sample, result->repeat);
+    result->nanoseconds = lar_spread_of(step_sample, result->repeat);
+    result->peak_gflops = lar_spread_of(peak_sample, result->repeat);
     result->fraction_of_peak =
         LAR_BENCH_OPERATIONS / result->nanoseconds.median / result->peak_gflops.median;
     return LAR_OK;

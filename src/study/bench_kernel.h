@@ -33,6 +33,9 @@ typedef struct lar_spread {
     double least, median, most;
 } lar_spread;
 
+/* Sorts the samples. */
+lar_spread lar_spread_of(double *sample, int count);
+
 typedef struct lar_bench_kernel_result {
     int32_t elements, nodes;
     int32_t edge[3]; /* elements along x, y, z */

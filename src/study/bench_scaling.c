@@ -180,23 +180,12 @@ static int tick(void *context, uint64_t step) {
     return 1;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static lar_spread spread_of(double *samples, int count) {
-    qsort(samples, (size_t)count, sizeof *samples, by_size);
-    double median = 0.5 * (samples[(count - 1) / 2] + samples[count / 2]);
-    return (lar_spread){samples[0], median, samples[count - 1]};
-}
-
 /* Microseconds of a step. */
 static double median_of_sections(const stopwatch *w) {
     double section[SECTIONS];
     for (int i = 0; i < SECTIONS; i++)
         section[i] = 1e6 * (w->at[i + 1] - w->at[i]) / (double)w->section;
-    return spread_of(section, SECTIONS).median;
+    return lar_spread_of(section, SECTIONS).median;
 }
 
 static lar_status check_hash(bench *b, const lar_bench_scaling_row *row, uint64_t hash,
@@ -307,11 +296,11 @@ static lar_status take_samples(bench *b, lar_error *error) {
 
 static void fill_rows(bench *b) {
     lar_bench_scaling_result *r = b->result;
-    r->core_to_core = spread_of(b->probes, r->repeat);
+    r->core_to_core = lar_spread_of(b->probes, r->repeat);
     for (int i = 0; i < r->rows; i++) {
         lar_bench_scaling_row *row = &r->row[i];
         if (row->missing) continue;
-        row->microseconds = spread_of(&b->samples[i * r->repeat], r->repeat);
+        row->microseconds = lar_spread_of(&b->samples[i * r->repeat], r->repeat);
         row->over_plain = row->microseconds.median / r->row[0].microseconds.median;
         row->speed_up = 1 / row->over_plain;
         row->efficiency = row->speed_up / (row->processors * row->threads);
