@@ -17,7 +17,7 @@ other() {
 # Nobody runs and nothing of ours is left in shared memory; what another test uses is locked.
 nothing_left() {
     for pid in "$@"; do
-        for _ in 1 2 3 4 5 6 7 8 9 10; do
+        for _ in $(seq 50); do
             [ -e "/proc/$pid" ] || break
             sleep 0.2
         done
@@ -44,12 +44,18 @@ done
 
 # Until process K of the run runs: it has a second thread, its watch, when all have met. Sets $pid.
 await_other() {
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    for _ in $(seq 150); do
         pid=$(other $zero "$1")
         [ -n "$pid" ] && [ "$(find "/proc/$pid/task" -maxdepth 1 | wc -l)" -gt 2 ] && return
         sleep 0.2
     done
     fail "processor $1 does not start"
+}
+
+# Nothing of it is left but what processor zero has to hear.
+ended() {
+    [ ! -e "/proc/$1" ] || [ "$(cut -d ' ' -f 3 "/proc/$1/stat" 2>/dev/null)" = Z ] ||
+        [ ! -e "/proc/$1" ]
 }
 
 # One is killed or stopped: every other one says so, in time.
@@ -66,10 +72,13 @@ lose() {
     kill "-$signal" "$pid" || fail "no processor $victim to lose"
     case $signal$victim in
     STOP0)
-        sleep 2.5
+        # Long before their patience ends (20 s); how soon exactly, comm/lost measures.
         for pid in $one $two; do
-            [ ! -e "/proc/$pid" ] || [ "$(cut -d ' ' -f 3 "/proc/$pid/stat")" = Z ] ||
-                fail "process $pid still runs"
+            for _ in $(seq 50); do
+                ended "$pid" && break
+                sleep 0.2
+            done
+            ended "$pid" || fail "process $pid still runs"
         done
         kill -CONT $zero
         ;;
@@ -99,7 +108,7 @@ complains 'processor 1 was stopped by signal'
 lose STOP tcp 0
 
 # By hand; and who does not belong to it.
-port=$((20000 + $$ % 20000))
+port=$((20000 + $$ % 12000)) # below those that the system gives out by itself
 by_hand() {
     "$LARIAT" "$@" --grid 2x1x1 --comm tcp --processor 1 --master 127.0.0.1:$port >other 2>complaint &
     pid=$!
