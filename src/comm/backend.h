@@ -1,4 +1,5 @@
-/* Inside comm: a backend is a table of at most eight functions.
+/* Inside comm: a backend is a table of at most seven functions. A new one is a file with such a
+ * table and a row in comm.c.
  *
  *     lar_comm_open   open()       own receive buffer; what others need to reach it -> own address
  *                     (meeting)    processor zero gathers and distributes all addresses (T 7.5.7)
@@ -36,7 +37,6 @@ typedef struct lar_comm_backend {
     lar_status (*open)(lar_comm *comm, lar_error *error);
     lar_status (*connect)(lar_comm *comm, lar_error *error);
     void (*begin)(lar_comm *comm);
-    void *(*room)(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
     lar_status (*put)(lar_comm *comm, int32_t peer, size_t offset, const void *data, size_t bytes,
                       uint64_t step, lar_error *error);
     /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. An error says

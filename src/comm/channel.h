@@ -40,7 +40,7 @@ typedef struct lar_packet {
 } lar_packet;
 
 /* Begins a packet of at most `most` bytes. `gather` (at least `most` bytes) is used where the
- * backend has no room of its own; it may serve the next packet after lar_packet_send. */
+ * peer's memory cannot be written; it may serve the next packet after lar_packet_send. */
 lar_status lar_packet_start(lar_packet *packet, lar_comm *comm, int32_t peer, size_t offset,
                             size_t most, uint64_t step, void *gather, lar_error *error);
 lar_status lar_packet_queue(lar_packet *packet, const void *data, size_t bytes, lar_error *error);
@@ -67,7 +67,7 @@ typedef struct lar_channel {
     size_t sent, received; /* bytes of the regions that are used up in this step */
     size_t filled;         /* of the packet being gathered */
     unsigned char *at;     /* where it is gathered */
-    unsigned char *gather; /* [send_bytes], owned; where the backend has no room of its own */
+    unsigned char *gather; /* [send_bytes], owned; where the peer's memory cannot be written */
 } lar_channel;
 
 /* Takes memory for gathering; destroy frees it and accepts a zeroed channel. */

@@ -257,8 +257,7 @@ void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, u
     if (!peer_exists(comm, peer)) return NULL;
     const lar_comm_peer *to = &comm->peers[peer];
     if (step == 0 || !lar_comm_fits(to->half, offset, bytes)) return NULL;
-    if (to->direct) return to->direct + (step & 1 ? to->half : 0) + offset;
-    return comm->backend->room ? comm->backend->room(comm, peer, offset, bytes, step) : NULL;
+    return to->direct ? to->direct + (step & 1 ? to->half : 0) + offset : NULL;
 }
 
 static inline uint64_t load_tail(const uint64_t *tail) {
@@ -369,14 +368,4 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error) {
     return wait_for(comm, peer, offset, bytes, step, payload, poll_and_sleep, error);
-}
-
-bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step) {
-    size_t half = comm->options.receive_bytes;
-    if (step == 0 || !peer_exists(comm, peer) || !lar_comm_fits(half, offset, bytes)) return false;
-    const uint64_t *tail = lar_comm_tail(comm->receive, half, offset, bytes, step);
-    if (load_tail(tail) == step) return true;
-    if (!comm->backend->progress) return false;
-    comm->backend->progress(comm, peer);
-    return load_tail(tail) == step;
 }

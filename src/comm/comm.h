@@ -50,12 +50,12 @@ typedef struct lar_comm lar_comm;
 typedef struct lar_comm_team lar_comm_team;
 
 typedef struct lar_comm_options {
-    const char *backend;  /* "threads", "shm", "tcp" */
+    const char *backend;  /* "threads", "shm", "ucx", "mpi", "tcp" */
     int32_t self, count;  /* this processor, 0..count-1 */
     size_t receive_bytes; /* of one half of the own receive buffer, tails included */
     uint64_t identity;    /* hash of model, schedule and whatever else must agree */
     lar_comm_team *team;  /* backend threads only */
-    const char *master;   /* otherwise: "host:port" where processor zero listens */
+    const char *master;   /* otherwise: "host:port" where processor zero listens (job.h: by MPI) */
     int listener;         /* processor zero: from lar_comm_listen, or -1 to listen at `master`.
                              Taken over by lar_comm_open, whatever it returns */
     double start_timeout; /* for all to come together [s] */
@@ -108,8 +108,7 @@ lar_status lar_comm_put(lar_comm *comm, int32_t peer, size_t offset, const void 
                         uint64_t step, lar_error *error);
 
 /* Where a packet may be gathered in place, so that lar_comm_put with data = that pointer copies
- * nothing: the peer's memory where it can be reached, or memory of the backend. NULL: gather
- * elsewhere. */
+ * nothing: the peer's memory, where it can be written from here. NULL: gather elsewhere. */
 void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
 
 /* Hints, for places that are right. Where processors share memory they bring cache lines near while
@@ -127,14 +126,12 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
                          const void **payload, lar_error *error);
 
 /* The same for the quiet time between commands: no limit while everyone lives (a loss ends it as
- * above), and after a short while of polling it sleeps, 50 us at first, 1 ms at last, so that
- * waiting costs no processor time and an answer may come up to 1 ms late. `step` counts the packets
- * at this offset, which need not be steps of a simulation: the message of a loss names no step. */
+ * above; who closed without an abort is no loss), and after a short while of polling it sleeps, 50
+ * us at first, 1 ms at last, so that waiting costs no processor time and an answer may come up to 1
+ * ms late. `step` counts the packets at this offset, which need not be steps of a simulation: the
+ * message of a loss names no step. */
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error);
-
-/* Whether it is there, without waiting; lets the backend work once. */
-bool lar_comm_arrived(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
 
 /* ---- the backends of this build ---------------------------------------------------------- */
 

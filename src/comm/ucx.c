@@ -12,7 +12,7 @@
  *
  * A message is right on every network. A put is used only over those that write memory themselves
  * and in order (rc, dc). LARIAT_UCX=put or =message in the environment forces one, for tests and
- * measurements. No memory to gather in (room): UCX copies packets of a few kilobytes anyway.
+ * measurements.
  *
  * Lifetimes. The payload of a put or message must stay until UCX has taken it, which it mostly has
  * when the call returns; otherwise lar_comm_put lets UCX work until then, which also takes in what

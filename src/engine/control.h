@@ -3,7 +3,7 @@
  *     zero                                      the others
  *       order {advance until 5000} ------------->  compute
  *       <------------- answer {step 5000, trip, work}
- *       order {gather, node 0} ----------------->  copy
+ *       order {gather, round 0} ---------------->  copy
  *       <------------- answer {values of some nodes}      ... until all are there
  *       order {finish} ------------------------->  end
  *
@@ -25,7 +25,7 @@ typedef enum lar_order_kind {
 
 typedef struct lar_order {
     uint64_t kind;     /* lar_order_kind */
-    uint64_t argument; /* advance: the step to stop before; gather: the first node's place */
+    uint64_t argument; /* advance: the step to stop before; gather: the round, 0, 1, ... */
 } lar_order;
 
 /* Values of so many nodes fit into one answer: u and v, three numbers each. */

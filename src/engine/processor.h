@@ -63,7 +63,7 @@ typedef struct lar_worker {
     int32_t foreign_count;
     int32_t *foreign; /* 4 * local node: read here, moved by others */
     lar_trip trip;
-    unsigned char *gather; /* where packets are put together that the backend has no room for */
+    unsigned char *gather; /* for packets to peers whose memory cannot be written from here */
     uint64_t random;       /* of the delays; 0: none */
     bool follows;          /* it failed because another thread of the processor had */
 } __attribute__((aligned(64))) lar_worker;

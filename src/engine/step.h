@@ -3,7 +3,7 @@
  *     loads -> elements -> nodes -> supports
  *
  * lar_step takes them in this order for a whole model. Processors of several go through the same
- * parts batch by batch, and exchange force sums in between (engine/batch.h).
+ * parts batch by batch, and exchange force sums in between (engine/batch.c).
  *
  * Leapfrog form of the central differences of T 2.2.5: forces at u_n turn v_(n-1/2) into
  * v_(n+1/2), which turns u_n into u_(n+1). No allocation, lock, system call or printing happens in
