@@ -43,9 +43,7 @@ lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const in
 bool lar_draft_joins(const lar_draft *draft, lar_gid e, lar_gid other) {
     const lar_part *part = draft->part;
     if (lar_draft_law(draft, e) != lar_draft_law(draft, other)) return false;
-    if (!part) return true;
-    return part->thread[e] == part->thread[other] &&
-           (!part->rows_within_batches || part->batch[e] == part->batch[other]);
+    return !part || part->thread[e] == part->thread[other];
 }
 
 bool lar_draft_begin(lar_draft *draft, const lar_model *model, const lar_layout *whole,

@@ -29,7 +29,6 @@ typedef struct lar_part {
     const int32_t *thread; /* [elements of the model] who recovers it; -1: another processor */
     const int32_t *batch;  /* [elements of the model] batch of its thread that needs it, from 0 */
     const int32_t *owner;  /* [nodes of the model] who moves it; -1: not in this processor */
-    bool rows_within_batches; /* rows only of elements of one batch: later, but more loose ones */
 } lar_part;
 
 /* Lays out a part. `whole` lends its corners and must outlive the part. Fails for want of memory;

@@ -14,11 +14,11 @@ typedef struct slice {
     int32_t *thread, *batch, *owner;
 } slice;
 
-static slice new_slice(const lar_mesh *mesh, int32_t threads, bool within) {
+static slice new_slice(const lar_mesh *mesh, int32_t threads) {
     slice s = {.thread = lar_calloc((size_t)mesh->element_count, sizeof(int32_t)),
                .batch = lar_calloc((size_t)mesh->element_count, sizeof(int32_t)),
                .owner = lar_calloc((size_t)mesh->node_count, sizeof(int32_t))};
-    s.part = (lar_part){threads, s.thread, s.batch, s.owner, within};
+    s.part = (lar_part){threads, s.thread, s.batch, s.owner};
     return s;
 }
 
@@ -60,15 +60,11 @@ static void batches_from_border(const lar_mesh *mesh, slice *s, int32_t most) {
 
 static void check_lanes(const lar_part *part, const lar_lanes *block) {
     int32_t earliest = INT32_MAX;
-    int row = block->rows == LAR_ROWS_FOUR ? 4 : 8;
     for (int k = 0; k < LAR_BLOCK; k++) {
         lar_gid e = block->element[LAR_ROW_LANES[k]];
         if (e < 0) continue;
         assert_int_equal(part->thread[e], block->thread);
         if (part->batch[e] < earliest) earliest = part->batch[e];
-        if (part->rows_within_batches && block->rows != LAR_ROWS_NONE)
-            assert_int_equal(part->batch[e],
-                             part->batch[block->element[LAR_ROW_LANES[k / row * row]]]);
     }
     assert_int_equal(block->batch, earliest);
 }
@@ -137,7 +133,7 @@ static void parts_of_bricks(void **unused) {
         lar_layout whole;
         assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
         for (int i = 0; i < 4; i++) {
-            slice s = new_slice(&model->mesh, 1 + chance(i < 3 ? 4 : LAR_LAYOUT_THREADS), i % 2);
+            slice s = new_slice(&model->mesh, 1 + chance(i < 3 ? 4 : LAR_LAYOUT_THREADS));
             fill_at_random(&model->mesh, &s);
             cost_of_part(model, &whole, &s.part);
             free_slice(&s);
@@ -157,7 +153,7 @@ static void parts_of_rings(void **unused) {
         lar_layout whole;
         assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
         for (int i = 0; i < 4; i++) {
-            slice s = new_slice(&model->mesh, 1 + i / 2, false);
+            slice s = new_slice(&model->mesh, 1 + i / 2);
             if (i % 2) fill_at_random(&model->mesh, &s);
             cost_of_part(model, &whole, &s.part);
             free_slice(&s);
@@ -174,7 +170,7 @@ static void owners_end_rows(void **unused) {
     lar_model *model = brick_model(&b);
     lar_layout whole;
     assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
-    slice s = new_slice(&model->mesh, 2, false);
+    slice s = new_slice(&model->mesh, 2);
     assert_true(cost_of_part(model, &whole, &s.part) == 2);
     for (int32_t n = 0; n < model->mesh.node_count; n++)
         s.owner[n] = 1; /* another thread's: fine */
@@ -186,20 +182,17 @@ static void owners_end_rows(void **unused) {
     lar_model_destroy(model);
 }
 
-/* A row is as early as its first element, or has elements of one batch only. */
+/* A row is as early as its first element. */
 static void batches_and_rows(void **unused) {
     (void)unused;
     brick b = {{8, 4, 1}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
     lar_model *model = brick_model(&b);
     lar_layout whole;
     assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
-    for (int within = 0; within < 2; within++) {
-        slice s = new_slice(&model->mesh, 1, within);
-        for (int e = 0; e < 32; e++) s.batch[e] = e % 8 < 4 ? 3 : 7;
-        double cost = cost_of_part(model, &whole, &s.part);
-        assert_true(within ? cost > 4 : cost == 4);
-        free_slice(&s);
-    }
+    slice s = new_slice(&model->mesh, 1);
+    for (int e = 0; e < 32; e++) s.batch[e] = e % 8 < 4 ? 3 : 7;
+    assert_true(cost_of_part(model, &whole, &s.part) == 4);
+    free_slice(&s);
     lar_layout_destroy(&whole);
     lar_model_destroy(model);
 }
@@ -211,7 +204,7 @@ static void one_element_and_idle_threads(void **unused) {
     lar_layout whole, layout;
     assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
     for (int32_t thread = 0; thread < 4; thread++) {
-        slice s = new_slice(&model->mesh, 4, false);
+        slice s = new_slice(&model->mesh, 4);
         for (int e = 0; e < 20; e++) s.thread[e] = e == 7 ? thread : -1;
         give_nodes(&model->mesh, &s, false);
         cost_of_part(model, &whole, &s.part);
@@ -238,7 +231,7 @@ static void what_is_not_there_is_refused(void **unused) {
     lar_error error;
     assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
     for (int fault = 0; fault < 6; fault++) {
-        slice s = new_slice(&model->mesh, 2, false);
+        slice s = new_slice(&model->mesh, 2);
         if (fault == 0) s.part.threads = 0;
         if (fault == 1) s.part.threads = LAR_LAYOUT_THREADS + 1;
         if (fault == 2) s.thread[1] = 2;
@@ -301,7 +294,7 @@ static void all_of_the_organ_in_one_part(void **unused) {
     lar_layout layout;
     tally before = {0}, after = {0};
     count_blocks(&organ_whole, &before);
-    slice s = new_slice(&organ->mesh, 1, false);
+    slice s = new_slice(&organ->mesh, 1);
     assert_int_equal(lar_layout_create_part(organ, &organ_whole, &s.part, &layout, NULL), LAR_OK);
     check_part(organ, &organ_whole, &s.part, &layout);
     count_blocks(&layout, &after);
@@ -313,7 +306,7 @@ static void all_of_the_organ_in_one_part(void **unused) {
 }
 
 /* The organ cut for a grid, each processor again into threads. */
-static void cut_organ(const int grid[3], int32_t threads, int32_t batches, bool within) {
+static void cut_organ(const int grid[3], int32_t threads, int32_t batches) {
     const lar_mesh *mesh = &organ->mesh;
     lar_distribution cut, finer;
     lar_grid places, workers;
@@ -324,7 +317,7 @@ static void cut_organ(const int grid[3], int32_t threads, int32_t batches, bool 
     assert_int_equal(lar_distribution_cut(mesh, &workers, &finer, &error), LAR_OK);
     tally in = {0};
     for (int32_t p = 0; p < places.count; p++) {
-        slice s = new_slice(mesh, threads, within);
+        slice s = new_slice(mesh, threads);
         for (int32_t e = 0; e < mesh->element_count; e++) {
             int32_t place[3];
             lar_grid_place(&workers, finer.processor[e], place);
@@ -341,8 +334,8 @@ static void cut_organ(const int grid[3], int32_t threads, int32_t batches, bool 
         free_slice(&s);
     }
     char what[80];
-    snprintf(what, sizeof what, "%dx%dx%d, threads %d, batches %d%s", grid[0], grid[1], grid[2],
-             threads, batches + 1, within ? ", rows within" : "");
+    snprintf(what, sizeof what, "%dx%dx%d, threads %d, batches %d", grid[0], grid[1], grid[2],
+             threads, batches + 1);
     print_tally(what, &in);
     lar_distribution_clear(&cut);
     lar_distribution_clear(&finer);
@@ -352,8 +345,7 @@ static void the_organ_cut(void **unused) {
     (void)unused;
     static const int grids[][3] = {{2, 1, 1}, {2, 2, 1}, {2, 2, 3}};
     for (int32_t threads = 1; threads < 3; threads++)
-        for (int g = 0; g < 3; g++)
-            for (int within = 0; within < 2; within++) cut_organ(grids[g], threads, 3, within);
+        for (int g = 0; g < 3; g++) cut_organ(grids[g], threads, 3);
 }
 
 int main(void) {
