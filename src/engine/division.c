@@ -32,23 +32,41 @@ static lar_status search(const lar_mesh *mesh, const lar_incidence *incidence, c
     return status;
 }
 
-static lar_status distribute(const lar_mesh *mesh, const lar_incidence *incidence,
-                             const lar_grid *grid, const char *how, lar_distribution *out,
-                             lar_error *error) {
-    if (strcmp(how, "cut") == 0) return lar_distribution_cut(mesh, grid, out, error);
-    if (strcmp(how, "genetic") == 0) return search(mesh, incidence, grid, out, error);
-    if (strcmp(how, "metis") == 0)
-        return lar_distribution_metis(mesh, incidence, grid, SEED, out, error);
-    if (strcmp(how, "random") == 0) return lar_distribution_random(mesh, grid, SEED, out, error);
-    return lar_distribution_read(how, mesh, out, error);
-}
-
-/* ---- options ------------------------------------------------------------------------------ */
+enum { CUT, GENETIC, METIS, RANDOM, WAYS };
+static const char *const ways[WAYS] = {"cut", "genetic", "metis", "random"};
 
 static int find_name(const char *const *names, int count, const char *wanted) {
     for (int i = 0; i < count; i++)
         if (strcmp(names[i], wanted) == 0) return i;
     return -1;
+}
+
+bool lar_distribution_is_file(const char *distribution) {
+    return distribution && find_name(ways, WAYS, distribution) < 0;
+}
+
+static lar_status distribute(const lar_mesh *mesh, const lar_incidence *incidence,
+                             const lar_grid *grid, const char *how, lar_distribution *out,
+                             lar_error *error) {
+    switch (find_name(ways, WAYS, how)) {
+    case CUT:
+        return lar_distribution_cut(mesh, grid, out, error);
+    case GENETIC:
+        return search(mesh, incidence, grid, out, error);
+    case METIS:
+        return lar_distribution_metis(mesh, incidence, grid, SEED, out, error);
+    case RANDOM:
+        return lar_distribution_random(mesh, grid, SEED, out, error);
+    default:
+        return lar_distribution_read(how, mesh, out, error);
+    }
+}
+
+/* ---- options ------------------------------------------------------------------------------ */
+
+bool lar_division_asked(const lar_options *options) {
+    return options->grid || options->threads > 1 || options->schedules || options->distribution ||
+           options->comm || options->verify;
 }
 
 static lar_status read_options(const lar_options *options, lar_schedule_options *out,

@@ -17,6 +17,12 @@ typedef struct lar_division {
     int32_t spread;    /* the greatest of them */
 } lar_division;
 
+/* Whether the options ask for a division at all. */
+bool lar_division_asked(const lar_options *options);
+
+/* Whether a distribution is a file's path: not NULL, and not the name of a way to make one. */
+bool lar_distribution_is_file(const char *distribution);
+
 /* From the parallel part of lar_options. Schedules from files are proved before they are used. */
 lar_status lar_division_create(const lar_model *model, const lar_options *options,
                                lar_division *division, lar_error *error);

@@ -63,11 +63,6 @@ static lar_status check_damping(const lar_domain *domain, lar_error *error) {
                     2 / domain->time_step, 2 / model->damping);
 }
 
-static bool is_parallel(const lar_options *options) {
-    return options->grid || options->threads > 1 || options->schedules || options->distribution ||
-           options->comm || options->verify;
-}
-
 static lar_status check_options(const lar_options *options, lar_error *error) {
     if ((unsigned)options->element > LAR_ELEMENT_HEX8_MATRIX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
@@ -105,7 +100,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
     if (!status && !(made = lar_calloc(1, sizeof *made)))
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);
-    if (!status && is_parallel(&chosen))
+    if (!status && lar_division_asked(&chosen))
         status = lar_computer_create(&made->domain, &made->state, &chosen, &made->computer, error);
     else if (chosen.listener >= 0)
         close(chosen.listener); /* taken over, and nobody to use it */

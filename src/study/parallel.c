@@ -5,6 +5,7 @@
 
 #include "comm/comm.h"
 #include "divide/schedule_file.h"
+#include "engine/division.h"
 #include "model/model.h"
 
 static lar_status check_comm(const char *name, lar_error *error) {
@@ -40,18 +41,11 @@ static lar_status look_into_schedule(const lar_model *model, const char *folder,
     return status;
 }
 
-static bool is_file(const char *distribution) {
-    static const char *const methods[] = {"cut", "genetic", "metis", "random"};
-    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
-        if (strcmp(distribution, methods[i]) == 0) return false;
-    return true;
-}
-
 static lar_status find_grid(const lar_model *model, const lar_options *options, lar_grid *grid,
                             lar_error *error) {
     lar_distribution distribution = {0};
     lar_status status;
-    if (!options->grid && options->distribution && is_file(options->distribution)) {
+    if (!options->grid && lar_distribution_is_file(options->distribution)) {
         status = lar_distribution_read(options->distribution, &model->mesh, &distribution, error);
         if (!status) *grid = distribution.grid;
     } else {
@@ -71,8 +65,7 @@ lar_status lar_parallel_find(const lar_model *model, const lar_options *options,
                           .scheme = "none",
                           .channels = "none",
                           .comm = "none"};
-    found.divided = options->grid || options->threads > 1 || options->schedules ||
-                    options->distribution || options->comm || options->verify;
+    found.divided = lar_division_asked(options);
     lar_status status = LAR_OK;
     if (found.divided) {
         lar_grid grid;
