@@ -7,7 +7,7 @@ int lar_kind_index(lar_kind kind) {
     return (int)kind.law * 4 + (kind.shape == LAR_SHAPE_BOX ? 1 + kind.turn : 0);
 }
 
-lar_law lar_draft_law(const lar_draft *draft, lar_gid e) {
+static lar_law law_of(const lar_draft *draft, lar_gid e) {
     return lar_model_material_of(draft->model, e)->law;
 }
 
@@ -30,7 +30,7 @@ static int box_turn(const lar_mesh *mesh, const lar_gid corner[8]) {
 
 lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const int32_t (*corner)[8],
                         int count) {
-    lar_kind common = {lar_draft_law(draft, element[0]), LAR_SHAPE_BOX, 0};
+    lar_kind common = {law_of(draft, element[0]), LAR_SHAPE_BOX, 0};
     for (int k = 0; k < count; k++) {
         int turn = box_turn(&draft->model->mesh, corner[k]);
         if (turn < 0 || (k > 0 && turn != common.turn))
@@ -42,7 +42,7 @@ lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const in
 
 bool lar_draft_joins(const lar_draft *draft, lar_gid e, lar_gid other) {
     const lar_part *part = draft->part;
-    if (lar_draft_law(draft, e) != lar_draft_law(draft, other)) return false;
+    if (law_of(draft, e) != law_of(draft, other)) return false;
     return !part || part->thread[e] == part->thread[other];
 }
 

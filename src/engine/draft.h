@@ -38,9 +38,6 @@ enum { LAR_KINDS = LAR_LAW_COUNT * 4 }; /* general, boxes in 3 turns */
 /* A number for a kind, 0..LAR_KINDS-1. */
 int lar_kind_index(lar_kind kind);
 
-/* The law of an element's material. */
-lar_law lar_draft_law(const lar_draft *draft, lar_gid e);
-
 /* The kind of `count` elements of one law that will share a row; corner[k]: turned nodes. */
 lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const int32_t (*corner)[8],
                         int count);
