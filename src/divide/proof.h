@@ -17,11 +17,11 @@
 #include "divide/schedule_proof.h"
 
 /* A packet with both its ends. */
-typedef struct lar_packet {
+typedef struct lar_proof_packet {
     int32_t from, to, stage;
     int32_t send, receive;             /* transfer of the sender's, of the receiver's schedule */
     int32_t send_batch, receive_batch; /* the same for batches */
-} lar_packet;
+} lar_proof_packet;
 
 typedef struct lar_proof {
     const lar_mesh *mesh;
@@ -29,7 +29,7 @@ typedef struct lar_proof {
     const lar_schedule_set *set;
     int32_t *owner; /* [elements] the processor that recovers it */
     int32_t packet_count;
-    lar_packet *packet; /* [packet_count] ascending by from, to, stage */
+    lar_proof_packet *packet; /* [packet_count] ascending by from, to, stage */
     int32_t batch_count;
     int32_t *first; /* [set->count + 1] a processor's batches among those of all */
     int32_t *order; /* [batch_count] of all, each after everything that it needs */

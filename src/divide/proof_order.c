@@ -58,7 +58,7 @@ static int32_t collect_arrows(const lar_proof *proof, arrow *arrows) {
                 arrows[n++] = (arrow){base + s->wait[s->batch[b].waits.first + i], base + b};
     }
     for (int32_t i = 0; i < proof->packet_count; i++) {
-        const lar_packet *packet = &proof->packet[i];
+        const lar_proof_packet *packet = &proof->packet[i];
         arrows[n++] = (arrow){proof->first[packet->from] + packet->send_batch,
                               proof->first[packet->to] + packet->receive_batch};
     }

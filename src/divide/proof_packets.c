@@ -56,7 +56,7 @@ static lar_status collect(const lar_proof *proof, bool sends, packet_end *end, i
     return LAR_OK;
 }
 
-static lar_status compare_contents(const lar_proof *proof, const lar_packet *packet,
+static lar_status compare_contents(const lar_proof *proof, const lar_proof_packet *packet,
                                    lar_error *error) {
     const lar_schedule *from = &proof->set->of[packet->from], *to = &proof->set->of[packet->to];
     const lar_transfer *send = &from->transfer[packet->send];
@@ -110,10 +110,10 @@ static lar_status pair_ends(lar_proof *proof, const packet_end *send, int32_t se
         int order = i >= sends ? 1 : j >= receives ? -1 : compare_ends(&send[i], &receive[j]);
         if (order < 0) return alone(proof, &send[i], true, error);
         if (order > 0) return alone(proof, &receive[j], false, error);
-        lar_packet *packet = &proof->packet[proof->packet_count++];
-        *packet =
-            (lar_packet){send[i].from,        send[i].to,    send[i].stage,   send[i].transfer,
-                         receive[j].transfer, send[i].batch, receive[j].batch};
+        lar_proof_packet *packet = &proof->packet[proof->packet_count++];
+        *packet = (lar_proof_packet){send[i].from,     send[i].to,          send[i].stage,
+                                     send[i].transfer, receive[j].transfer, send[i].batch,
+                                     receive[j].batch};
         lar_status status = compare_contents(proof, packet, error);
         if (status) return status;
     }
@@ -135,7 +135,7 @@ static int compare_places(const void *a, const void *b) {
 
 static lar_status check_places(const lar_proof *proof, place *at, lar_error *error) {
     for (int32_t i = 0; i < proof->packet_count; i++) {
-        const lar_packet *packet = &proof->packet[i];
+        const lar_proof_packet *packet = &proof->packet[i];
         const lar_schedule *to = &proof->set->of[packet->to];
         const lar_transfer *t = &to->transfer[packet->receive];
         int64_t size = lar_packet_payload(t->vectors.count) + LAR_TAIL_BYTES;
@@ -173,7 +173,7 @@ static lar_status check_places(const lar_proof *proof, place *at, lar_error *err
 /* ---- both directions --------------------------------------------------------------------- */
 
 static int compare_pairs(const void *a, const void *b) {
-    const lar_packet *x = a, *y = b;
+    const lar_proof_packet *x = a, *y = b;
     if (x->from != y->from) return x->from < y->from ? -1 : 1;
     return (x->to > y->to) - (x->to < y->to);
 }
@@ -182,8 +182,8 @@ static int compare_pairs(const void *a, const void *b) {
  * sender has heard of it in the step between. */
 static lar_status check_parity(const lar_proof *proof, lar_error *error) {
     for (int32_t i = 0; i < proof->packet_count; i++) {
-        const lar_packet *packet = &proof->packet[i];
-        const lar_packet back = {.from = packet->to, .to = packet->from};
+        const lar_proof_packet *packet = &proof->packet[i];
+        const lar_proof_packet back = {.from = packet->to, .to = packet->from};
         if (!bsearch(&back, proof->packet, (size_t)proof->packet_count, sizeof back, compare_pairs))
             return LAR_DISPROVE(error,
                                 "processor %d sends to processor %d, but nothing flows back: "

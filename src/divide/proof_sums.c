@@ -38,7 +38,7 @@ static lar_status list_vectors(play *p, lar_error *error) {
     int64_t *start = p->first + 1;
     for (int pass = 0; pass < 2; pass++) {
         for (int32_t i = 0; i < proof->packet_count; i++) {
-            const lar_packet *packet = &proof->packet[i];
+            const lar_proof_packet *packet = &proof->packet[i];
             const lar_schedule *from = &proof->set->of[packet->from];
             const lar_transfer *t = &from->transfer[packet->send];
             for (int32_t j = 0; j < t->vectors.count; j++) {

@@ -17,7 +17,7 @@ typedef struct emission {
     int32_t start;     /* batch of the schedule that sends the empty packets */
 } emission;
 
-static lar_packet *packets_of(const lar_plan *plan) {
+static lar_plan_packet *packets_of(const lar_plan *plan) {
     return plan->site->packets.packet;
 }
 
@@ -31,7 +31,7 @@ static lar_range received(const lar_plan *plan) {
     return (lar_range){first[0], first[1] - first[0]};
 }
 
-static lar_packet *received_packet(const lar_plan *plan, int32_t i) {
+static lar_plan_packet *received_packet(const lar_plan *plan, int32_t i) {
     return &packets_of(plan)[plan->site->packets.received[i]];
 }
 
@@ -41,7 +41,7 @@ static bool count_transfers(emission *em) {
     lar_range out = sent(plan), in = received(plan);
     bool empty = false;
     for (int32_t i = out.first; i < out.first + out.count; i++) {
-        const lar_packet *packet = &packets_of(plan)[i];
+        const lar_plan_packet *packet = &packets_of(plan)[i];
         if (packet->sent_in == LAR_AT_START)
             empty = true;
         else
@@ -120,7 +120,7 @@ static void put_positions(emission *em) {
     }
 }
 
-static int32_t sending_batch(const emission *em, const lar_packet *packet) {
+static int32_t sending_batch(const emission *em, const lar_plan_packet *packet) {
     return packet->sent_in == LAR_AT_START ? em->start : em->number[packet->sent_in];
 }
 
@@ -141,7 +141,8 @@ static void place_transfers(emission *em) {
     }
 }
 
-static void put_transfer(emission *em, const lar_packet *packet, int32_t peer, lar_range *span) {
+static void put_transfer(emission *em, const lar_plan_packet *packet, int32_t peer,
+                         lar_range *span) {
     em->to->transfer[span->first + span->count++] =
         (lar_transfer){.peer = peer,
                        .stage = packet->stage,
@@ -169,11 +170,11 @@ static void put_transfers(emission *em) {
     lar_range out = sent(plan), in = received(plan);
     place_transfers(em);
     for (int32_t i = out.first; i < out.first + out.count; i++) {
-        const lar_packet *packet = &packets_of(plan)[i];
+        const lar_plan_packet *packet = &packets_of(plan)[i];
         put_transfer(em, packet, packet->to, &em->to->batch[sending_batch(em, packet)].sends);
     }
     for (int32_t i = in.first; i < in.first + in.count; i++) {
-        const lar_packet *packet = received_packet(plan, i);
+        const lar_plan_packet *packet = received_packet(plan, i);
         lar_batch *batch = &em->to->batch[em->number[packet->received_in]];
         put_transfer(em, packet, packet->from, &batch->receives);
     }

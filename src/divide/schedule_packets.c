@@ -35,7 +35,7 @@ static void count_vector(void *context, const lar_message *m) {
 static void put_vector(void *context, const lar_message *m) {
     table *t = context;
     cell *c = cell_of(t, m->from, m->stage, m->to);
-    const lar_packet *packet = &t->packets->packet[c->packet];
+    const lar_plan_packet *packet = &t->packets->packet[c->packet];
     int64_t at = packet->first;
     at += m->what == LAR_CARRIES_ALL ? packet->count - packet->whole + c->whole++ : c->added++;
     t->packets->node[at] = t->node;
@@ -119,16 +119,17 @@ static void list_packets(const table *t, const lar_grid *grid, lar_packets *out)
             for (int32_t to = 0; to < t->processors; to++) {
                 cell *c = cell_of(t, from, s, to);
                 if (!is_packet(c)) continue;
-                out->packet[count] = (lar_packet){.from = from,
-                                                  .to = to,
-                                                  .stage = s,
-                                                  .count = c->added + c->whole,
-                                                  .whole = c->whole,
-                                                  .distance = lar_grid_distance(grid, from, to),
-                                                  .onward = c->onward,
-                                                  .first = first,
-                                                  .sent_in = LAR_NOWHERE,
-                                                  .received_in = LAR_NOWHERE};
+                out->packet[count] =
+                    (lar_plan_packet){.from = from,
+                                      .to = to,
+                                      .stage = s,
+                                      .count = c->added + c->whole,
+                                      .whole = c->whole,
+                                      .distance = lar_grid_distance(grid, from, to),
+                                      .onward = c->onward,
+                                      .first = first,
+                                      .sent_in = LAR_NOWHERE,
+                                      .received_in = LAR_NOWHERE};
                 first += out->packet[count].count;
                 *c = (cell){.packet = count++};
             }

@@ -13,11 +13,12 @@ int32_t lar_plan_add_batch(lar_plan *plan, int32_t thread) {
     return plan->batch_count++;
 }
 
-static const int32_t *nodes_of(const lar_plan *plan, const lar_packet *packet) {
+static const int32_t *nodes_of(const lar_plan *plan, const lar_plan_packet *packet) {
     return plan->site->packets.node + packet->first;
 }
 
-int32_t lar_plan_claim(lar_plan *plan, const lar_packet *packet, int32_t batch, int32_t *list) {
+int32_t lar_plan_claim(lar_plan *plan, const lar_plan_packet *packet, int32_t batch,
+                       int32_t *list) {
     const lar_incidence *at = plan->site->incidence;
     const int32_t *node = nodes_of(plan, packet);
     int32_t count = 0;
@@ -41,7 +42,7 @@ static void find_arrivals(lar_plan *plan) {
     for (int32_t k = 0; k < plan->node_count; k++) plan->arrival[k] = LAR_STAGES;
     for (int32_t i = all->received_first[plan->processor];
          i < all->received_first[plan->processor + 1]; i++) {
-        const lar_packet *packet = &all->packet[all->received[i]];
+        const lar_plan_packet *packet = &all->packet[all->received[i]];
         const int32_t *node = nodes_of(plan, packet);
         for (int32_t j = 0; j < packet->count; j++) {
             int32_t *arrival = &plan->arrival[plan->site->place[node[j]]];
@@ -50,7 +51,7 @@ static void find_arrivals(lar_plan *plan) {
     }
 }
 
-static bool needs_others(const lar_plan *plan, const lar_packet *packet) {
+static bool needs_others(const lar_plan *plan, const lar_plan_packet *packet) {
     const int32_t *node = nodes_of(plan, packet);
     for (int32_t j = 0; j < packet->count; j++)
         if (plan->arrival[plan->site->place[node[j]]] < packet->stage) return true;
@@ -65,7 +66,7 @@ static bool receive_marked(lar_plan *plan, int32_t stage, int32_t batch) {
     bool any = false;
     for (int32_t i = all->received_first[plan->processor];
          i < all->received_first[plan->processor + 1]; i++) {
-        lar_packet *packet = &all->packet[all->received[i]];
+        lar_plan_packet *packet = &all->packet[all->received[i]];
         if (packet->stage >= stage || packet->received_in != LAR_NOWHERE) continue;
         const int32_t *node = nodes_of(plan, packet);
         for (int32_t j = 0; j < packet->count && packet->received_in == LAR_NOWHERE; j++)
@@ -75,7 +76,7 @@ static bool receive_marked(lar_plan *plan, int32_t stage, int32_t batch) {
     return any;
 }
 
-static void mark_nodes(lar_plan *plan, const lar_packet *packet, int32_t mark) {
+static void mark_nodes(lar_plan *plan, const lar_plan_packet *packet, int32_t mark) {
     const int32_t *node = nodes_of(plan, packet);
     for (int32_t j = 0; j < packet->count; j++) plan->mark[plan->site->place[node[j]]] = mark;
 }
@@ -101,7 +102,7 @@ static lar_plan_gap *add_gap(lar_plan *plan, int32_t receiver, lar_error *error)
 }
 
 /* Elements at the nodes of packets, to be recovered in the newest gap. */
-static void need(lar_plan *plan, lar_packet **packet, int32_t count) {
+static void need(lar_plan *plan, lar_plan_packet **packet, int32_t count) {
     lar_plan_gap *gap = &plan->gap[plan->gap_count - 1];
     for (int32_t i = 0; i < count; i++)
         plan->pooled += lar_plan_claim(plan, packet[i], LAR_POOLED, plan->pool + plan->pooled);
@@ -109,7 +110,8 @@ static void need(lar_plan *plan, lar_packet **packet, int32_t count) {
 }
 
 /* A batch that sends `count` packets of a stage on, and the gap before it. */
-static lar_status add_relay(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+static lar_status add_relay(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                            lar_error *error) {
     int32_t receiver = plan->gap_count % plan->threads;
     lar_plan_gap *gap = add_gap(plan, receiver, error);
     if (!gap) return LAR_ERROR_MEMORY;
@@ -125,7 +127,8 @@ static lar_status add_relay(lar_plan *plan, lar_packet **packet, int32_t count, 
     return LAR_OK;
 }
 
-lar_status lar_plan_split(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+lar_status lar_plan_split(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                          lar_error *error) {
     const lar_plan_gap *gap = add_gap(plan, plan->threads - 1, error);
     if (!gap) return LAR_ERROR_MEMORY;
     need(plan, packet, count);
@@ -143,26 +146,27 @@ lar_status lar_plan_split(lar_plan *plan, lar_packet **packet, int32_t count, la
 
 /* Far travellers first; of those, the ones with a long way now; x+ before x-, as in T 6.6.2.1. */
 static int compare_units(const void *a, const void *b) {
-    const lar_packet *x = *(lar_packet *const *)a, *y = *(lar_packet *const *)b;
+    const lar_plan_packet *x = *(lar_plan_packet *const *)a, *y = *(lar_plan_packet *const *)b;
     if (x->onward != y->onward) return x->onward > y->onward ? -1 : 1;
     if (x->distance != y->distance) return x->distance > y->distance ? -1 : 1;
     return x->to > y->to ? -1 : x->to < y->to;
 }
 
 /* How far apart the numbers are: less along x than along y, along y than along z. */
-static int32_t step_of(const lar_packet *packet) {
+static int32_t step_of(const lar_plan_packet *packet) {
     return abs(packet->to - packet->from);
 }
 
 /* x before y before z: what comes over x is sent first, so it is there first. */
 static int compare_relays(const void *a, const void *b) {
-    const lar_packet *x = *(lar_packet *const *)a, *y = *(lar_packet *const *)b;
+    const lar_plan_packet *x = *(lar_plan_packet *const *)a, *y = *(lar_plan_packet *const *)b;
     if (step_of(x) != step_of(y)) return step_of(x) < step_of(y) ? -1 : 1;
     return x->to > y->to ? -1 : x->to < y->to;
 }
 
 /* Units of equal urgency are one group (eq. 6.6). */
-static lar_status add_units(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+static lar_status add_units(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                            lar_error *error) {
     lar_status status = LAR_OK;
     qsort(packet, (size_t)count, sizeof *packet, compare_units);
     for (int32_t i = 0, j; i < count && status == LAR_OK; i = j) {
@@ -176,7 +180,8 @@ static lar_status add_units(lar_plan *plan, lar_packet **packet, int32_t count, 
 
 /* One batch receives and sends on for a whole stage. Only in the concurrent use, by one thread,
  * each axis has its own: finer, but each costs other threads a wait. */
-static lar_status add_relays(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+static lar_status add_relays(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                             lar_error *error) {
     const lar_schedule_options *o = plan->site->options;
     bool fine = o->scheme == LAR_SCHEME_LOCAL && o->channels == LAR_CHANNELS_CONCURRENT &&
                 plan->threads == 1;
@@ -189,12 +194,13 @@ static lar_status add_relays(lar_plan *plan, lar_packet **packet, int32_t count,
     return status;
 }
 
-static lar_status add_stage(lar_plan *plan, int32_t stage, lar_packet **scratch, lar_error *error) {
+static lar_status add_stage(lar_plan *plan, int32_t stage, lar_plan_packet **scratch,
+                            lar_error *error) {
     lar_packets *all = &plan->site->packets;
     int32_t units = 0, end = all->sent_first[plan->processor + 1];
     int32_t relays = end - all->sent_first[plan->processor], most = relays;
     for (int32_t i = all->sent_first[plan->processor]; i < end; i++) {
-        lar_packet *packet = &all->packet[i];
+        lar_plan_packet *packet = &all->packet[i];
         if (packet->stage != stage) continue;
         if (packet->count == 0)
             packet->sent_in = LAR_AT_START;
@@ -224,7 +230,8 @@ static void find_owners(lar_plan *plan) {
 }
 
 /* The thread for a packet: it moves most of the nodes, but all should have as much to receive. */
-static int32_t receiver_of(const lar_plan *plan, const lar_packet *packet, const int64_t *given) {
+static int32_t receiver_of(const lar_plan *plan, const lar_plan_packet *packet,
+                           const int64_t *given) {
     int32_t own[LAR_THREADS_MOST] = {0}, best = 0;
     const int32_t *node = nodes_of(plan, packet);
     for (int32_t j = 0; j < packet->count; j++) own[plan->owner[plan->site->place[node[j]]]]++;
@@ -239,7 +246,7 @@ static void receive_rest(lar_plan *plan) {
     int64_t given[LAR_THREADS_MOST] = {0};
     for (int32_t i = all->received_first[plan->processor];
          i < all->received_first[plan->processor + 1]; i++) {
-        lar_packet *packet = &all->packet[all->received[i]];
+        lar_plan_packet *packet = &all->packet[all->received[i]];
         if (packet->received_in != LAR_NOWHERE) continue;
         int32_t thread = receiver_of(plan, packet, given);
         given[thread] += packet->count;
@@ -306,7 +313,7 @@ lar_status lar_plan_build(lar_plan_site *site, int32_t processor, lar_plan *plan
                        .node = site->node + nodes[0],
                        .node_count = (int32_t)(nodes[1] - nodes[0])};
     const int32_t *sent = site->packets.sent_first + processor;
-    lar_packet **scratch = lar_calloc((size_t)(sent[1] - sent[0]), sizeof *scratch);
+    lar_plan_packet **scratch = lar_calloc((size_t)(sent[1] - sent[0]), sizeof *scratch);
     if (!scratch) return lar_fail_memory(error, sizeof *scratch, "packets of a processor");
     lar_status status = start_plan(plan, error);
     for (int32_t s = 0; s < LAR_STAGES && status == LAR_OK; s++)

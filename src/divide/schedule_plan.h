@@ -23,7 +23,7 @@
 
 /* ---- packets of all processors ---------------------------------------------------------- */
 
-typedef struct lar_packet {
+typedef struct lar_plan_packet {
     int32_t from, to, stage;
     int32_t count, whole; /* vectors; the last `whole` of them are whole forces */
     int32_t distance;     /* channels between the two */
@@ -32,13 +32,13 @@ typedef struct lar_packet {
     int64_t offset;       /* in the receiver's buffer */
     int32_t sent_in;      /* batch of the sender's plan, or LAR_AT_START */
     int32_t received_in;  /* batch of the receiver's plan */
-} lar_packet;
+} lar_plan_packet;
 
 enum { LAR_NOWHERE = -1, LAR_AT_START = -2 };
 
 typedef struct lar_packets {
     int32_t count;
-    lar_packet *packet;      /* by sender, then stage, then receiver */
+    lar_plan_packet *packet; /* by sender, then stage, then receiver */
     int32_t *sent_first;     /* [processors + 1] */
     int32_t *received;       /* packets by receiver, then stage, then sender */
     int32_t *received_first; /* [processors + 1] */
@@ -128,15 +128,17 @@ int32_t lar_plan_add_batch(lar_plan *plan, int32_t thread);
 
 /* Elements at the nodes of a packet that have no batch yet get `batch`. Returns how many; they are
  * written to list[] when that is not NULL. */
-int32_t lar_plan_claim(lar_plan *plan, const lar_packet *packet, int32_t batch, int32_t *list);
+int32_t lar_plan_claim(lar_plan *plan, const lar_plan_packet *packet, int32_t batch, int32_t *list);
 
 /* One batch for each of these packets, which need nothing from others and are equally urgent, on
  * the thread and in the order that are best; small ones share a batch. */
-lar_status lar_plan_units(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error);
+lar_status lar_plan_units(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                          lar_error *error);
 
 /* The same where units would leave threads uneven: all threads recover a part of what the packets
  * need, then the packets are sent. */
-lar_status lar_plan_split(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error);
+lar_status lar_plan_split(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                          lar_error *error);
 
 /* Elements in a gap get a batch. Decides about all gaps at once. */
 lar_status lar_plan_shares(lar_plan *plan, lar_error *error);

@@ -23,7 +23,7 @@
 enum { UNITS_MOST = 24, SLACK = 8 };
 
 typedef struct unit {
-    lar_packet **packet;
+    lar_plan_packet **packet;
     int32_t packets;
     int64_t ready[LAR_THREADS_MOST]; /* when the batches so far of a thread have what it sends */
 } unit;
@@ -246,7 +246,7 @@ static int32_t least_elements(const lar_plan *plan, int32_t elements) {
 }
 
 /* Packets that follow each other form a unit until it has enough elements. Returns the units. */
-static int32_t make_units(lar_plan *plan, lar_packet **packet, int32_t count, unit *units,
+static int32_t make_units(lar_plan *plan, lar_plan_packet **packet, int32_t count, unit *units,
                           int32_t *fresh) {
     int32_t *list = plan->pool + plan->pooled, total = 0, made = 0, have = 0;
     for (int32_t i = 0; i < count; i++)
@@ -326,7 +326,8 @@ static lar_status settle_all(lar_plan *plan, unit *units, int32_t count, lar_err
     return status;
 }
 
-lar_status lar_plan_units(lar_plan *plan, lar_packet **packet, int32_t count, lar_error *error) {
+lar_status lar_plan_units(lar_plan *plan, lar_plan_packet **packet, int32_t count,
+                          lar_error *error) {
     unit *units = lar_calloc((size_t)count, sizeof *units);
     int32_t *fresh = lar_calloc((size_t)count, sizeof *fresh);
     lar_status status;
