@@ -78,6 +78,10 @@ void lar_comm_team_destroy(lar_comm_team *team);
 lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_COMM_ADDRESS_TEXT],
                            lar_error *error);
 
+/* What lar_comm_open says at processor zero when the listener was shut down (shutdown) by whoever
+ * else has it, and knows more: that a processor will not come. */
+extern const char lar_comm_called_off[];
+
 /* Meets the others and returns when all can write to all. Fails, with the same sentence for
  * everyone, when one does not come in time, or comes with another version, backend, number of
  * processors or identity. */

@@ -1,5 +1,6 @@
 #include "comm/meeting.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -55,11 +56,23 @@ static double next_look(double deadline) {
     return look < deadline ? look : deadline;
 }
 
+const char lar_comm_called_off[] = "the start was called off: a processor has ended before it came";
+
+/* Nobody can come any more. */
+static lar_status deaf(const lar_comm *comm, int reason, lar_error *error) {
+    if (reason == -EINVAL) return lar_fail(error, LAR_ERROR_PEER, "%s", lar_comm_called_off);
+    return lar_fail(error, LAR_ERROR_IO,
+                    "processor %d cannot accept connections: %s; raise the limit on open files "
+                    "(ulimit -n)",
+                    (int)comm->options.self, strerror(-reason));
+}
+
 lar_status lar_meeting_accept(const lar_comm *comm, int listener, double deadline, int *guest,
                               lar_error *error) {
     *guest = -1;
     for (;;) {
         *guest = lar_socket_accept(listener, next_look(deadline));
+        if (*guest < LAR_SOCKET_NOBODY) return deaf(comm, *guest, error);
         if (*guest >= 0 || lar_comm_now() > deadline) return LAR_OK;
         lar_status status = lar_meeting_check(comm, error);
         if (status) return status;
@@ -201,8 +214,12 @@ static lar_status host_meeting(lar_comm *comm, const hello *own, lar_error *erro
         return lar_fail(error, LAR_ERROR_IO, "the system gives no random numbers; check getrandom");
     lar_status status = LAR_OK;
     int32_t missing = 0;
-    if (comm->options.listener < 0)
-        status = lar_socket_listen(comm->options.master, &comm->options.listener, &why);
+    if (comm->options.listener < 0) {
+        /* Nobody would know which port is the free one. */
+        status = lar_socket_check(comm->options.master, 1, &why);
+        if (!status)
+            status = lar_socket_listen(comm->options.master, &comm->options.listener, &why);
+    }
     if (!status) status = receive_guests(comm, own, deadline, &missing, &why);
     if (!status) status = tell_all(comm, true, deadline, &why);
     if (status) {

@@ -17,15 +17,38 @@
 
 #include "comm/backend.h"
 
+/* A number that is no port would be cut to 16 bits, and be another one. Names are looked up. */
+static bool is_port(const char *text, int least) {
+    char *rest;
+    long port = strtol(text, &rest, 10);
+    if (rest == text) return true;
+    return *rest == '\0' && *text != '+' && port >= least && port <= 65535;
+}
+
+lar_status lar_socket_check(const char *address, int least, lar_error *error) {
+    const char *colon = strrchr(address, ':');
+    if (!colon || !colon[1])
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is no address of processor 0; write host:port, as in localhost:7077",
+                        address);
+    if (is_port(colon + 1, least)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s is no address of processor 0: a port is a number from %d to 65535, as in "
+                    "localhost:7077",
+                    address, least);
+}
+
 /* "host:port" or "[v6]:port" to addresses; the caller frees with freeaddrinfo. */
 static lar_status look_up(const char *address, bool passive, struct addrinfo **found,
                           lar_error *error) {
     char host[256];
+    lar_status status = lar_socket_check(address, passive ? 0 : 1, error);
+    if (status) return status;
     const char *colon = strrchr(address, ':');
-    size_t length = colon ? (size_t)(colon - address) : 0;
+    size_t length = (size_t)(colon - address);
     const char *begin = address;
     if (length >= 2 && begin[0] == '[' && begin[length - 1] == ']') begin++, length -= 2;
-    if (length == 0 || length >= sizeof host || !colon[1])
+    if (length == 0 || length >= sizeof host)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is no address of processor 0; write host:port, as in localhost:7077",
                         address);
@@ -65,7 +88,7 @@ lar_status lar_socket_listen(const char *address, int *listener, lar_error *erro
         return LAR_OK;
     }
     status = lar_fail(error, LAR_ERROR_IO,
-                      "cannot listen at %s: %s; take another port (0: a free one) or an address of "
+                      "cannot listen at %s: %s; take another port or an address of "
                       "this machine",
                       address, strerror(errno));
     if (fd >= 0) close(fd);
@@ -191,10 +214,12 @@ int lar_socket_accept(int listener, double deadline) {
             prepare(fd);
             return fd;
         }
-        if (lar_comm_now() > deadline) return -1;
-        if (errno == EAGAIN || errno == EWOULDBLOCK)
+        int reason = errno;
+        if (reason == EINVAL || reason == EMFILE || reason == ENFILE) return -reason;
+        if (lar_comm_now() > deadline) return LAR_SOCKET_NOBODY;
+        if (reason == EAGAIN || reason == EWOULDBLOCK)
             lar_socket_poll(listener, POLLIN, deadline);
-        else if (errno != EINTR && errno != ECONNABORTED)
+        else if (reason != EINTR && reason != ECONNABORTED)
             nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     }
 }

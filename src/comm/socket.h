@@ -11,6 +11,8 @@ typedef enum lar_socket_end {
     LAR_SOCKET_LATE    /* the deadline has passed */
 } lar_socket_end;
 
+/* Whether an address has the form host:port, with a port of at least `least`. */
+lar_status lar_socket_check(const char *address, int least, lar_error *error);
 /* Listens at host:port; port 0 takes a free one. */
 lar_status lar_socket_listen(const char *address, int *listener, lar_error *error);
 /* The port that a listener got. */
@@ -24,7 +26,9 @@ lar_status lar_socket_own_host(char *host, lar_error *error);
 
 /* Connects, again and again while nobody listens there, until the deadline. */
 lar_status lar_socket_connect(const char *address, double deadline, int *socket, lar_error *error);
-/* Next connection, or -1 at the deadline. */
+/* Next connection; LAR_SOCKET_NOBODY at the deadline; -EINVAL when the listener was shut down, by
+ * whoever else has it; -EMFILE or -ENFILE when there are no numbers for sockets left. */
+enum { LAR_SOCKET_NOBODY = -1 };
 int lar_socket_accept(int listener, double deadline);
 
 lar_socket_end lar_socket_send(int socket, const void *data, size_t bytes, double deadline);

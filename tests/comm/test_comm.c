@@ -1,6 +1,12 @@
 /* What every backend must do, the same bodies for all: comm.h and channel.h to the letter. */
 #include "fleet.h"
 
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+
+#include "comm/backend.h"
+
 /* A word that only one place of one packet has. */
 static uint64_t word_of(uint64_t from, uint64_t step, uint64_t slot, uint64_t i) {
     return (from << 56) ^ (step << 24) ^ (slot << 16) ^ i;
@@ -249,6 +255,63 @@ static void nonsense_is_refused(void **state) {
     o.self = 1;
     assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "host:port"));
+    static const char *const ports[] = {"localhost:99999", "localhost:-1", "localhost:80x",
+                                        "localhost:0", "localhost:65536"};
+    for (size_t i = 0; i < 2 * sizeof ports / sizeof *ports; i++) {
+        o.master = ports[i / 2];
+        o.self = i % 2;
+        assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT);
+        assert_non_null(strstr(error.message, "a port is a number from 1 to 65535"));
+    }
+}
+
+/* Whoever started the others knows that one will not come; processor zero does not wait for it. */
+static void the_start_is_called_off(void **state) {
+    (void)state;
+    char master[LAR_COMM_ADDRESS_TEXT];
+    lar_error error;
+    lar_comm *comm = NULL;
+    lar_comm_options o = lar_comm_options_default();
+    o.backend = "tcp";
+    o.count = 2;
+    o.master = master;
+    assert_int_equal(lar_comm_listen("127.0.0.1:0", &o.listener, master, &error), LAR_OK);
+    int kept = dup(o.listener);
+    shutdown(kept, SHUT_RDWR);
+    double begin = lar_comm_now();
+    assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_PEER);
+    assert_string_equal(error.message, lar_comm_called_off);
+    assert_true(lar_comm_now() - begin < o.start_timeout);
+    close(kept);
+}
+
+/* Without numbers for sockets nobody can come: that is not the others' fault. */
+static void too_many_open_files(void **state) {
+    (void)state;
+    char master[LAR_COMM_ADDRESS_TEXT];
+    lar_error error;
+    lar_comm *comm = NULL;
+    struct rlimit before, none;
+    lar_comm_options o = lar_comm_options_default();
+    o.backend = "shm";
+    o.count = 2;
+    o.master = master;
+    assert_int_equal(lar_comm_listen("127.0.0.1:0", &o.listener, master, &error), LAR_OK);
+    struct sockaddr_in to = {.sin_family = AF_INET,
+                             .sin_addr.s_addr = htonl(INADDR_LOOPBACK),
+                             .sin_port = htons((uint16_t)atoi(strrchr(master, ':') + 1))};
+    int guest = socket(AF_INET, SOCK_STREAM, 0);
+    assert_int_equal(connect(guest, (const struct sockaddr *)&to, sizeof to), 0);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    /* What is open stays open; shm needs one number for its memory. */
+    none = before;
+    none.rlim_cur = (rlim_t)guest + 2;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    lar_status status = lar_comm_open(&o, &comm, &error);
+    setrlimit(RLIMIT_NOFILE, &before);
+    close(guest);
+    assert_int_equal(status, LAR_ERROR_IO);
+    assert_non_null(strstr(error.message, "ulimit -n"));
 }
 
 static const char *nothing(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
@@ -280,6 +343,7 @@ int main(void) {
         cmocka_unit_test(everyone_reaches_everyone),    cmocka_unit_test(channels_keep_order),
         cmocka_unit_test(one_way_edges_are_safe),       cmocka_unit_test(packets_go_anywhere),
         cmocka_unit_test(twelve_on_two_cores_progress), cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(the_start_is_called_off),      cmocka_unit_test(too_many_open_files),
         cmocka_unit_test(other_models_are_refused)};
     return fleet_end(cmocka_run_group_tests(tests, NULL, NULL));
 }
