@@ -92,7 +92,7 @@ lar_status lar_crew_create(int32_t count, bool pin, int32_t first_core, lar_crew
         int cause = pthread_create(&crew->seat[i].thread, NULL, attend, &crew->seat[i]);
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
-                              "the system gives thread %d of %d not: %s; use fewer processors or "
+                              "the system gives no thread %d of %d: %s; use fewer processors or "
                               "threads, or raise the limit (ulimit -u)",
                               (int)i, (int)count, strerror(cause));
         else

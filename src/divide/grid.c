@@ -23,13 +23,16 @@ lar_status lar_grid_make(int64_t nx, int64_t ny, int64_t nz, lar_grid *grid, lar
     return LAR_OK;
 }
 
+/* Beyond it a message shows not all digits, and a number no longer fits. */
+static const int64_t EDGE_SHOWN = 100000000000000000;
+
 lar_status lar_grid_parse(const char *text, lar_grid *grid, lar_error *error) {
     int64_t edge[3] = {0};
     const char *at = text;
     for (int i = 0; i < 3; i++) {
         const char *start = at;
         for (; *at >= '0' && *at <= '9'; at++)
-            if (edge[i] <= LAR_GRID_MOST) edge[i] = 10 * edge[i] + (*at - '0');
+            if (edge[i] < EDGE_SHOWN) edge[i] = 10 * edge[i] + (*at - '0');
         if (at == start || *at != (i < 2 ? 'x' : '\0'))
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "'%.60s' is no grid of processors; write the numbers along x, y and z "

@@ -116,6 +116,9 @@ static void text(void **state) {
         assert_true(strlen(error.message) > 20);
     }
     assert_int_equal(g.count, 12);
+    lar_error error;
+    assert_int_equal(lar_grid_parse("1x65536x1", &g, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "65536")); /* all digits */
 }
 
 int main(void) {
