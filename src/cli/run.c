@@ -239,8 +239,7 @@ static int prepare(run *r) {
         status = cli_processes_start(&cli_run, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
     if (!lar_model_inspect(r->model, &r->info, &error) &&
-        !lar_processes_meet(r->processes, &options, &error) &&
-        !lar_simulation_create(r->model, &options, &r->simulation, &error))
+        !lar_processes_create(r->processes, r->model, &options, &r->simulation, &error))
         return CLI_DONE;
     r->failure = error.status;
     return cli_complain_as_other(&cli_run, r->processes, &error);

@@ -80,8 +80,7 @@ static lar_options options_of(const lar_bench_scaling_options *o,
 
 /* The processes of one sample; *processes stays NULL where there are none to start. */
 static lar_status call_processes(const bench *b, const lar_bench_scaling_row *row,
-                                 lar_processes **processes, lar_options *options,
-                                 lar_error *error) {
+                                 lar_processes **processes, lar_error *error) {
     enum { ARGUMENTS = 12 };
     const lar_bench_scaling_options *o = b->options;
     const char *argument[ARGUMENTS] = {"--grid", row->grid, "--comm", row->comm};
@@ -97,9 +96,7 @@ static lar_status call_processes(const bench *b, const lar_bench_scaling_row *ro
                                            .argument_count = count,
                                            .argument = (char *const *)argument};
     lar_status status = lar_processes_begin(&setting, processes, error);
-    if (!status) status = lar_processes_start(*processes, row->processors, error);
-    if (!status) status = lar_processes_meet(*processes, options, error);
-    return status;
+    return status ? status : lar_processes_start(*processes, row->processors, error);
 }
 
 /* How a process ended says more than that its connection did. */
@@ -121,9 +118,10 @@ static lar_status meet_in_job(bench *b, lar_options *options, lar_error *error) 
     return LAR_OK;
 }
 
-static lar_status serve(const lar_model *model, const lar_options *options, lar_error *error) {
+static lar_status serve(lar_processes *processes, const lar_model *model,
+                        const lar_options *options, lar_error *error) {
     lar_simulation *simulation = NULL;
-    lar_status status = lar_simulation_create(model, options, &simulation, error);
+    lar_status status = lar_processes_create(processes, model, options, &simulation, error);
     if (!status) status = lar_simulation_serve(simulation, error);
     lar_simulation_destroy(simulation);
     return status;
@@ -142,8 +140,7 @@ lar_status lar_bench_scaling_serve(const lar_bench_scaling_options *o, int32_t p
     options.pin = o->pin;
     lar_status status = lar_processes_begin(&setting, &processes, error);
     if (status) return status;
-    status = lar_processes_meet(processes, &options, error);
-    if (!status) status = serve(o->model, &options, error);
+    status = serve(processes, o->model, &options, error);
     if (status && status != LAR_ERROR_PEER) lar_processes_hesitate(processes);
     return end_processes(processes, status, error);
 }
@@ -158,7 +155,7 @@ static lar_status serve_all(bench *b, lar_error *error) {
             if (row->missing || !lar_scaling_by_processes(row)) continue;
             lar_options options = options_of(b->options, row);
             status = meet_in_job(b, &options, error);
-            if (!status) status = serve(b->options->model, &options, error);
+            if (!status) status = serve(NULL, b->options->model, &options, error);
         }
     return status;
 }
@@ -200,12 +197,13 @@ static lar_status check_hash(bench *b, const lar_bench_scaling_row *row, uint64_
                     row->grid, row->comm, (unsigned long long)r->hash);
 }
 
-static lar_status run_steps(bench *b, const lar_bench_scaling_row *row, const lar_options *options,
-                            double *microseconds, lar_error *error) {
+static lar_status run_steps(bench *b, const lar_bench_scaling_row *row, lar_processes *processes,
+                            const lar_options *options, double *microseconds, lar_error *error) {
     lar_bench_scaling_result *r = b->result;
     stopwatch watch = {.next = r->warm_up, .section = r->steps / SECTIONS};
     lar_simulation *simulation = NULL;
-    lar_status status = lar_simulation_create(b->options->model, options, &simulation, error);
+    lar_status status =
+        lar_processes_create(processes, b->options->model, options, &simulation, error);
     if (status) return status;
     r->isa = lar_simulation_isa(simulation);
     status = lar_simulation_advance_watched(simulation, r->warm_up + r->steps, tick, &watch, error);
@@ -221,7 +219,7 @@ static lar_status run_bound(bench *b, const lar_bench_scaling_row *row, const la
     bool bound = b->options->pin && lar_pin_cores() > 1;
     lar_pin *before = bound ? lar_pin_remember() : NULL;
     if (bound) lar_pin_to(0);
-    lar_status status = run_steps(b, row, options, microseconds, error);
+    lar_status status = run_steps(b, row, NULL, options, microseconds, error);
     lar_pin_restore(before);
     return status;
 }
@@ -239,8 +237,8 @@ static lar_status take_sample(bench *b, int i, int k, lar_error *error) {
     if (i == 0) return run_bound(b, row, &options, sample, error);
     if (lar_scaling_by_processes(row))
         status = b->job.count > 1 ? meet_in_job(b, &options, error)
-                                  : call_processes(b, row, &processes, &options, error);
-    if (!status) status = run_steps(b, row, &options, sample, error);
+                                  : call_processes(b, row, &processes, error);
+    if (!status) status = run_steps(b, row, processes, &options, sample, error);
     return end_processes(processes, status, error);
 }
 

@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "comm/comm.h"
 #include "comm/job.h"
+#include "study/arrival.h"
 
 /* How long a process may take to end, and to say why [s]; the short one is for a failure that all
  * have alike, which is told once. */
@@ -43,6 +44,7 @@ struct lar_processes {
     pid_t *pid;   /* [count], 0: not running; of processor 0 it is not used */
     int listener; /* kept for every meeting; -1: none */
     char address[LAR_COMM_ADDRESS_TEXT];
+    int32_t named; /* whose end has been told already; 0: nobody's */
 };
 
 static double now(void) {
@@ -254,7 +256,7 @@ static lar_status meet_in_job(lar_processes *p, lar_options *options, lar_error 
     return LAR_OK;
 }
 
-lar_status lar_processes_meet(lar_processes *p, lar_options *options, lar_error *error) {
+static lar_status meet(lar_processes *p, lar_options *options, lar_error *error) {
     options->listener = -1;
     if (!p->several) return LAR_OK;
     if (p->job.count > 1) return meet_in_job(p, options, error);
@@ -266,6 +268,32 @@ lar_status lar_processes_meet(lar_processes *p, lar_options *options, lar_error 
     if (options->listener >= 0) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO, "no second number for a socket: %s; see ulimit -n",
                     strerror(errno));
+}
+
+/* Only what calling off has caused has a better reason: a refusal ends processes as well. */
+static lar_status name_missing(lar_processes *p, lar_arrival *arrival, lar_status status,
+                               lar_error *error) {
+    lar_error why;
+    int32_t missing = lar_arrival_end(arrival, &why);
+    if (!missing || !status || strcmp(error->message, lar_comm_called_off) != 0) return status;
+    p->named = missing;
+    *error = why;
+    return why.status;
+}
+
+lar_status lar_processes_create(lar_processes *p, const lar_model *model,
+                                const lar_options *options, lar_simulation **simulation,
+                                lar_error *error) {
+    lar_options mine = *options;
+    lar_status status = p ? meet(p, &mine, error) : LAR_OK;
+    if (status) return status;
+    lar_arrival arrival = {.listener = -1};
+    if (p && p->pid) {
+        arrival = (lar_arrival){.pid = p->pid, .count = p->count, .listener = p->listener};
+        lar_arrival_begin(&arrival);
+    }
+    status = lar_simulation_create(model, &mine, simulation, error);
+    return name_missing(p, &arrival, status, error);
 }
 
 void lar_processes_hesitate(const lar_processes *p) {
@@ -286,7 +314,7 @@ static void describe_end(int32_t k, int status, lar_error *error) {
 
 /* Who is stopped will not end by itself. */
 static void end_stopped(const lar_processes *p, int32_t k, int status, lar_error *worst) {
-    if (!worst->status)
+    if (!worst->status && k != p->named)
         lar_fail(worst, LAR_ERROR_PEER,
                  "processor %d was stopped by signal %d (%s) and is now ended", (int)k,
                  WSTOPSIG(status), strsignal(WSTOPSIG(status)));
@@ -304,7 +332,7 @@ static int32_t reap(lar_processes *p, lar_status failure, lar_error *worst) {
         if (found == p->pid[k] && WIFSTOPPED(status)) {
             if (failure) end_stopped(p, k, status, worst);
         } else if (found != 0) {
-            bool told = failure && found > 0 && WIFEXITED(status);
+            bool told = k == p->named || (failure && found > 0 && WIFEXITED(status));
             p->pid[k] = 0;
             if (found > 0 && status != 0 && !told && !worst->status) describe_end(k, status, worst);
             continue;

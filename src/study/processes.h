@@ -9,7 +9,7 @@
  *
  *     lar_processes_begin    who am I?
  *     lar_processes_start    the others, once their number is known
- *     lar_processes_meet     before each lar_simulation_create
+ *     lar_processes_create   for lar_simulation_create, in all of them as often
  *     lar_processes_end
  *
  * Processes that were started here read and write nothing but messages. When processor zero ends
@@ -44,8 +44,12 @@ int32_t lar_processes_self(const lar_processes *processes);
 /* Processor zero starts processors 1 .. count - 1 when nobody else does. */
 lar_status lar_processes_start(lar_processes *processes, int32_t count, lar_error *error);
 
-/* Sets processor, master and listener of the options, for one simulation. */
-lar_status lar_processes_meet(lar_processes *processes, lar_options *options, lar_error *error);
+/* lar_simulation_create, with processor, master and listener of the options set. When a process
+ * that was started here ends before it has come, fails at once and names it. `processes` may be
+ * NULL: the options as they are. `error` is not. */
+lar_status lar_processes_create(lar_processes *processes, const lar_model *model,
+                                const lar_options *options, lar_simulation **simulation,
+                                lar_error *error);
 
 /* Before a process other than zero, which could not even begin, says why: processor zero, if it has
  * started this one, has most likely said the same, and ends it here. */

@@ -31,17 +31,12 @@ static lar_options options_for(const lar_verify_setting *setting, bool lists) {
     return options;
 }
 
-static lar_status open_both(const lar_verify_setting *setting, lar_options *options,
-                            lar_simulation **simulation, lar_error *error) {
-    lar_status status = lar_processes_meet(setting->processes, options, error);
-    return status ? status : lar_simulation_create(setting->model, options, simulation, error);
-}
-
 /* Runs and tells the hash, as the options say. */
-static lar_status run(const lar_verify_setting *setting, lar_options *options, uint64_t steps,
+static lar_status run(const lar_verify_setting *setting, const lar_options *options, uint64_t steps,
                       uint64_t *hash, lar_error *error) {
     lar_simulation *simulation = NULL;
-    lar_status status = open_both(setting, options, &simulation, error);
+    lar_status status =
+        lar_processes_create(setting->processes, setting->model, options, &simulation, error);
     if (!status) status = lar_simulation_advance(simulation, steps, error);
     if (!status) *hash = lar_simulation_hash(simulation);
     lar_simulation_destroy(simulation);
@@ -95,7 +90,8 @@ lar_status lar_verify_serve(const lar_verify_setting *setting, lar_error *error)
     for (int lists = 1; lists >= 0 && !status; lists--) {
         lar_simulation *simulation = NULL;
         lar_options options = options_for(setting, lists);
-        status = open_both(setting, &options, &simulation, error);
+        status =
+            lar_processes_create(setting->processes, setting->model, &options, &simulation, error);
         if (!status) status = lar_simulation_serve(simulation, error);
         lar_simulation_destroy(simulation);
     }

@@ -107,6 +107,29 @@ lose STOP shm 1
 complains 'processor 1 was stopped by signal'
 lose STOP tcp 0
 
+# One that ends on its way to processor zero: nobody waits for it until the limit of the start. All
+# search for a distribution meanwhile, so that there is time to lose one.
+"$LARIAT" demo-model organ >/dev/null || fail "no demonstration organ"
+for signal in KILL STOP; do
+    began=$(date +%s)
+    "$LARIAT" run organ/uterus.yaml --steps 3 --grid 2x1x1 --comm shm --distribution genetic --json \
+        >out 2>err &
+    zero=$!
+    pid=
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        pid=$(other $zero 1)
+        [ -n "$pid" ] && break
+        sleep 0.05
+    done
+    kill -$signal "$pid" || fail "no processor 1 to lose on its way"
+    wait $zero && fail "success without processor 1"
+    silent
+    complains 'processor 1 was \(ended by signal 9\|stopped by signal\).*before it came'
+    [ "$(wc -l <err)" -eq 1 ] || fail "told $(wc -l <err) times"
+    [ $(($(date +%s) - began)) -lt 20 ] || fail "waited for a processor that had ended ($signal)"
+    nothing_left "$pid"
+done
+
 # By hand; and who does not belong to it.
 port=$((20000 + $$ % 12000)) # below those that the system gives out by itself
 by_hand() {
@@ -143,6 +166,7 @@ refuse 2 'give --comm' --processor 1 --master 127.0.0.1:1
 refuse 2 'say which one' --comm tcp --master 127.0.0.1:1
 refuse 1 'they count from 0' --comm tcp --processor 2 --master 127.0.0.1:1
 refuse 1 'write host:port' --comm tcp --processor 0 --master nowhere
+refuse 1 'a port is a number' --comm tcp --processor 1 --master localhost:99999
 refuse 1 'cannot be used as a folder' --comm shm --out /dev/null/x
 refuse 1 'stable step' --comm shm --time-step 1
 [ "$(wc -l <err)" -eq 1 ] || fail "one failure is told $(wc -l <err) times"
