@@ -14,6 +14,9 @@
 #include "comm/socket.h"
 
 static const double BEAT = 0.1; /* between signs of life [s] */
+/* Silence that says that someone is lost, as a share of the timeout: the rest is for telling the
+ * others. As long as can be, because on a busy machine threads may get no turn for a second. */
+static const double SILENCE = 0.75;
 /* After the first connection has ended, zero waits so long for others: when all have ended it is
  * zero that is cut off [s]. */
 static const double SETTLE = 0.02;
@@ -170,7 +173,7 @@ static void look_for_losses(lar_comm_watch *w, double now) {
     }
     for (int32_t p = 0; p < w->comm->options.count; p++)
         if (is_open(w, p) && !w->links[p].left &&
-            now - w->links[p].heard > 0.5 * w->comm->options.timeout)
+            now - w->links[p].heard > SILENCE * w->comm->options.timeout)
             decide(w, lar_comm_verdict(p, LAR_LOSS_SILENT));
 }
 
