@@ -184,7 +184,9 @@ lar_status lar_mpi_gather(lar_mpi_world *world, const void *own, size_t bytes, v
 static lar_status leave(double timeout, lar_error *error) {
     static const char what[] = "leave";
     lar_mpi_request request;
+    lar_mpi_lock(&only);
     int failed = only.mpi->barrier(&request);
+    lar_mpi_unlock(&only);
     if (failed) return complain(only.mpi, failed, what, error);
     lar_status status = finish(&only, &request, what, timeout, error);
     if (status) return status;
