@@ -15,6 +15,7 @@ struct lar_pin {
 
 static hwloc_topology_t topology; /* NULL: not to be had */
 static pthread_once_t once = PTHREAD_ONCE_INIT;
+static int bound; /* atomic: a thread has been bound */
 
 static void load(void) {
     hwloc_topology_t made;
@@ -52,7 +53,13 @@ static hwloc_obj_t find_unit(int32_t number) {
 bool lar_pin_to(int32_t core) {
     if (core < 0 || core >= lar_pin_cores()) return false;
     hwloc_obj_t unit = find_unit(core);
+    __atomic_store_n(&bound, 1, __ATOMIC_RELEASE);
     return unit && hwloc_set_cpubind(topology, unit->cpuset, HWLOC_CPUBIND_THREAD) == 0;
+}
+
+void lar_pin_nowhere(void) {
+    if (!__atomic_load_n(&bound, __ATOMIC_ACQUIRE) || !ready()) return;
+    hwloc_set_cpubind(topology, hwloc_topology_get_topology_cpuset(topology), HWLOC_CPUBIND_THREAD);
 }
 
 lar_pin *lar_pin_remember(void) {
@@ -82,6 +89,8 @@ bool lar_pin_to(int32_t core) {
     (void)core;
     return false;
 }
+
+void lar_pin_nowhere(void) {}
 
 lar_pin *lar_pin_remember(void) {
     return NULL;

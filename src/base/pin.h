@@ -15,6 +15,10 @@ int32_t lar_pin_cores(void);
 /* Binds the calling thread; false when it stays free. */
 bool lar_pin_to(int32_t core);
 
+/* Lets the calling thread run on all of them: a thread that was started by a bound one begins where
+ * that is bound. Does nothing while no thread has been bound. */
+void lar_pin_nowhere(void);
+
 /* Where the calling thread may run now, for lar_pin_restore, which frees it. NULL is fine. */
 typedef struct lar_pin lar_pin;
 lar_pin *lar_pin_remember(void);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/pin.h"
 #include "comm/socket.h"
 
 static const double BEAT = 0.1; /* between signs of life [s] */
@@ -197,6 +198,7 @@ static void pass_on(lar_comm_watch *w) {
 
 static void *watch_thread(void *context) {
     lar_comm_watch *w = context;
+    lar_pin_nowhere(); /* not where the one that it speaks for computes without a pause */
     double next_beat = lar_comm_now(), last = next_beat, give_up = 0;
     for (;;) {
         double now = lar_comm_now();
