@@ -61,6 +61,11 @@ const char lar_comm_called_off[] = "the start was called off: a processor has en
 /* Nobody can come any more. */
 static lar_status deaf(const lar_comm *comm, int reason, lar_error *error) {
     if (reason == -EINVAL) return lar_fail(error, LAR_ERROR_PEER, "%s", lar_comm_called_off);
+    if (reason == -EBADF || reason == -ENOTSOCK)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the listener %d that processor 0 was given is no socket that listens; "
+                        "give one that does, or -1",
+                        comm->options.listener);
     return lar_fail(error, LAR_ERROR_IO,
                     "processor %d cannot accept connections: %s; raise the limit on open files "
                     "(ulimit -n)",

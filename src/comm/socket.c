@@ -215,7 +215,8 @@ int lar_socket_accept(int listener, double deadline) {
             return fd;
         }
         int reason = errno;
-        if (reason == EINVAL || reason == EMFILE || reason == ENFILE) return -reason;
+        bool broken = reason == EINVAL || reason == EBADF || reason == ENOTSOCK;
+        if (broken || reason == EMFILE || reason == ENFILE) return -reason;
         if (lar_comm_now() > deadline) return LAR_SOCKET_NOBODY;
         if (reason == EAGAIN || reason == EWOULDBLOCK)
             lar_socket_poll(listener, POLLIN, deadline);

@@ -27,7 +27,8 @@ lar_status lar_socket_own_host(char *host, lar_error *error);
 /* Connects, again and again while nobody listens there, until the deadline. */
 lar_status lar_socket_connect(const char *address, double deadline, int *socket, lar_error *error);
 /* Next connection; LAR_SOCKET_NOBODY at the deadline; -EINVAL when the listener was shut down, by
- * whoever else has it; -EMFILE or -ENFILE when there are no numbers for sockets left. */
+ * whoever else has it; -EBADF or -ENOTSOCK when it is none; -EMFILE or -ENFILE when there are no
+ * numbers for sockets left. */
 enum { LAR_SOCKET_NOBODY = -1 };
 int lar_socket_accept(int listener, double deadline);
 

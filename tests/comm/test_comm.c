@@ -1,6 +1,7 @@
 /* What every backend must do, the same bodies for all: comm.h and channel.h to the letter. */
 #include "fleet.h"
 
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -283,6 +284,11 @@ static void the_start_is_called_off(void **state) {
     assert_string_equal(error.message, lar_comm_called_off);
     assert_true(lar_comm_now() - begin < o.start_timeout);
     close(kept);
+    begin = lar_comm_now();
+    o.listener = open("/dev/null", O_RDONLY); /* as of options that were set to zero */
+    assert_int_equal(lar_comm_open(&o, &comm, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "no socket that listens"));
+    assert_true(lar_comm_now() - begin < o.start_timeout);
 }
 
 /* Without numbers for sockets nobody can come: that is not the others' fault. */
