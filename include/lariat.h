@@ -190,8 +190,8 @@ LAR_API void lar_simulation_destroy(lar_simulation *simulation);
 /* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element or node, place,
  * time and cause; the state is then the one after the failing step, or, with several processors,
  * after the step at which all have stopped, some steps later: nearly always finite and fit for a
- * picture (lar_results_add refuses it where it is not), but not for going on, and further calls fail
- * with the same message. */
+ * picture (lar_results_add refuses it where it is not), but not for going on, and further calls
+ * fail with the same message. */
 LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
                                           lar_error *error);
 
