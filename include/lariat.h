@@ -166,9 +166,9 @@ typedef struct lar_options {
     const char *comm;         /* "threads" (NULL); "shm", "ucx", "mpi", "tcp": other processes */
     uint64_t delays;          /* seed of random delays, to test with; 0: none */
     int verify;               /* not 0: steps verify the schedules instead of moving (T 6.9) */
-    int pin;                  /* a core for every thread, where there are enough: 0: never; 1: always;
-                                 2: only when all cores are taken, so that two runs never share a
-                                 core while another is idle */
+    int pin; /* a core for every thread, where there are enough: 0: never; 1: always;
+                2: only when all cores are taken, so that two runs never share a
+                core while another is idle */
 
     /* When processors are processes: which one this is, and how they find each other. Processor 0
      * is the one that is talked to; the others call lar_simulation_serve. */

@@ -255,6 +255,7 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
     if (worker->trip.kind && !*tripped) {
         *tripped = true;
+        lar_trip_examine(&p->domain, &worker->state, &worker->trip);
         lar_processor_ask_stop(p, stop);
     }
     if (seat == 0 && computer->first == 0 && computer->watch &&

@@ -146,11 +146,10 @@ lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t s
     else
         for (uint64_t i = 0; i < steps && !trip->kind; i++) {
             lar_step(&simulation->domain, state, trip);
+            if (trip->kind) lar_trip_examine(&simulation->domain, state, trip);
             if (watch && !watch(context, state->step)) break;
         }
-    if (status || !trip->kind) return status;
-    lar_simulation_state(simulation);
-    return lar_trip_report(&simulation->domain, state, trip, error);
+    return status ? status : lar_trip_report(&simulation->domain, trip, error);
 }
 
 lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {

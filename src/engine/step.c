@@ -7,7 +7,8 @@
 #include "mechanics/hex8_matrix.h"
 
 static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
-    if (!trip->kind) *trip = (lar_trip){LAR_TRIP_ELEMENT, e, state->step};
+    if (!trip->kind)
+        *trip = (lar_trip){.kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step};
 }
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
@@ -84,7 +85,7 @@ static void move_nodes(const lar_domain *domain, const lar_condition_context *co
     if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
                                  state->force, domain->push, weight, &state->damped) &&
         !trip->kind)
-        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
+        *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
@@ -92,7 +93,8 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
                         lar_trip *trip) {
     int32_t beyond = lar_conditions_load(conditions, context, time, state);
     if (beyond >= 0 && !trip->kind)
-        *trip = (lar_trip){LAR_TRIP_LOAD, domain->layout.global[beyond], state->step};
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
@@ -122,7 +124,7 @@ void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
         lar_conditions_half_work(conditions, context, lar_state_time(domain, state), state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !trip->kind)
-        *trip = (lar_trip){LAR_TRIP_SPEED, -1, state->step};
+        *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
     state->step++;
 }
 

@@ -18,8 +18,13 @@
 /* Why a run must stop: polled once per step, set once, never cleared. */
 typedef struct lar_trip {
     enum { LAR_TRIP_NONE, LAR_TRIP_ELEMENT, LAR_TRIP_SPEED, LAR_TRIP_LOAD } kind;
-    lar_gid element; /* of LAR_TRIP_ELEMENT; the node of LAR_TRIP_LOAD */
+    lar_gid element; /* of LAR_TRIP_ELEMENT; the node of the others */
     uint64_t step;   /* the step under way */
+    /* What lar_trip_examine found, for the report. */
+    double place[3];     /* [m] */
+    double volume_ratio; /* of the element */
+    double growth;       /* of its frequency */
+    double speed;        /* of the node [m/s] */
 } lar_trip;
 
 /* Every so many steps the kernels also look at the hourglass modes. */
@@ -69,8 +74,11 @@ static inline lar_condition_context lar_domain_context(const lar_domain *domain)
     return lar_domain_context_of(domain, 0, domain->layout.node_padded);
 }
 
-/* The sentence for a trip: element or node, place, time, cause and remedy. */
-lar_status lar_trip_report(const lar_domain *domain, const lar_state *state, const lar_trip *trip,
-                           lar_error *error);
+/* Looks at what has tripped, at the end of the step in which it did: several processors stop some
+ * steps later, when the state says little. `domain` has the element, or the nodes. */
+void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip);
+
+/* The sentence for an examined trip: element or node, place, time, cause and remedy. */
+lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error);
 
 #endif

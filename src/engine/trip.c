@@ -30,10 +30,9 @@ static void choose_place(const double now[3], const double rest[3], double place
     for (int i = 0; i < 3; i++) place[i] = finite ? now[i] : rest[i];
 }
 
-static lar_status report_element(const lar_domain *domain, const lar_state *state,
-                                 const lar_trip *trip, lar_error *error) {
+static void examine_place(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
     const lar_mesh *mesh = &domain->model->mesh;
-    double center[3] = {0}, rest[3] = {0}, place[3], volume_ratio, growth;
+    double center[3] = {0}, rest[3] = {0};
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
             lar_gid node = mesh->element[trip->element][a];
@@ -41,8 +40,12 @@ static lar_status report_element(const lar_domain *domain, const lar_state *stat
             center[i] +=
                 (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
         }
-    examine_element(domain, state, trip->element, &volume_ratio, &growth);
-    choose_place(center, rest, place);
+    choose_place(center, rest, trip->place);
+}
+
+static lar_status report_element(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const double *place = trip->place, volume_ratio = trip->volume_ratio, growth = trip->growth;
     const char *cause, *remedy;
     if (!isfinite(volume_ratio) || !isfinite(growth))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
@@ -70,10 +73,10 @@ static lar_status report_element(const lar_domain *domain, const lar_state *stat
                     volume_ratio, domain->time_step, domain->stable_step, remedy, hint(trip));
 }
 
-static lar_status report_speed(const lar_domain *domain, const lar_state *state,
-                               const lar_trip *trip, lar_error *error) {
+/* The fastest node, and where it is. */
+static void examine_speed(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
     const lar_mesh *mesh = &domain->model->mesh;
-    lar_lid fastest = domain->layout.local[0];
+    lar_lid fastest = -1;
     double highest = -1;
     for (lar_lid n = 0; n < domain->layout.node_count; n++)
         for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++)
@@ -81,10 +84,18 @@ static lar_status report_speed(const lar_domain *domain, const lar_state *state,
                 highest = fabs(state->v[4 * n + i]);
                 fastest = n;
             }
-    lar_gid node = domain->layout.global[fastest];
-    const double *u = state->u + 4 * fastest, *rest = mesh->position[node];
-    double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]}, place[3];
-    choose_place(now, rest, place);
+    if (fastest < 0) return;
+    trip->element = domain->layout.global[fastest];
+    trip->speed = highest;
+    const double *u = state->u + 4 * fastest, *rest = mesh->position[trip->element];
+    double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]};
+    choose_place(now, rest, trip->place);
+}
+
+static lar_status report_speed(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    lar_gid node = trip->element;
+    const double *place = trip->place, highest = trip->speed;
     if (!isfinite(highest))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
@@ -112,10 +123,18 @@ static lar_status report_load(const lar_domain *domain, const lar_trip *trip, la
                     (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
 }
 
-lar_status lar_trip_report(const lar_domain *domain, const lar_state *state, const lar_trip *trip,
-                           lar_error *error) {
+void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    if (trip->kind == LAR_TRIP_ELEMENT) {
+        examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
+        examine_place(domain, state, trip);
+    } else if (trip->kind == LAR_TRIP_SPEED) {
+        examine_speed(domain, state, trip);
+    }
+}
+
+lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
     if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
-    if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, state, trip, error);
+    if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
     if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
-    return report_speed(domain, state, trip, error);
+    return report_speed(domain, trip, error);
 }
