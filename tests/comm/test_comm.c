@@ -294,6 +294,7 @@ static void the_start_is_called_off(void **state) {
 /* Without numbers for sockets nobody can come: that is not the others' fault. */
 static void too_many_open_files(void **state) {
     (void)state;
+    if (lar_comm_job_launched()) skip(); /* launchers leave numbers free here and there */
     char master[LAR_COMM_ADDRESS_TEXT];
     lar_error error;
     lar_comm *comm = NULL;
