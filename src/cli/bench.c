@@ -2,19 +2,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/bench_json.h"
 #include "cli/commands.h"
-#include "cli/json.h"
 #include "study/bench_kernel.h"
 
 /* ---- lariat bench kernel ---------------------------------------------------------------- */
-
-static void write_spread(json_writer *json, const char *name, const lar_spread *spread) {
-    json_open(json, name, '{');
-    json_number(json, "min", spread->least);
-    json_number(json, "median", spread->median);
-    json_number(json, "max", spread->most);
-    json_close(json);
-}
 
 static void write_json(const lar_bench_kernel_result *r, bool general) {
     json_writer json = json_begin(stdout);
@@ -34,8 +26,8 @@ static void write_json(const lar_bench_kernel_result *r, bool general) {
     json_number(&json, "scaled_jacobian_min", r->scaled_jacobian_min);
     json_integer(&json, "samples", r->repeat);
     json_integer(&json, "steps_per_sample", (int64_t)r->steps);
-    write_spread(&json, "ns_per_element_spread", &r->nanoseconds);
-    write_spread(&json, "peak_gflops_spread", &r->peak_gflops);
+    bench_write_spread(&json, "ns_per_element_spread", &r->nanoseconds);
+    bench_write_spread(&json, "peak_gflops_spread", &r->peak_gflops);
     json_end(&json);
 }
 

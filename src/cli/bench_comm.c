@@ -2,8 +2,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "cli/bench_json.h"
 #include "cli/commands.h"
-#include "cli/json.h"
 #include "study/bench_comm.h"
 
 /* One size of packet. */
@@ -39,11 +39,7 @@ static void write_row(json_writer *json, const lar_bench_comm_result *r,
         return;
     }
     json_number(json, "latency_ns", row->latency.median);
-    json_open(json, "latency_ns_spread", '{');
-    json_number(json, "min", row->latency.least);
-    json_number(json, "median", row->latency.median);
-    json_number(json, "max", row->latency.most);
-    json_close(json);
+    bench_write_spread(json, "latency_ns_spread", &row->latency);
     if (row->moves_packets) {
         if (row->over_hand > 0) json_number(json, "over_by_hand", row->over_hand);
         write_figures(json, &row->at[r->asked]);

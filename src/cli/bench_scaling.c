@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/json.h"
+#include "cli/bench_json.h"
 #include "cli/parallel.h"
 #include "study/bench_scaling.h"
 
@@ -20,14 +20,6 @@ typedef struct scaling_settings {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_spread(json_writer *json, const char *name, const lar_spread *spread) {
-    json_open(json, name, '{');
-    json_number(json, "min", spread->least);
-    json_number(json, "median", spread->median);
-    json_number(json, "max", spread->most);
-    json_close(json);
-}
-
 static void write_row(json_writer *json, const lar_bench_scaling_row *row) {
     json_open(json, NULL, '{');
     json_text(json, "grid", row->grid);
@@ -38,7 +30,7 @@ static void write_row(json_writer *json, const lar_bench_scaling_row *row) {
         json_text(json, "missing", row->missing);
     } else {
         json_number(json, "us_per_step", row->microseconds.median);
-        write_spread(json, "us_per_step_spread", &row->microseconds);
+        bench_write_spread(json, "us_per_step_spread", &row->microseconds);
         json_number(json, "over_plain", row->over_plain);
         json_number(json, "speed_up", row->speed_up);
         json_number(json, "efficiency", row->efficiency);
@@ -60,7 +52,7 @@ static void write_json(const scaling_settings *s, const lar_bench_scaling_result
     json_integer(&json, "samples", r->repeat);
     json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
     json_integer(&json, "steps_per_sample", (int64_t)r->steps);
-    if (r->core_to_core.median > 0) write_spread(&json, "core_to_core_ns", &r->core_to_core);
+    if (r->core_to_core.median > 0) bench_write_spread(&json, "core_to_core_ns", &r->core_to_core);
     json_text(&json, "state_hash", hash);
     json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, &r->row[i]);
