@@ -21,7 +21,8 @@
  *
  * Threads. A model may be used by any number of threads at once. A simulation, and the results that
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
- * use scratch memory inside it, though never change what another call returns.
+ * use scratch memory inside it, though never change what another call returns. A SESSION takes a
+ * simulation over and computes on a thread of its own; all its calls may come from any thread.
  */
 #ifndef LARIAT_H
 #define LARIAT_H
@@ -127,6 +128,60 @@ LAR_API lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_
 LAR_API int32_t lar_model_notice_count(const lar_model *model);
 LAR_API const char *lar_model_notice_text(const lar_model *model, int32_t index);
 
+/* The outer surface: faces that belong to one element only. */
+typedef struct lar_surface_info {
+    int32_t faces, nodes;
+    const int32_t (*face)[4]; /* [faces] node indices, counter-clockwise seen from outside */
+    const int32_t *element;   /* [faces] the element behind each */
+    const int32_t *node;      /* [nodes] indices of the nodes on it, ascending */
+} lar_surface_info;
+
+/* The arrays live as long as the model. `info` is the caller's. */
+LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
+
+/* The material of an element: index into those of lar_model_material. */
+LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
+
+/* ---- tools ------------------------------------------------------------------------------ */
+
+typedef enum lar_tool_shape {
+    LAR_TOOL_SPHERE = 0, /* radius */
+    LAR_TOOL_CAPSULE,    /* a shaft with round ends: radius, length */
+    LAR_TOOL_GRASPER,    /* two jaws that take hold of tissue: radius and length of a jaw, spread */
+    LAR_TOOL_HAND        /* touches nothing, but takes hold of the surface within its radius */
+} lar_tool_shape;
+
+/* Where a tool is. Its own axes: the tip is the origin, the shaft lies along +z, the jaws of a
+ * grasper open in the plane y = 0 towards -z. */
+typedef struct lar_tool_pose {
+    double position[3];    /* of the tip [m] */
+    double orientation[4]; /* unit quaternion w, x, y, z: the tool's axes into the world's */
+    double opening;        /* 0 closed .. 1 open. Graspers and hands take hold of what is within
+                              reach when it falls below 0.25, and let go when it rises above 0.5 */
+} lar_tool_pose;
+
+/* One tool of a model or a simulation. Strings live as long as its owner. */
+typedef struct lar_tool_info {
+    const char *name;
+    lar_tool_shape shape;
+    double radius;      /* [m] */
+    double length;      /* [m]; 0 where the shape has none */
+    double spread;      /* angle between open jaws [rad]; 0 where the shape has none */
+    lar_tool_pose rest; /* at the start */
+} lar_tool_info;
+
+LAR_API int32_t lar_model_tool_count(const lar_model *model);
+LAR_API lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
+                                  lar_error *error);
+
+/* What the tissue does to a tool. */
+typedef struct lar_tool_force {
+    double force[3];  /* [N], the mean over the steps of the last advance */
+    double torque[3]; /* about the tip [N m], likewise */
+    int32_t touching; /* surface points that it touched in the last step */
+    int32_t held;     /* surface points that it has hold of */
+} lar_tool_force;
+
 /* Writes the demonstration organ (uterus.yaml and its mesh) into a folder, which is made when it
  * is missing. */
 LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
@@ -175,6 +230,9 @@ typedef struct lar_options {
     int32_t processor;
     const char *master; /* "host:port" where processor 0 listens */
     int listener;       /* processor 0: a socket that listens already, taken over; -1: none */
+
+    int32_t hands;     /* tools of shape LAR_TOOL_HAND besides the model's, after them */
+    int search_always; /* not 0: contact is searched anew in every step; the same bits, slow */
 } lar_options;
 
 /* hex8, the widest instruction set, the model's time step, one processor. Start from these: options
@@ -226,14 +284,75 @@ LAR_API void lar_simulation_velocities(const lar_simulation *simulation, double 
  * instruction set, thread count and division of the model. */
 LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 
-/* Energies now, in joules. external = work done by loads and prescribed motion since the start,
- * damping = energy taken out; kinetic + strain + hourglass + damping = external (+ start). */
+/* Energies now, in joules. external = work done by loads, prescribed motion and tools since the
+ * start, damping = energy taken out, contact = stored in contacts and lost in them;
+ * kinetic + strain + hourglass + damping + contact = external (+ start). */
 typedef struct lar_energy {
-    double kinetic, strain, hourglass, external, damping;
+    double kinetic, strain, hourglass, external, damping, contact;
 } lar_energy;
 
 /* Goes through all nodes and elements: as long as many steps. Asks for no memory. */
 LAR_API void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy);
+
+/* Values for a picture, one per node of the model. */
+typedef enum lar_field {
+    LAR_FIELD_DISPLACEMENT = 1, /* its length [m] */
+    LAR_FIELD_VELOCITY = 2,     /* its length [m/s]; not for lar_simulation_field */
+    LAR_FIELD_VON_MISES = 4,    /* [Pa] mean of the elements around the node, as the others */
+    LAR_FIELD_PRESSURE = 8,     /* [Pa] */
+    LAR_FIELD_ENERGY = 16,      /* strain energy per reference volume [J/m^3] */
+    LAR_FIELD_PROCESSOR = 32    /* the one that accounts for the node */
+} lar_field;
+
+/* A field at the displacements u, [nodes][3] in the mesh's order, into out [nodes]. Any thread may
+ * ask at any time while the simulation lives, also while another one advances it. */
+LAR_API lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
+                                        const double (*u)[3], float *out, lar_error *error);
+
+/* ---- tools and contact of a simulation ---------------------------------------------------- */
+
+/* Those of the model, then options.hands hands. */
+LAR_API int32_t lar_simulation_tool_count(const lar_simulation *simulation);
+LAR_API lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index,
+                                       lar_tool_info *info, lar_error *error);
+
+/* From the present step on the tool moves evenly from where it is to `pose`, within `steps` (at
+ * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
+ * happen now. Not faster than half its radius in a step (LAR_ERROR_ARGUMENT), but a hand that holds
+ * nothing may be put anywhere. */
+LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
+                                            const lar_tool_pose *pose, uint64_t steps,
+                                            lar_error *error);
+/* Where it is now. */
+LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t tool,
+                                            lar_tool_pose *pose, lar_error *error);
+LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
+                                             lar_tool_force *force, lar_error *error);
+
+/* What the search for contact did since the start, in pairs of a node and a face. */
+typedef struct lar_contact_info {
+    uint64_t possible; /* every node against every face in every step */
+    uint64_t boxed;    /* left over by the boxes of searches */
+    uint64_t tested;   /* exact tests */
+    uint64_t searches; /* times that the boxes were compared; without prediction: every step */
+    uint64_t steps;    /* steps done with contact */
+    int32_t touching;  /* nodes in contact in the last step, with bodies and planes */
+    double deepest;    /* immersion of these [m] */
+} lar_contact_info;
+
+LAR_API void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);
+
+/* ---- going back, saving, loading ---------------------------------------------------------- */
+
+/* The state that lar_simulation_create made; tools at rest. */
+LAR_API lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error);
+/* Writes state and tools to a file, whole or not at all (docs/formats.md, checkpoint). */
+LAR_API lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,
+                                       lar_error *error);
+/* Takes up a saved state: from then on everything is as if it had never stopped, on any grid. A
+ * damaged file, one of another model or of another time step is refused; nothing changes then. */
+LAR_API lar_status lar_simulation_load(lar_simulation *simulation, const char *path,
+                                       lar_error *error);
 
 /* ---- results on disk -------------------------------------------------------------------- */
 
@@ -253,6 +372,164 @@ LAR_API lar_status lar_results_close(lar_results *results, lar_error *error);
 LAR_API double lar_model_output_interval(const lar_model *model);
 /* Seconds that the model's own description lasts (its last ramp or table), at least 0. */
 LAR_API double lar_model_duration(const lar_model *model);
+
+/* ---- sessions: people and devices ----------------------------------------------------------
+ *
+ *     your threads: tool_move ---> latest wins --->  engine's thread: every tick (1 ms)
+ *                   tool_force <-- latest <--------    tools, steps, forces, snapshot, pace
+ *                   snapshot   <-- when asked for --
+ *
+ * A session advances a simulation on a thread of its own, at the pace of the clock, and exchanges
+ * tools' positions and forces once in a tick. All calls may come from any thread; none makes the
+ * engine wait. docs/session.md.
+ */
+
+typedef struct lar_session lar_session;
+
+typedef struct lar_session_options {
+    double tick;         /* seconds of simulated time between exchanges; 0: 1 ms. Whole steps */
+    double pace;         /* simulated seconds per second of the clock; 0: as fast as it goes */
+    int paused;          /* not 0: starts paused */
+    double tool_speed;   /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
+    double hand_force;   /* hands pull no harder than this [N]; 0: 5 N */
+    const char *record;  /* path of a recording to write, from the start; NULL: none */
+    uint64_t hash_every; /* steps between the hashes of a recording; 0: 100 */
+} lar_session_options;
+
+LAR_API lar_session_options lar_session_options_default(void); /* pace 1, all others 0 */
+
+/* Takes the simulation over until the session is closed: no other call may use it, but
+ * lar_simulation_field and what is said to be constant (counts, names, time step). `options` may be
+ * NULL. */
+LAR_API lar_status lar_session_open(lar_simulation *simulation, const lar_session_options *options,
+                                    lar_session **session, lar_error *error);
+/* Starts the thread. */
+LAR_API lar_status lar_session_start(lar_session *session, lar_error *error);
+/* Ends the thread within a tick, closes devices and the recording. NULL is fine. The simulation may
+ * be used again, and is the caller's to destroy. Closing fails only when a recording could not be
+ * completed. */
+LAR_API lar_status lar_session_close(lar_session *session, lar_error *error);
+
+/* Asked for here, done at the end of the tick under way, in this order. */
+LAR_API void lar_session_play(lar_session *session);
+LAR_API void lar_session_pause(lar_session *session);
+LAR_API void lar_session_step(lar_session *session, uint64_t steps); /* pauses after them */
+LAR_API void lar_session_set_pace(lar_session *session, double pace);
+/* These wait until it is done, or failed. */
+LAR_API lar_status lar_session_reset(lar_session *session, lar_error *error);
+LAR_API lar_status lar_session_save(lar_session *session, const char *path, lar_error *error);
+LAR_API lar_status lar_session_load(lar_session *session, const char *path, lar_error *error);
+/* Begins a recording at `path`; NULL ends the one under way. */
+LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
+
+/* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
+ * has a device (lar_session_attach) does not listen. */
+LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
+                                         const lar_tool_pose *pose, lar_error *error);
+/* Of the last tick: pose and force, either may be NULL. */
+LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
+                                          lar_tool_pose *pose, lar_tool_force *force,
+                                          lar_error *error);
+
+/* Connects a tool with a device for as long as the session lives (docs/devices.md):
+ *     "script:FILE.csv"     positions at times
+ *     "udp:HOST:PORT"       packets of positions in, of forces out; HOST should be a loopback one
+ *     "gamepad:N"           the N-th game controller, from 0
+ * any of them with ",trocar=X:Y:Z" behind for an instrument that pivots there. */
+LAR_API lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
+                                      lar_error *error);
+
+typedef enum lar_session_state {
+    LAR_SESSION_IDLE = 0, /* not started */
+    LAR_SESSION_PLAYING,
+    LAR_SESSION_PAUSED,
+    LAR_SESSION_STOPPED /* the run broke, see message; reset or load takes it up again */
+} lar_session_state;
+
+/* How it goes. Times are of the clock, in seconds; rates over about the last second. */
+typedef struct lar_session_status {
+    lar_session_state state;
+    uint64_t step;
+    double time;                                    /* simulated [s] */
+    double step_p50, step_p99, step_p999, step_max; /* of a step, engine alone: tick / steps */
+    double tick_p50, tick_p99, tick_p999, tick_max; /* from a tick's due time to its forces */
+    uint64_t ticks, misses;      /* ticks whose forces came after the next was due */
+    double real_time_factor;     /* simulated time per time of the clock, paused
+                                    time left out, since the start */
+    double real_time_factor_now; /* the same over the last second */
+    double engine_rate, haptic_rate, snapshot_rate; /* steps, ticks, snapshots per second */
+    int slow_motion;                                /* not 0: slower than asked for, now */
+    double lag;                                     /* behind the clock [s]; what is over 0.1 s is
+                                                       given up, and counted in `skipped` */
+    double skipped;
+    int recording;
+    char message[1016]; /* why it stopped; "" */
+} lar_session_status;
+
+LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);
+
+/* All nodes at the end of one step. */
+typedef struct lar_snapshot {
+    uint64_t step;
+    double time;    /* [s] */
+    uint64_t hash;  /* lar_simulation_hash of that step */
+    int32_t nodes;  /* of the model */
+    double (*u)[3]; /* [nodes] displacements [m] */
+} lar_snapshot;
+
+/* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */
+LAR_API lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **snapshot,
+                                       lar_error *error);
+LAR_API void lar_snapshot_destroy(lar_snapshot *snapshot);
+
+/* Asks the engine for the state at the end of a tick and waits for it, at most `seconds`. Fills
+ * `snapshot` and returns LAR_OK, or LAR_ERROR_PEER when none came in time. While paused or stopped
+ * it is the present state. Any number of threads may ask, each with a snapshot of its own. */
+LAR_API lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot,
+                                        double seconds, lar_error *error);
+
+/* Forces on a tool, one entry per tick: copies those after tick `after` (0: from the oldest that is
+ * kept), at most `most`, oldest first; the last 8192 ticks are kept. *last is the number of the
+ * last one copied (`after` when there is none). Returns how many. */
+LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
+                                          int32_t most, float (*force)[3], uint64_t *last);
+
+/* ---- recordings ----------------------------------------------------------------------------- */
+
+typedef struct lar_replay_report {
+    uint64_t steps;     /* done */
+    uint64_t hashes;    /* compared */
+    uint64_t different; /* the first step whose hash differs; UINT64_MAX: none does */
+    uint64_t recorded_hash, replayed_hash; /* there */
+} lar_replay_report;
+
+/* Plays a recording on a simulation of the same model and time step, on any grid, and compares the
+ * hashes. A difference is LAR_ERROR_FORMAT, and `report` names the step. `watch` as in
+ * lar_simulation_advance_watched, may be NULL: called after every tick with the number of steps. */
+LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
+                              void *context, lar_replay_report *report, lar_error *error);
+
+/* ---- the viewer's server ----------------------------------------------------------------------
+ */
+
+typedef struct lar_server lar_server;
+
+typedef struct lar_server_options {
+    const char *address;     /* NULL: 127.0.0.1. Any other one needs a token */
+    int port;                /* 0: a free one */
+    const char *token;       /* what viewers must show; NULL: none */
+    const char *folder;      /* of the viewer's files; NULL: those installed with the library */
+    const char *save_folder; /* where the viewer's record and save go; NULL: they are refused */
+} lar_server_options;
+
+/* Serves a session to viewers on a thread of its own. The session must outlive it.
+ * LAR_ERROR_UNSUPPORTED when this build has no libwebsockets. */
+LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
+                                   const lar_server_options *options, lar_server **server,
+                                   lar_error *error);
+LAR_API const char *lar_server_url(const lar_server *server); /* "http://127.0.0.1:8000/" */
+LAR_API int32_t lar_server_viewers(const lar_server *server); /* connected now */
+LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
 
 #ifdef __cplusplus
 }

@@ -211,7 +211,7 @@ static lar_status move(lar_worker *worker, lar_error *error) {
     if (p->check)
         return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
                                         worker->context.end, &worker->state, error);
-    lar_step_move(&p->domain, &worker->conditions, &worker->context, &worker->state, &worker->trip);
+    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
     return LAR_OK;
 }
 
@@ -241,7 +241,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_status status = LAR_OK;
     fetch_foreign(worker);
     if (!p->check)
-        lar_step_begin(&p->domain, &worker->conditions, &worker->context, &worker->state,
+        lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
                        &worker->trip);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, step, error);
@@ -254,7 +254,6 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     if (p->check)
         worker->state.step++;
     else
-        lar_step_end(&p->domain, &worker->conditions, &worker->context, &worker->state,
-                     &worker->trip);
+        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
     return LAR_OK;
 }

@@ -344,10 +344,12 @@ static void check_copies(const lar_computer *computer, const lar_processor *p,
 #endif
 }
 
-static void add_work(const lar_processor *p, int32_t threads, double *external, double *damped) {
+static void add_work(const lar_processor *p, int32_t threads, double *external, double *damped,
+                     double *contact) {
     for (int32_t t = 0; t < threads; t++) {
         *external += p->worker[t].state.external;
         *damped += p->worker[t].state.damped;
+        *contact += p->worker[t].state.contact;
     }
 }
 
@@ -362,7 +364,7 @@ static void gather_here(const lar_computer *computer, lar_state *state) {
             if (node >= 0 && computer->division.reporter[node] == p->self)
                 take_node(whole, node, own->u + 4 * (size_t)n, own->v + 4 * (size_t)n, state);
         }
-        add_work(p, computer->threads, &state->external, &state->damped);
+        add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
     }
     for (int32_t i = 0; i < computer->hosted; i++)
         check_copies(computer, &computer->processor[i], state);
@@ -399,6 +401,7 @@ static lar_status gather_others(lar_computer *computer, lar_state *state, lar_er
             if (round > 0) continue;
             state->external += answer->external;
             state->damped += answer->damped;
+            state->contact += answer->contact;
         }
     }
     free(from);
@@ -408,7 +411,7 @@ static lar_status gather_others(lar_computer *computer, lar_state *state, lar_er
 lar_status lar_computer_gather(lar_computer *computer, lar_state *state, lar_error *error) {
     if (computer->broken) return refuse_broken(error);
     state->step = computer->processor[0].worker[0].state.step;
-    state->external = state->damped = 0;
+    state->external = state->damped = state->contact = 0;
     gather_here(computer, state);
     lar_status status = LAR_OK;
     if (computer->control) status = gather_others(computer, state, error);
@@ -426,8 +429,8 @@ static void fill_answer(const lar_computer *computer, uint64_t round, lar_answer
     const lar_mesh *mesh = &computer->whole->model->mesh;
     uint64_t skip = round * LAR_ANSWER_NODES;
     answer->nodes = 0;
-    answer->external = answer->damped = 0;
-    add_work(p, computer->threads, &answer->external, &answer->damped);
+    answer->external = answer->damped = answer->contact = 0;
+    add_work(p, computer->threads, &answer->external, &answer->damped, &answer->contact);
     for (lar_gid node = 0; node < mesh->node_count && answer->nodes < LAR_ANSWER_NODES; node++) {
         if (computer->division.reporter[node] != p->self) continue;
         if (skip > 0) {

@@ -34,7 +34,7 @@ enum { LAR_ANSWER_NODES = 680 };
 typedef struct lar_answer {
     uint64_t step; /* steps done */
     lar_trip trip; /* the first of the processor */
-    double external, damped;
+    double external, damped, contact;
     int64_t nodes; /* in `value` */
     double value[LAR_ANSWER_NODES][6];
 } lar_answer;

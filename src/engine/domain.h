@@ -12,7 +12,7 @@
 #ifndef LAR_ENGINE_DOMAIN_H
 #define LAR_ENGINE_DOMAIN_H
 
-#include "engine/conditions.h"
+#include "engine/acting.h"
 #include "engine/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
@@ -42,7 +42,7 @@ typedef struct lar_domain {
     lar_hex8_limits limits;
     lar_motion motion; /* without gravity when gravity follows a curve */
 
-    lar_conditions conditions;
+    lar_acting acting;
 } lar_domain;
 
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic

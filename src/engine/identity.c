@@ -56,5 +56,5 @@ uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t 
     hash = hash_doubles(hash, whole->push, nodes);
     hash = hash_doubles(hash, start->u, 4 * nodes);
     hash = hash_doubles(hash, start->v, 4 * nodes);
-    return hash_blocks(hash_conditions(hash, &whole->conditions), whole);
+    return hash_blocks(hash_conditions(hash, &whole->acting.conditions), whole);
 }

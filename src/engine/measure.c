@@ -68,7 +68,7 @@ static double supported_velocity(const lar_domain *domain, const lar_state *stat
 /* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
 static void add_motion(const lar_domain *domain, const lar_state *state, const double gravity[3],
                        lar_energy *energy) {
-    const lar_conditions *conditions = &domain->conditions;
+    const lar_conditions *conditions = &domain->acting.conditions;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             int32_t value = 4 * domain->layout.local[g] + i;
@@ -99,8 +99,9 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
     *energy =
         (lar_energy){.external = state->external,
                      .damping = 0.25 * domain->model->damping * domain->time_step * state->damped};
-    energy->external += lar_conditions_half_work(&domain->conditions, &context, time, state);
-    if (!domain->conditions.gravity_varies) energy->external += gravity_potential(domain, state);
+    energy->external += lar_conditions_half_work(&domain->acting.conditions, &context, time, state);
+    if (!domain->acting.conditions.gravity_varies)
+        energy->external += gravity_potential(domain, state);
     add_motion(domain, state, gravity, energy);
     clear_forces(domain, state);
 
@@ -132,7 +133,7 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
 
 lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
                                 double sum[3], lar_error *error) {
-    const lar_conditions *conditions = &domain->conditions;
+    const lar_conditions *conditions = &domain->acting.conditions;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");

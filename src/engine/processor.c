@@ -194,7 +194,11 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};
     if (!status)
         status = lar_conditions_create(setting->whole->model, layout->local, &share,
-                                       &worker->conditions, error);
+                                       &worker->acting.conditions, error);
+    const lar_touch *touch = &setting->whole->acting.touch;
+    if (!status)
+        status = lar_touch_create(setting->whole->model, layout->local, &share, touch->list,
+                                  touch->tools, &worker->acting.touch, error);
     return status;
 }
 
@@ -242,7 +246,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 void lar_processor_destroy(lar_processor *p) {
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
-        lar_conditions_destroy(&worker->conditions);
+        lar_acting_destroy(&worker->acting);
         lar_parcels_destroy(worker);
         free(worker->gather);
         if (t == 0)

@@ -55,7 +55,7 @@ typedef struct lar_worker {
     int32_t thread;
     int32_t batch_first, batch_end;
     lar_state state; /* u, v: the processor's; force, step and work are its own */
-    lar_conditions conditions;
+    lar_acting acting;
     lar_condition_context context; /* the nodes that it moves */
     lar_parcel *parcel;            /* [threads] for each of them */
     int32_t joint_count;

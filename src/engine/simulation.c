@@ -14,7 +14,7 @@ lar_options lar_options_default(void) {
 /* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
  * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
 static void set_initial_displacements(lar_simulation *simulation) {
-    const lar_conditions *conditions = &simulation->domain.conditions;
+    const lar_conditions *conditions = &simulation->domain.acting.conditions;
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double value = lar_constraint_value(simulation->domain.model, c, 0);
@@ -48,8 +48,8 @@ static void set_initial_velocities(lar_simulation *simulation) {
             state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
         }
     memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
-    for (int32_t i = 0; i < domain->conditions.constraint_count; i++)
-        state->v[domain->conditions.constraint[i].value] = 0;
+    for (int32_t i = 0; i < domain->acting.conditions.constraint_count; i++)
+        state->v[domain->acting.conditions.constraint[i].value] = 0;
 }
 
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
@@ -78,7 +78,12 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
 static lar_status compile(const lar_model *model, const lar_options *options,
                           lar_simulation *simulation, lar_error *error) {
     lar_domain *domain = &simulation->domain;
-    lar_status status = lar_domain_create(model, options, domain, error);
+    lar_status status = lar_tool_list_create(model, options->hands, &simulation->list, error);
+    if (!status) status = lar_domain_create(model, options, domain, error);
+    if (status) return status;
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
+                              &simulation->tools, &domain->acting.touch, error);
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;
@@ -236,7 +241,7 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
 
 size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
-    const lar_conditions *conditions = &domain->conditions;
+    const lar_conditions *conditions = &domain->acting.conditions;
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;

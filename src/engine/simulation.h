@@ -12,6 +12,8 @@ struct lar_simulation {
     lar_domain domain;
     lar_state state;
     lar_trip trip;
+    lar_tool_list list;
+    lar_tools tools;
     lar_computer *computer; /* NULL: lar_step advances the whole model */
     bool gathered;          /* `state` is what the computer has */
 };

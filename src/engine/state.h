@@ -21,7 +21,8 @@
 typedef struct lar_state {
     uint64_t step;   /* steps done */
     double damped;   /* sum over the steps of sum m |v + v'|^2 */
-    double external; /* work of loads and prescribed motion so far [J] */
+    double external; /* work of loads, prescribed motion and tools so far [J] */
+    double contact;  /* what contacts have taken from the bodies so far [J] */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)

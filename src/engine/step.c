@@ -97,31 +97,46 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
             .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
 }
 
+/* Loads and contact; half of their work when the nodes are about to move. */
+static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
+                lar_state *state, lar_trip *trip) {
+    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, trip);
+    lar_touch_apply(&acting->touch, context, state);
+    lar_collide_apply(&acting->collide, context, state);
+}
+
+static void add_half_work(const lar_domain *domain, const lar_acting *acting,
+                          const lar_condition_context *context, lar_state *state) {
+    state->external += lar_conditions_half_work(&acting->conditions, context,
+                                                lar_state_time(domain, state), state);
+    lar_touch_half_work(&acting->touch, context, state);
+    lar_collide_half_work(&acting->collide, context, state);
+}
+
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
-    apply_loads(domain, &domain->conditions, &context, lar_state_time(domain, state), state, trip);
+    act(domain, &domain->acting, &context, state, trip);
     lar_step_recover(domain, 0, domain->run_count, state, trip);
 }
 
-void lar_step_begin(const lar_domain *domain, lar_conditions *conditions,
+void lar_step_begin(const lar_domain *domain, lar_acting *acting,
                     const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    double time = lar_state_time(domain, state);
-    apply_loads(domain, conditions, context, time, state, trip);
-    state->external += lar_conditions_half_work(conditions, context, time, state);
+    act(domain, acting, context, state, trip);
+    add_half_work(domain, acting, context, state);
 }
 
-void lar_step_move(const lar_domain *domain, lar_conditions *conditions,
+void lar_step_move(const lar_domain *domain, lar_acting *acting,
                    const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    lar_conditions *conditions = &acting->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
     move_nodes(domain, context, conditions->gravity_varies, time, state, trip);
     state->external += lar_conditions_impose(conditions, context, time, state);
 }
 
-void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
+void lar_step_end(const lar_domain *domain, const lar_acting *acting,
                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    state->external +=
-        lar_conditions_half_work(conditions, context, lar_state_time(domain, state), state);
+    add_half_work(domain, acting, context, state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !trip->kind)
         *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
@@ -129,10 +144,9 @@ void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
 }
 
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
-    lar_conditions *conditions = &domain->conditions;
     lar_condition_context context = lar_domain_context(domain);
-    lar_step_begin(domain, conditions, &context, state, trip);
+    lar_step_begin(domain, &domain->acting, &context, state, trip);
     lar_step_recover(domain, 0, domain->run_count, state, trip);
-    lar_step_move(domain, conditions, &context, state, trip);
-    lar_step_end(domain, conditions, &context, state, trip);
+    lar_step_move(domain, &domain->acting, &context, state, trip);
+    lar_step_end(domain, &domain->acting, &context, state, trip);
 }

@@ -33,20 +33,20 @@ enum { LAR_WATCH_INTERVAL = 32 };
 /* Advances the state by one step. */
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
 
-/* The parts of a step. The conditions' lists and the state's sums (force, damped, external) are one
+/* The parts of a step. What acts, and the state's sums (force, damped, external, contact), are one
  * thread's; u and v may be shared with the threads that move other nodes. */
 
 /* Loads, and the first half of their work. */
-void lar_step_begin(const lar_domain *domain, lar_conditions *conditions,
+void lar_step_begin(const lar_domain *domain, lar_acting *acting,
                     const lar_condition_context *context, lar_state *state, lar_trip *trip);
 /* The elements of runs first .. first + count - 1 of the domain. */
 void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
                       lar_trip *trip);
 /* Moves the context's nodes, whose force sums are complete, and clears the sums. */
-void lar_step_move(const lar_domain *domain, lar_conditions *conditions,
+void lar_step_move(const lar_domain *domain, lar_acting *acting,
                    const lar_condition_context *context, lar_state *state, lar_trip *trip);
 /* All nodes have moved: the second half of the work; the step is done. */
-void lar_step_end(const lar_domain *domain, const lar_conditions *conditions,
+void lar_step_end(const lar_domain *domain, const lar_acting *acting,
                   const lar_condition_context *context, lar_state *state, lar_trip *trip);
 
 /* Adds loads and internal forces at the present displacements to state->force (which is zero

@@ -55,3 +55,36 @@ int32_t lar_model_notice_count(const lar_model *model) {
 const char *lar_model_notice_text(const lar_model *model, int32_t index) {
     return index >= 0 && index < model->notice_count ? model->notice[index] : NULL;
 }
+
+void lar_model_surface(const lar_model *model, lar_surface_info *info) {
+    const lar_surface *surface = &model->surface;
+    *info = (lar_surface_info){.faces = surface->face_count,
+                               .nodes = surface->node_count,
+                               .face = (const int32_t(*)[4])surface->corner,
+                               .element = surface->element,
+                               .node = surface->node};
+}
+
+int32_t lar_model_element_material(const lar_model *model, int32_t element) {
+    bool known = element >= 0 && element < model->mesh.element_count;
+    return known ? model->element_material[element] : -1;
+}
+
+int32_t lar_model_tool_count(const lar_model *model) {
+    return model->tool_count;
+}
+
+lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
+                          lar_error *error) {
+    if (!model || !info) return refuse_null("lar_model_tool", error);
+    if (index < 0 || index >= model->tool_count)
+        return refuse_index("tool", index, model->tool_count, error);
+    const lar_tool *tool = &model->tool[index];
+    *info = (lar_tool_info){.name = tool->name,
+                            .shape = tool->shape,
+                            .radius = tool->radius,
+                            .length = tool->length,
+                            .spread = tool->spread,
+                            .rest = tool->rest};
+    return LAR_OK;
+}

@@ -20,6 +20,7 @@ lar_model *lar_model_create(void) {
 void lar_model_destroy(lar_model *model) {
     if (!model) return;
     lar_mesh_clear(&model->mesh);
+    lar_surface_clear(&model->surface);
     for (int i = 0; i < model->mesh_file_count; i++) free(model->mesh_file[i]);
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
@@ -28,6 +29,11 @@ void lar_model_destroy(lar_model *model) {
     for (int i = 0; i < model->load_count; i++) free(model->load[i].nodes.node);
     for (int i = 0; i < model->pressure_count; i++) free(model->pressure[i].face);
     for (int i = 0; i < model->initial_count; i++) free(model->initial[i].nodes.node);
+    for (int i = 0; i < model->contact_count; i++) {
+        free(model->contact[i].face);
+        free(model->contact[i].against);
+    }
+    for (int i = 0; i < model->tool_count; i++) free(model->tool[i].name);
     for (int i = 0; i < model->output.probe_count; i++) {
         free(model->output.probe[i].name);
         free(model->output.probe[i].nodes.node);
@@ -42,6 +48,8 @@ void lar_model_destroy(lar_model *model) {
     free(model->load);
     free(model->pressure);
     free(model->initial);
+    free(model->contact);
+    free(model->tool);
     free(model->output.probe);
     free(model->notice);
     free(model->title);
@@ -275,7 +283,7 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
     return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", lar_model_source(model), wrong);
 }
 
-lar_status lar_model_check(const lar_model *model, lar_error *error) {
+lar_status lar_model_check(lar_model *model, lar_error *error) {
     if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: the model has no elements; give it a mesh of hexahedra",
@@ -286,5 +294,6 @@ lar_status lar_model_check(const lar_model *model, lar_error *error) {
     if (!status) status = check_supports(model, error);
     if (!status) status = check_loads(model, error);
     if (!status) status = check_conflicts(model, error);
+    if (!status) status = lar_surface_build(&model->mesh, &model->surface, error);
     return status;
 }

@@ -9,6 +9,7 @@
 #include "model/curve.h"
 #include "model/material.h"
 #include "model/mesh.h"
+#include "model/surface.h"
 
 enum { LAR_AXIS_X = 1, LAR_AXIS_Y = 2, LAR_AXIS_Z = 4, LAR_AXIS_ALL = 7 };
 
@@ -53,13 +54,26 @@ typedef struct lar_initial_velocity {
     double velocity[3];
 } lar_initial_velocity;
 
-typedef enum lar_field {
-    LAR_FIELD_DISPLACEMENT = 1,
-    LAR_FIELD_VELOCITY = 2,
-    LAR_FIELD_VON_MISES = 4,
-    LAR_FIELD_PRESSURE = 8,
-    LAR_FIELD_ENERGY = 16 /* strain energy density */
-} lar_field;
+/* What may touch what (T 2.2.8). Faces are element * 6 + local face, of the outer surface. */
+typedef struct lar_contact {
+    enum {
+        LAR_CONTACT_SELF,    /* `faces` with themselves and each other */
+        LAR_CONTACT_BETWEEN, /* `faces` with `against` */
+        LAR_CONTACT_PLANE    /* the nodes of `faces` with a fixed plane */
+    } kind;
+    int32_t face_count, against_count;
+    int32_t *face, *against;
+    double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
+} lar_contact;
+
+/* A tool: something hard that a device moves. */
+typedef struct lar_tool {
+    char *name;
+    lar_tool_shape shape;
+    double radius, length; /* [m] */
+    double spread;         /* [rad] between open jaws */
+    lar_tool_pose rest;
+} lar_tool;
 
 /* One line of probes.csv: the mean displacement of some nodes, or the sum of the reactions of
  * their supports. */
@@ -71,7 +85,7 @@ typedef struct lar_probe {
 
 typedef struct lar_output {
     double every;    /* seconds, 0: only the end */
-    unsigned fields; /* lar_field bits */
+    unsigned fields; /* lar_field bits (lariat.h) */
     int probe_count;
     lar_probe *probe;
 } lar_output;
@@ -103,7 +117,13 @@ struct lar_model {
     lar_pressure_load *pressure;
     lar_initial_velocity *initial;
 
+    int contact_count, tool_count;
+    lar_contact *contact;
+    lar_tool *tool;
+
     lar_output output;
+
+    lar_surface surface; /* of the mesh; lar_model_check fills it */
 
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;
@@ -135,8 +155,9 @@ lar_status lar_model_notice(lar_model *model, lar_error *error, const char *form
     __attribute__((format(printf, 3, 4)));
 
 /* Everything that must hold across the parts: materials assigned to every element and valid,
- * node lists within range, fixed and moved axes not in conflict, finite values. */
-lar_status lar_model_check(const lar_model *model, lar_error *error);
+ * node lists within range, fixed and moved axes not in conflict, finite values, tools and contacts
+ * that make sense. Builds the surface. The last step of every reader. */
+lar_status lar_model_check(lar_model *model, lar_error *error);
 
 /* The readers of whole models; lar_model_open chooses by extension. */
 lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error);

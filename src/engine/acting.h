@@ -1,0 +1,22 @@
+/* What acts on the nodes of one thread besides elements. */
+#ifndef LAR_ENGINE_ACTING_H
+#define LAR_ENGINE_ACTING_H
+
+#include "engine/collide.h"
+#include "engine/conditions.h"
+#include "engine/touch.h"
+
+typedef struct lar_acting {
+    lar_conditions conditions; /* supports, prescribed motion, loads */
+    lar_touch touch;           /* tools and planes */
+    lar_collide collide;       /* bodies */
+} lar_acting;
+
+/* All of them; idempotent. */
+static inline void lar_acting_destroy(lar_acting *acting) {
+    lar_conditions_destroy(&acting->conditions);
+    lar_touch_destroy(&acting->touch);
+    lar_collide_destroy(&acting->collide);
+}
+
+#endif

@@ -1,0 +1,89 @@
+#include "engine/tools.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const hand_name[] = {"hand", "hand 2", "hand 3", "hand 4"};
+enum { HANDS_MOST = sizeof hand_name / sizeof hand_name[0] };
+
+/* How far a hand reaches: about a finger's breadth. */
+static const double HAND_RADIUS = 0.008;
+
+lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_list *list,
+                                lar_error *error) {
+    if (hands < 0 || hands > HANDS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld hands; there can be 0 to %d", (long)hands,
+                        (int)HANDS_MOST);
+    if (model->tool_count + hands > LAR_TOOLS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s: %d tools and %ld hands; there can be %d together",
+                        lar_model_source(model), model->tool_count, (long)hands, LAR_TOOLS_MOST);
+    *list = (lar_tool_list){.count = model->tool_count + hands};
+    if (model->tool_count)
+        memcpy(list->tool, model->tool, (size_t)model->tool_count * sizeof *list->tool);
+    for (int32_t i = 0; i < hands; i++)
+        list->tool[model->tool_count + i] =
+            (lar_tool){.name = (char *)hand_name[i],
+                       .shape = LAR_TOOL_HAND,
+                       .radius = HAND_RADIUS,
+                       .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+    return LAR_OK;
+}
+
+void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
+    *tools = (lar_tools){.count = list->count};
+    for (int32_t i = 0; i < list->count; i++)
+        tools->motion[i] = (lar_tool_motion){.from = list->tool[i].rest, .to = list->tool[i].rest};
+}
+
+/* Straight line of unit quaternions, brought back to length one: exact at both ends, and between
+ * two ticks the turn is small. */
+static void blend_turn(const double from[4], const double to[4], double share, double out[4]) {
+    double dot = 0, square = 0;
+    for (int i = 0; i < 4; i++) dot += from[i] * to[i];
+    for (int i = 0; i < 4; i++) {
+        out[i] = (1 - share) * from[i] + share * (dot < 0 ? -to[i] : to[i]);
+        square += out[i] * out[i];
+    }
+    for (int i = 0; i < 4; i++) out[i] /= sqrt(square);
+}
+
+void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
+                 lar_tool_pose *pose, double velocity[3]) {
+    bool moves = step < motion->end;
+    if (velocity)
+        for (int i = 0; i < 3; i++)
+            velocity[i] = moves ? (motion->to.position[i] - motion->from.position[i]) /
+                                      ((double)(motion->end - motion->start) * time_step)
+                                : 0;
+    if (!moves || step < motion->start) {
+        *pose = moves ? motion->from : motion->to;
+        return;
+    }
+    double share = (double)(step - motion->start) / (double)(motion->end - motion->start);
+    for (int i = 0; i < 3; i++)
+        pose->position[i] = (1 - share) * motion->from.position[i] + share * motion->to.position[i];
+    blend_turn(motion->from.orientation, motion->to.orientation, share, pose->orientation);
+    pose->opening = (1 - share) * motion->from.opening + share * motion->to.opening;
+}
+
+/* v' = v + 2 w (a x v) + 2 a x (a x v), a the vector part; `sign` -1 turns back. */
+static void rotate(const double q[4], double sign, const double v[3], double out[3]) {
+    double c[3], a[3] = {sign * q[1], sign * q[2], sign * q[3]};
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        c[i] = 2 * (a[j] * v[k] - a[k] * v[j]);
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = v[i] + q[0] * c[i] + (a[j] * c[k] - a[k] * c[j]);
+    }
+}
+
+void lar_turn(const double q[4], const double v[3], double out[3]) {
+    rotate(q, 1, v, out);
+}
+
+void lar_turn_back(const double q[4], const double v[3], double out[3]) {
+    rotate(q, -1, v, out);
+}
