@@ -58,6 +58,7 @@ typedef struct lar_condition_context {
     const lar_model *model;
     double scale;         /* force units per newton */
     double time_step;     /* [s] */
+    double stable_step;   /* the elements' bound at rest [s] */
     const double *mass;   /* by local node */
     const double *weight; /* the same, 0 for nodes that another processor accounts for */
     int32_t first, end;   /* local nodes that the thread moves */

@@ -64,6 +64,7 @@ static inline lar_condition_context lar_domain_context_of(const lar_domain *doma
     return (lar_condition_context){.model = domain->model,
                                    .scale = domain->scale,
                                    .time_step = domain->time_step,
+                                   .stable_step = domain->stable_step,
                                    .mass = domain->mass,
                                    .weight = domain->weight,
                                    .first = first,

@@ -1,0 +1,38 @@
+#include "mechanics/contact.h"
+
+#include <math.h>
+
+/* Where the stiffest springs of three kinds still leave a step of 0.8 of the stable one stable:
+ * elements take 4 s^2 of the 4 that central differences allow, and a spring whose damper looks at
+ * the last half step counts three times (docs/theory.md). Above 0.25 the largest immersion hardly
+ * falls any more. Close to the stable limit there is no room at all, and the softest springs are
+ * kept: what they take is hidden in the difference between the elements' bound and the fastest mode
+ * of a body. */
+static const double SOFTEST = 0.04, STIFFEST = 0.25;
+
+lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
+    double s = time_step / stable_step;
+    double beta = fmin(fmax((4 - 4 * s * s) / 9, SOFTEST), STIFFEST);
+    return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
+}
+
+double lar_contact_face_mass(const double mass[4], const double weight[4]) {
+    double sum = 0;
+    for (int a = 0; a < 4; a++) sum += weight[a] * weight[a] / mass[a];
+    return 1 / sum;
+}
+
+void lar_face_weights(double r, double s, double weight[4]) {
+    weight[0] = 0.25 * (1 - r) * (1 - s);
+    weight[1] = 0.25 * (1 + r) * (1 - s);
+    weight[2] = 0.25 * (1 + r) * (1 + s);
+    weight[3] = 0.25 * (1 - r) * (1 + s);
+}
+
+void lar_face_normal(const double x[4][3], double normal[3]) {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        normal[i] =
+            (x[2][j] - x[0][j]) * (x[3][k] - x[1][k]) - (x[2][k] - x[0][k]) * (x[3][j] - x[1][j]);
+    }
+}

@@ -1,0 +1,63 @@
+/* Contact: how hard two things that are in each other's way push apart (T 2.2.8).
+ *
+ *        outside        F = k (d + lead d')   while d > 0 and F > 0, along the normal
+ *     ----- x -----     d   immersion of the point below the surface [m]
+ *           | d         d'  its rate, from the velocities half a step back [m/s]
+ *           o
+ *     inside            k = beta m / dt^2,    lead = dt
+ *
+ * "The repelling force is limited for the step size" (T figure 2.7): k is measured by the mass m
+ * that it moves. With lead = dt the force follows the immersion that the point will have a step
+ * later, so a point that is about to leave is not pushed any more; that, not a rule of its own, is
+ * what keeps the spring from giving back more than it took. Derivation and proof of the bounds:
+ * docs/theory.md, contact. No friction: wet tissue slides.
+ */
+#ifndef LAR_MECHANICS_CONTACT_H
+#define LAR_MECHANICS_CONTACT_H
+
+typedef struct lar_contact_law {
+    double stiffness; /* k per mass moved [1/s^2] */
+    double lead;      /* [s] */
+} lar_contact_law;
+
+/* For a time step and the stable step of the elements [s]. Three kinds of springs of this law may
+ * meet at a node (body, tool, hold) as long as the stiffness of each kind is at most
+ * law.stiffness times the node's mass (row sums: of k w_a over all springs of the kind, w_a being
+ * the node's share of a spring's end). */
+lar_contact_law lar_contact_law_for(double time_step, double stable_step);
+
+/* The force [N], at least 0, on a point that moves so much mass [kg]. */
+static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,
+                                       double rate) {
+    double ahead = depth + law->lead * rate;
+    return depth > 0 && ahead > 0 ? law->stiffness * mass * ahead : 0;
+}
+
+/* The mass that a force on a point of a face moves, 1 / sum(w_a^2 / m_a): that of a corner in a
+ * corner, four times as much in the middle of four equal ones. */
+double lar_contact_face_mass(const double mass[4], const double weight[4]);
+
+/* The mass that a force between two points moves. */
+static inline double lar_contact_pair_mass(double a, double b) {
+    return a * b / (a + b);
+}
+
+/* ---- points of a face ------------------------------------------------------------------------
+ * A face is the bilinear surface through its corners, counter-clockwise seen from outside, with
+ * coordinates r, s from -1 to 1. */
+
+/* Shares of the corners in a point, sum 1. */
+void lar_face_weights(double r, double s, double weight[4]);
+
+/* sum of weight[a] x[a]: a position, or a velocity. */
+static inline void lar_face_mean(const double x[4][3], const double weight[4], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = (weight[0] * x[0][i] + weight[1] * x[1][i]) +
+                 (weight[2] * x[2][i] + weight[3] * x[3][i]);
+}
+
+/* Outward normal in the middle: the cross product of the diagonals, twice the area where the face
+ * is flat, not of unit length. */
+void lar_face_normal(const double x[4][3], double normal[3]);
+
+#endif
