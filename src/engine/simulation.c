@@ -217,9 +217,7 @@ void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3
     copy_nodes(&simulation->domain, lar_simulation_state(simulation)->v, out);
 }
 
-uint64_t lar_simulation_hash(const lar_simulation *simulation) {
-    const lar_domain *domain = &simulation->domain;
-    const lar_state *state = lar_simulation_state(simulation);
+uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         size_t node = (size_t)domain->layout.local[g];
@@ -230,6 +228,10 @@ uint64_t lar_simulation_hash(const lar_simulation *simulation) {
 #undef LAR_STATE_HASH
     }
     return hash;
+}
+
+uint64_t lar_simulation_hash(const lar_simulation *simulation) {
+    return lar_state_hash(&simulation->domain, lar_simulation_state(simulation));
 }
 
 void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {

@@ -21,6 +21,9 @@ struct lar_simulation {
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
 const lar_state *lar_simulation_state(const lar_simulation *simulation);
 
+/* lar_simulation_hash of a state, which may be a copy of the simulation's. */
+uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state);
+
 /* Bytes of memory that a step can touch: domain and state, without the model. */
 size_t lar_simulation_bytes(const lar_simulation *simulation);
 
