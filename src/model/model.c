@@ -1,4 +1,4 @@
-#include "model/model.h"
+#include "model/contact_check.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -283,6 +283,36 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
     return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", lar_model_source(model), wrong);
 }
 
+static lar_status check_contacts(const lar_model *model, lar_error *error) {
+    char fault[LAR_FAULT_SIZE];
+    for (int i = 0; i < model->contact_count; i++)
+        if (lar_contact_fault(model, &model->contact[i], fault))
+            return lar_fail(error, LAR_ERROR_MODEL, "%s: contact entry %d: %s",
+                            lar_model_source(model), i + 1, fault);
+    return LAR_OK;
+}
+
+static lar_status check_tools(const lar_model *model, lar_error *error) {
+    char fault[LAR_FAULT_SIZE];
+    if (model->tool_count > LAR_MODEL_TOOLS_MOST)
+        return lar_fail(error, LAR_ERROR_MODEL, "%s: %d tools; there can be %d",
+                        lar_model_source(model), model->tool_count, LAR_MODEL_TOOLS_MOST);
+    for (int i = 0; i < model->tool_count; i++) {
+        const lar_tool *tool = &model->tool[i];
+        bool wrong = lar_tool_name_fault(tool->name ? tool->name : "", fault);
+        for (int j = 0; !wrong && j < i; j++) {
+            wrong = strcmp(model->tool[j].name, tool->name) == 0;
+            if (wrong)
+                snprintf(fault, sizeof fault, "tool entry %d is called \"%s\" too", j + 1,
+                         tool->name);
+        }
+        if (wrong || lar_tool_fault(model, tool, fault))
+            return lar_fail(error, LAR_ERROR_MODEL, "%s: tool entry %d: %s",
+                            lar_model_source(model), i + 1, fault);
+    }
+    return LAR_OK;
+}
+
 lar_status lar_model_check(lar_model *model, lar_error *error) {
     if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -294,6 +324,9 @@ lar_status lar_model_check(lar_model *model, lar_error *error) {
     if (!status) status = check_supports(model, error);
     if (!status) status = check_loads(model, error);
     if (!status) status = check_conflicts(model, error);
-    if (!status) status = lar_surface_build(&model->mesh, &model->surface, error);
+    if (!status && !model->surface.face_count) /* a reader may have needed it */
+        status = lar_surface_build(&model->mesh, &model->surface, error);
+    if (!status) status = check_contacts(model, error);
+    if (!status) status = check_tools(model, error);
     return status;
 }

@@ -66,6 +66,9 @@ typedef struct lar_contact {
     double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
 } lar_contact;
 
+/* Tools of a model and bytes of their names. A simulation takes four hands besides. */
+enum { LAR_MODEL_TOOLS_MOST = 12, LAR_TOOL_NAME_MOST = 63 };
+
 /* A tool: something hard that a device moves. */
 typedef struct lar_tool {
     char *name;

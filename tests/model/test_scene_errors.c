@@ -77,11 +77,9 @@ static void test_root(void **state) {
         {"gravty: [0, 0, 1]\n", "4:1",
          "the key \"gravty\" is unknown; did you mean gravity? a scene may have the keys: lariat, "
          "title, mesh, scale, gravity, time_step, damping, materials, sets, fix, move, load, "
-         "initial, output, duration"},
+         "initial, contact, tools, output, duration"},
         {"colour: red\n", "4:1",
          "the key \"colour\" is unknown; a scene may have the keys: lariat"},
-        {"contact: [{self: true}]\n", "4:1", "contact and tools are not computed yet; remove"},
-        {"tools: []\n", "4:1", "not computed yet; remove the key \"tools\""},
         {"scale: 0\n", "4:8", "scale is 0; it must be more than zero"},
         {"scale: mm\n", "4:8", "scale: expected a number, metres per unit"},
         {"gravity: -9.81\n", "4:10", "gravity: expected three numbers in m/s^2"},
@@ -326,6 +324,124 @@ static void hostile(const char *text, size_t size, const char *words) {
     if (!strstr(error.message, words)) fail_msg("\"%s\" lacks \"%s\"", error.message, words);
 }
 
+static void test_contact(void **state) {
+    (void)state;
+#define PLANE(values) "contact: [{faces: all, plane: {" values "}}]\n"
+    static const wrong_scene extra[] = {
+        {"contact: all\n", "4:10", "expected a list of contacts, {self: true}"},
+        {"contact: [all]\n", "4:11", "a contact entry as a mapping"},
+        {"contact: [{}]\n", "4:11", "a contact entry says one of three things: {self: true}"},
+        {"contact: [{slef: true}]\n", "4:12",
+         "the key \"slef\" is unknown; did you mean self? a contact entry may have the keys: self, "
+         "between, faces, plane"},
+        {"contact: [{self: true, between: [lid, bottom]}]\n", "4:11", "one of three things"},
+        {"contact: [{faces: lid}]\n", "4:11", "one of three things"},
+        {"contact: [{self: lid, faces: lid}]\n", "4:11", "one of three things"},
+        {"contact: [{plane: {through: [0, 0, 0], normal: [0, 0, 1]}}]\n", "4:11",
+         "one of three things"},
+        {"contact: [{self: false}]\n", "4:18", "self: expected true, or faces"},
+        {"contact: [{self: \"true\"}]\n", "4:18", "the set \"true\" is unknown"},
+        {"contact: [{self: 1}]\n", "4:18", "a number alone says too little"},
+        {"contact: [{self: ld}]\n", "4:18", "the set \"ld\" is unknown; did you mean lid?"},
+        {"contact: [{self: {box: [[1, 1, 1], [2, 2, 2]]}}]\n", "4:18",
+         "this selects no boundary face at all"},
+        {"contact: [{between: lid}]\n", "4:21", "between: expected two sets of faces"},
+        {"contact: [{between: [lid, bottom, lid]}]\n", "4:21", "expected two sets of faces"},
+        {"contact: [{between: [lid, {surface: true}]}]\n", "4:11",
+         "the two sets of faces have 4 in common (one is face 5 of element 105); contact of a "
+         "surface with itself is {self: FACES}"},
+        {"contact: [{faces: all, plane: [0, 0, 1]}]\n", "4:31", "the plane of a contact"},
+        {PLANE("normal: [0, 0, 1]"), "4:31", "needs the key \"through\""},
+        {PLANE("through: [0, 0, 0]"), "4:31", "needs the key \"normal\""},
+        {PLANE("point: [0, 0, 0], normal: [0, 0, 1]"), "4:32", "the key \"point\" is unknown"},
+        {PLANE("through: [0, 0, 0], normal: [0, 0, 0]"), "4:60",
+         "normal: this vector has no direction; expected three numbers, a direction"},
+        {PLANE("through: [0, 0, 0], normal: z"), "4:60", "normal: expected three numbers"},
+        {PLANE("through: [0, 0], normal: [0, 0, 1]"), "4:41", "through: expected three numbers"},
+        {PLANE("through: [0, 0, 0], normal: [0, 0, -1]"), "4:11",
+         "node 19 lies 0.02 m behind this plane at the start; move the plane, turn its normal"},
+        {PLANE("through: [0, 0, 1.0e-4], normal: [0, 0, 2]"), "4:11",
+         "node 1 lies 0.0001 m behind this plane"},
+    };
+    /* A surface as a mesh file gives it may go through the inside. */
+    static const wrong_scene within[] = {
+        {"contact: [{self: wall}]\n", "4:18",
+         "face 1 of element 101 is inside the body, where nothing can touch it; take faces of the "
+         "outer surface only, for example {all: [NAME, {surface: true}]}"},
+        {"contact: [{between: [lid, wall]}]\n", "4:27", "face 1 of element 101 is inside"},
+        {"contact: [{faces: wall, plane: {through: [0, 0, 0], normal: [0, 0, 1]}}]\n", "4:19",
+         "inside the body"},
+    };
+    REFUSES(extra, BASE);
+    REFUSES(within, "lariat: 1\nmesh: wall.vtu\n"
+                    "materials: [{cells: all, law: neo-hookean, density: 1050, "
+                    "shear_modulus: 4.0e3, bulk_modulus: 4.0e5}]\n");
+}
+
+static void test_tools(void **state) {
+    (void)state;
+#define SPHERE(values) "tools: [{shape: sphere, " values "}]\n"
+#define GRASPER(values)                                                                            \
+    "tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [0, 0, 0.1], " values "}]" \
+                                                                                              "\n"
+    static const wrong_scene extra[] = {
+        {"tools: probe\n", "4:8", "expected a list of tools, {name: probe, shape: sphere"},
+        {"tools: [probe]\n", "4:9", "a tool as a mapping"},
+        {"tools: [{}]\n", "4:9", "a tool needs the key \"name\"; add it"},
+        {"tools: [{name: a}]\n", "4:9", "a tool needs the key \"shape\""},
+        {"tools: [{name: a, colour: red}]\n", "4:19", "the key \"colour\" is unknown"},
+        {"tools: [{name: a, shape: spere}]\n", "4:26",
+         "the shape \"spere\" is unknown; did you mean sphere? the shapes are: sphere, capsule, "
+         "grasper"},
+        {"tools: [{name: a, shape: hand}]\n", "4:26", "the shapes are: sphere, capsule, grasper"},
+        {SPHERE("name: a"), "4:9", "a sphere needs the key \"radius\""},
+        {SPHERE("name: a, radius: 0.01"), "4:9", "a sphere needs the key \"at\""},
+        {SPHERE("name: a, radius: 0, at: [0, 0, 1]"), "4:42", "radius is 0; it must be more than"},
+        {SPHERE("name: a, radius: -0.1, at: [0, 0, 1]"), "4:42", "radius is -0.1; it must be more"},
+        {SPHERE("name: a, radius: 5 mm, at: [0, 0, 1]"), "4:42", "a number in metres (SI units)"},
+        {SPHERE("name: a, radius: 0.1, length: 1, at: [0, 0, 1]"), "4:47",
+         "the key \"length\" is unknown; a sphere may have the keys: name, shape, radius, at"},
+        {SPHERE("name: a, radius: 0.1, at: [0, 0, 1], towards: [0, 0, 1]"), "4:62",
+         "the key \"towards\" is unknown"},
+        {SPHERE("name: a, radius: 0.1, at: here"), "4:51", "at: expected three numbers in metres"},
+        {SPHERE("name: [], radius: 0.1, at: [0, 0, 1]"), "4:31", "expected the name of the tool"},
+        {SPHERE("name: hand, radius: 0.1, at: [0, 0, 1]"), "4:31",
+         "\"hand\" is the name of the hand that pulls with the mouse; choose another name"},
+        {SPHERE("name: hand 2, radius: 0.1, at: [0, 0, 1]"), "4:31", "the name of the hand"},
+        {SPHERE("name: a234567890123456789012345678901234567890123456789012345678901234, "
+                "radius: 0.1, at: [0, 0, 1]"),
+         "4:31", "the name of a tool has 1 to 63 bytes, this one has 64"},
+        {"tools:\n  - {name: a, shape: sphere, radius: 0.01, at: [0, 0, 1]}\n"
+         "  - {name: a, shape: sphere, radius: 0.01, at: [0, 0, 2]}\n",
+         "6:12", "there is already a tool named \"a\"; choose another name"},
+        {"tools: [{name: a, shape: capsule, radius: 0.01, at: [0, 0, 1]}]\n", "4:9",
+         "a capsule needs the key \"length\""},
+        {"tools: [{name: a, shape: capsule, radius: 0.01, length: -1, at: [0, 0, 1]}]\n", "4:57",
+         "length is -1"},
+        {"tools: [{name: a, shape: capsule, radius: 0.01, length: 1, spread: 1, at: [0, 0, 1]}]\n",
+         "4:60", "the key \"spread\" is unknown; a capsule may have the keys"},
+        {GRASPER("spread: 0"), "4:89", "spread is 0; it must be more than zero"},
+        {GRASPER("spread: 180"), "4:9", "less than 180 degrees"},
+        {GRASPER("spread: 60 deg"), "4:89", "spread: expected a number in degrees"},
+        {GRASPER("towards: [0, 0, 0]"), "4:90", "towards: this vector has no direction"},
+        {GRASPER("towards: down"), "4:90", "towards: expected three numbers, a direction"},
+        {GRASPER("turn: left"), "4:87", "turn: expected a number in degrees"},
+        {SPHERE("name: a, radius: 0.01, at: [0.01, 0.01, 0.029]"), "4:9",
+         "the tool would begin 0.001 m inside the body, at element 105; begin outside and move it"},
+        {SPHERE("name: a, radius: 0.001, at: [0.01, 0.01, 0.01]"), "4:9",
+         "the tool would begin 0.011 m inside the body"},
+        {"tools: [{name: a, shape: capsule, radius: 0.001, length: 1, at: [0.01, 0.01, -1]}]\n",
+         "4:9", "the tool would begin 0.001 m inside the body, at element 101"},
+    };
+    REFUSES(extra, BASE);
+    char text[1000] = "tools:\n";
+    for (int i = 0; i < 13; i++)
+        snprintf(text + strlen(text), 80,
+                 "  - {name: t%d, shape: sphere, radius: 0.01, at: [0, 0, 1]}\n", i);
+    const wrong_scene many[] = {{text, "17:5", "there are more than 12 tools; remove some"}};
+    REFUSES(many, BASE);
+}
+
 static void test_bounds(void **state) {
     (void)state;
     enum { SIZE = 1 << 20 };
@@ -422,6 +538,8 @@ int main(void) {
         cmocka_unit_test(test_sets),
         cmocka_unit_test(test_supports),
         cmocka_unit_test(test_loads_and_output),
+        cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_tools),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_alias_bomb),
         cmocka_unit_test(test_garbage),

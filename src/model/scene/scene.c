@@ -3,23 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* contact and tools are known, so that the answer can be better than "unknown key". */
-static lar_status refuse_later_keys(const lar_scene *scene) {
-    static const char *const later[] = {"contact", "tools"};
-    for (const lar_yaml *entry = scene->root->first; entry; entry = entry->next)
-        for (int i = 0; i < 2; i++)
-            if (strcmp(entry->key->text, later[i]) == 0)
-                return lar_scene_fail(scene, entry->key, LAR_ERROR_UNSUPPORTED,
-                                      "contact and tools are not computed yet; remove the key "
-                                      "\"%s\"",
-                                      later[i]);
-    return LAR_OK;
-}
-
 static lar_status check_root(const lar_scene *scene) {
-    static const char *const keys[] = {
-        "lariat", "title", "mesh", "scale", "gravity", "time_step", "damping",  "materials",
-        "sets",   "fix",   "move", "load",  "initial", "output",    "duration", NULL};
+    static const char *const keys[] = {"lariat",    "title",    "mesh",      "scale",   "gravity",
+                                       "time_step", "damping",  "materials", "sets",    "fix",
+                                       "move",      "load",     "initial",   "contact", "tools",
+                                       "output",    "duration", NULL};
     const lar_yaml *version = NULL;
     int64_t number;
     if (scene->root->kind != LAR_YAML_MAPPING)
@@ -36,8 +24,7 @@ static lar_status check_root(const lar_scene *scene) {
                               "program reads, but found %s",
                               lar_yaml_show(version, shown));
     }
-    status = refuse_later_keys(scene);
-    return status ? status : lar_scene_keys(scene, scene->root, "a scene", keys);
+    return lar_scene_keys(scene, scene->root, "a scene", keys);
 }
 
 static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
@@ -85,9 +72,10 @@ static lar_status read_root(lar_scene *scene) {
     static const struct {
         const char *key;
         part_reader *read;
-    } part[] = {{"sets", lar_scene_read_sets},    {"materials", lar_scene_read_materials},
-                {"fix", lar_scene_read_fix},      {"move", lar_scene_read_move},
-                {"load", lar_scene_read_load},    {"initial", lar_scene_read_initial},
+    } part[] = {{"sets", lar_scene_read_sets},       {"materials", lar_scene_read_materials},
+                {"fix", lar_scene_read_fix},         {"move", lar_scene_read_move},
+                {"load", lar_scene_read_load},       {"initial", lar_scene_read_initial},
+                {"contact", lar_scene_read_contact}, {"tools", lar_scene_read_tools},
                 {"output", lar_scene_read_output}};
     const lar_yaml *mesh = NULL, *materials;
     double scale;

@@ -7,6 +7,8 @@
  *           scene_select.c    selectors -> marks -> lists of indices
  *           scene_material.c  materials
  *           scene_motion.c    fix, move, load, initial, curves
+ *           scene_contact.c   contact
+ *           scene_tools.c     tools
  *           scene_output.c    output, probes
  *           scene_value.c     numbers, words, keys, and every message's "FILE:LINE:COLUMN: "
  *
@@ -74,6 +76,8 @@ lar_status lar_scene_need(const lar_scene *scene, const lar_yaml *mapping, const
 #define LAR_IN_NEWTON   "three numbers in newton (SI units), for example [0, 0, -0.1]"
 #define LAR_IN_POSITION "three numbers in metres (SI units), for example [0, 0, 0.01]"
 #define LAR_IN_VELOCITY "three numbers in m/s (SI units), for example [0, 0, 0.5]"
+#define LAR_A_DIRECTION "three numbers, a direction, for example [0, 0, 1]"
+#define LAR_IN_DEGREES  "a number in degrees, for example 60"
 #define LAR_IN_GRAVITY  "three numbers in m/s^2 (SI units), for example [0, 0, -9.81]"
 
 /* A finite number that is written without quotes and unit. */
@@ -86,6 +90,8 @@ lar_status lar_scene_not_negative(const lar_scene *scene, const lar_yaml *node,
                                   const char *expected, double *value);
 lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const char *expected,
                             double value[3]);
+/* The same, brought to length one. */
+lar_status lar_scene_direction(const lar_scene *scene, const lar_yaml *node, double unit[3]);
 lar_status lar_scene_integer(const lar_scene *scene, const lar_yaml *node, const char *expected,
                              int64_t *value);
 /* True when the node is written like an integer. */
@@ -116,6 +122,8 @@ lar_status lar_scene_mark_surface(lar_scene *scene, lar_set_kind kind, uint8_t *
 
 /* Fills scene->boundary. */
 lar_status lar_scene_need_boundary(lar_scene *scene);
+/* Fills scene->model->surface. */
+lar_status lar_scene_need_surface(lar_scene *scene);
 void lar_scene_sets_clear(lar_scene *scene);
 
 /* The key `sets`. */
@@ -130,13 +138,15 @@ lar_status lar_scene_select(lar_scene *scene, const lar_yaml *node, lar_set_kind
                             int32_t **index, int32_t *count);
 lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_node_list *nodes);
 
-/* ---- scene_material.c, scene_motion.c, scene_output.c -------------------------------------- */
+/* ---- scene_material.c, scene_motion.c, scene_contact.c, scene_tools.c, scene_output.c -------- */
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_initial(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_contact(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_tools(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node);
 
 #endif

@@ -105,24 +105,17 @@ static lar_status select_plane(lar_scene *scene, const lar_yaml *value, lar_set_
     static const char *const keys[] = {"point", "normal", "tolerance", NULL};
     region plane = {.shape = REGION_PLANE, .reach = 1e-6 * scene->size};
     const lar_yaml *point = NULL, *normal = NULL;
-    const char *const direction = "three numbers, a direction, for example [0, 0, 1]";
     lar_status status = lar_scene_keys(scene, value, "a plane", keys);
     if (!status)
         status = lar_scene_need(scene, value, "a plane", "point", "point: [0, 0, 0.01]", &point);
     if (!status)
         status = lar_scene_need(scene, value, "a plane", "normal", "normal: [0, 0, 1]", &normal);
     if (!status) status = lar_scene_vector(scene, point, LAR_IN_POSITION, plane.a);
-    if (!status) status = lar_scene_vector(scene, normal, direction, plane.b);
+    if (!status) status = lar_scene_direction(scene, normal, plane.b);
     const lar_yaml *tolerance = lar_yaml_get(value, "tolerance");
     if (!status && tolerance)
         status = lar_scene_not_negative(scene, tolerance, LAR_IN_METRES, &plane.reach);
-    if (status) return status;
-    double length = hypot(hypot(plane.b[0], plane.b[1]), plane.b[2]);
-    if (!(length > 0.0) || !isfinite(length))
-        return lar_scene_fail(scene, normal, LAR_ERROR_MODEL,
-                              "normal: this vector has no direction; expected %s", direction);
-    for (int i = 0; i < 3; i++) plane.b[i] /= length;
-    return mark_region(scene, &plane, kind, mark);
+    return status ? status : mark_region(scene, &plane, kind, mark);
 }
 
 static lar_status select_nearest(lar_scene *scene, const lar_yaml *value, lar_set_kind kind,

@@ -18,6 +18,12 @@ lar_status lar_scene_need_boundary(lar_scene *scene) {
                              scene->error);
 }
 
+lar_status lar_scene_need_surface(lar_scene *scene) {
+    lar_model *model = scene->model;
+    if (model->surface.face_count) return LAR_OK;
+    return lar_surface_build(&model->mesh, &model->surface, scene->error);
+}
+
 void lar_scene_sets_clear(lar_scene *scene) {
     lar_id_map_clear(&scene->node_ids);
     lar_id_map_clear(&scene->element_ids);

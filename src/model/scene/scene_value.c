@@ -182,6 +182,19 @@ lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const 
     return LAR_OK;
 }
 
+lar_status lar_scene_direction(const lar_scene *scene, const lar_yaml *node, double unit[3]) {
+    double v[3] = {0, 0, 0};
+    lar_status status = lar_scene_vector(scene, node, LAR_A_DIRECTION, v);
+    if (status) return status;
+    double length = hypot(hypot(v[0], v[1]), v[2]);
+    if (!(length > 0.0) || !isfinite(length))
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                              "%.40s: this vector has no direction; expected %s",
+                              node->key ? node->key->text : "the direction", LAR_A_DIRECTION);
+    for (int i = 0; i < 3; i++) unit[i] = v[i] / length;
+    return LAR_OK;
+}
+
 bool lar_scene_is_integer(const lar_yaml *node, int64_t *value) {
     return node->kind == LAR_YAML_SCALAR && !node->quoted &&
            lar_span_int64((lar_span){node->text, strlen(node->text)}, value);

@@ -1,0 +1,169 @@
+#include "model/contact_check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What rests exactly on a plane or at a tool may lie this part of the model's size inside, from
+ * rounding. */
+static const double ROUNDING = 1e-6;
+
+static double size_of(const lar_mesh *mesh) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double low = mesh->position[0][i], high = low;
+        for (int32_t n = 1; n < mesh->node_count; n++) {
+            low = fmin(low, mesh->position[n][i]);
+            high = fmax(high, mesh->position[n][i]);
+        }
+        square += (high - low) * (high - low);
+    }
+    return sqrt(square);
+}
+
+static bool finite3(const double v[3]) {
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+/* ---- contact -------------------------------------------------------------------------------- */
+
+bool lar_face_list_fault(const lar_model *model, const int32_t *face, int32_t count,
+                         char fault[LAR_FAULT_SIZE]) {
+    const lar_mesh *mesh = &model->mesh;
+    if (count <= 0 || !face) {
+        snprintf(fault, LAR_FAULT_SIZE, "there is no face in this contact; name at least one");
+        return true;
+    }
+    for (int32_t i = 0; i < count; i++) {
+        if (i > 0 && face[i] <= face[i - 1]) {
+            snprintf(fault, LAR_FAULT_SIZE, "its faces must be in ascending order, each once");
+            return true;
+        }
+        if (lar_surface_find(&model->surface, face[i]) >= 0) continue;
+        if (face[i] < 0 || face[i] / 6 >= mesh->element_count)
+            snprintf(fault, LAR_FAULT_SIZE, "there is no face %d in the mesh", (int)face[i]);
+        else
+            snprintf(fault, LAR_FAULT_SIZE,
+                     "face %d of element %lld is inside the body, where nothing can touch it; take "
+                     "faces of the outer surface only, for example {all: [NAME, {surface: true}]}",
+                     (int)(face[i] % 6), (long long)mesh->element_id[face[i] / 6]);
+        return true;
+    }
+    return false;
+}
+
+static int ascending(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static bool between_fault(const lar_model *model, const lar_contact *contact,
+                          char fault[LAR_FAULT_SIZE]) {
+    if (lar_face_list_fault(model, contact->against, contact->against_count, fault)) return true;
+    int32_t shared = 0, first = 0;
+    for (int32_t i = 0; i < contact->face_count; i++)
+        if (bsearch(&contact->face[i], contact->against, (size_t)contact->against_count,
+                    sizeof *contact->against, ascending)) {
+            if (!shared++) first = contact->face[i];
+        }
+    if (shared)
+        snprintf(fault, LAR_FAULT_SIZE,
+                 "the two sets of faces have %d in common (one is face %d of element %lld); "
+                 "contact of a surface with itself is {self: FACES}",
+                 (int)shared, (int)(first % 6), (long long)model->mesh.element_id[first / 6]);
+    return shared > 0;
+}
+
+static bool plane_fault(const lar_model *model, const lar_contact *contact,
+                        char fault[LAR_FAULT_SIZE]) {
+    const lar_mesh *mesh = &model->mesh;
+    const double *p = contact->through, *n = contact->normal;
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), deepest = 0;
+    if (!finite3(p) || !(fabs(length - 1) < 1e-9)) {
+        snprintf(fault, LAR_FAULT_SIZE,
+                 "the plane needs a finite point and a normal of length one");
+        return true;
+    }
+    int32_t worst = -1;
+    for (int32_t i = 0; i < 4 * contact->face_count; i++) {
+        int32_t face = contact->face[i / 4];
+        int32_t node = mesh->element[face / 6][lar_face_node[face % 6][i % 4]];
+        const double *x = mesh->position[node];
+        double depth = (p[0] - x[0]) * n[0] + (p[1] - x[1]) * n[1] + (p[2] - x[2]) * n[2];
+        if (depth > deepest) {
+            deepest = depth;
+            worst = node;
+        }
+    }
+    if (deepest <= ROUNDING * size_of(mesh)) return false;
+    snprintf(
+        fault, LAR_FAULT_SIZE,
+        "node %lld lies %.3g m behind this plane at the start; move the plane, turn its normal "
+        "to the side where the body is, or leave those faces out",
+        (long long)mesh->node_id[worst], deepest);
+    return true;
+}
+
+bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
+                       char fault[LAR_FAULT_SIZE]) {
+    if (lar_face_list_fault(model, contact->face, contact->face_count, fault)) return true;
+    if (contact->kind == LAR_CONTACT_SELF) return false;
+    if (contact->kind == LAR_CONTACT_BETWEEN) return between_fault(model, contact, fault);
+    return plane_fault(model, contact, fault);
+}
+
+/* ---- tools ---------------------------------------------------------------------------------- */
+
+bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]) {
+    static const char hand[] = "hand";
+    size_t length = strlen(name), word = sizeof hand - 1;
+    bool reserved = strncmp(name, hand, word) == 0 && (name[word] == '\0' || name[word] == ' ');
+    if (length > 0 && length <= LAR_TOOL_NAME_MOST && !reserved) return false;
+    if (reserved)
+        snprintf(fault, LAR_FAULT_SIZE,
+                 "\"%.40s\" is the name of the hand that pulls with the mouse; choose another name",
+                 name);
+    else
+        snprintf(fault, LAR_FAULT_SIZE, "the name of a tool has 1 to %d bytes, this one has %zu",
+                 LAR_TOOL_NAME_MOST, length);
+    return true;
+}
+
+static const char *size_fault(const lar_tool *tool) {
+    bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
+    const double *q = tool->rest.orientation;
+    double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    if (tool->shape != LAR_TOOL_SPHERE && !long_one)
+        return "the shape must be a sphere, a capsule or a grasper";
+    if (!(tool->radius > 0) || !isfinite(tool->radius))
+        return "the radius must be finite and more than zero";
+    if (long_one ? !(tool->length > 0) || !isfinite(tool->length) : tool->length != 0)
+        return long_one ? "the length must be finite and more than zero" : "a sphere has no length";
+    if (tool->shape == LAR_TOOL_GRASPER ? !(tool->spread > 0 && tool->spread < LAR_PI)
+                                        : tool->spread != 0)
+        return tool->shape == LAR_TOOL_GRASPER
+                   ? "the spread must be more than zero and less than 180 degrees"
+                   : "only a grasper has a spread";
+    if (!finite3(tool->rest.position)) return "its place must be finite";
+    if (!(fabs(square - 1) < 1e-9)) return "its orientation must be a quaternion of length one";
+    if (!(tool->rest.opening >= 0 && tool->rest.opening <= 1))
+        return "its opening must be between 0 and 1";
+    return NULL;
+}
+
+bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]) {
+    const char *wrong = size_fault(tool);
+    if (wrong) {
+        snprintf(fault, LAR_FAULT_SIZE, "%s", wrong);
+        return true;
+    }
+    int32_t face = 0;
+    double gap = lar_tool_gap(model, tool, &face);
+    if (gap >= -ROUNDING * size_of(&model->mesh)) return false;
+    snprintf(fault, LAR_FAULT_SIZE,
+             "the tool would begin %.3g m inside the body, at element %lld; begin outside and move "
+             "it in",
+             -gap, (long long)model->mesh.element_id[model->surface.element[face]]);
+    return true;
+}

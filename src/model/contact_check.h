@@ -1,0 +1,32 @@
+/* What is wrong with contacts and tools, in one sentence; the reader adds the place in the file.
+ *
+ * A run that begins with one thing inside another begins with energy from nowhere: contact would
+ * throw the two apart. So what overlaps at rest is refused here, before it is computed.
+ *
+ *     contact_check.c  lists of faces, planes, sizes, names
+ *     tool_gap.c       how far a tool is from the surface at rest
+ */
+#ifndef LAR_MODEL_CONTACT_CHECK_H
+#define LAR_MODEL_CONTACT_CHECK_H
+
+#include <stdbool.h>
+
+#include "model/model.h"
+
+enum { LAR_FAULT_SIZE = 400 };
+#define LAR_PI 3.14159265358979323846
+
+/* Each returns true when something is wrong, and has then written the sentence. model->surface is
+ * there. Faces are listed in ascending order, each once. */
+bool lar_face_list_fault(const lar_model *model, const int32_t *face, int32_t count,
+                         char fault[LAR_FAULT_SIZE]);
+bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
+                       char fault[LAR_FAULT_SIZE]);
+bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]);
+bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]);
+
+/* Distance from the tool's skin to the surface at rest [m]: negative when they overlap, also when
+ * the tool lies inside a body. `face` is the index into model->surface of the face next to it. */
+double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face);
+
+#endif

@@ -1,0 +1,149 @@
+#include <math.h>
+#include <string.h>
+
+#include "model/contact_check.h"
+#include "model/scene/scene.h"
+
+/* Open jaws of a grasper, where the scene does not say. */
+static const double SPREAD = 60;
+
+/* Which keys a shape takes, besides those of every tool. */
+typedef struct shape_keys {
+    const char *name, *what;
+    lar_tool_shape shape;
+    bool is_long, grasps;
+    const char *keys[11];
+} shape_keys;
+
+static const shape_keys known[] = {
+    {"sphere", "a sphere", LAR_TOOL_SPHERE, false, false, {"name", "shape", "radius", "at", NULL}},
+    {"capsule",
+     "a capsule",
+     LAR_TOOL_CAPSULE,
+     true,
+     false,
+     {"name", "shape", "radius", "length", "at", "towards", NULL}},
+    {"grasper",
+     "a grasper",
+     LAR_TOOL_GRASPER,
+     true,
+     true,
+     {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", NULL}}};
+enum { SHAPES = sizeof known / sizeof known[0] };
+
+static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
+                             const shape_keys **shape) {
+    const char *names[SHAPES];
+    for (int i = 0; i < SHAPES; i++) {
+        names[i] = known[i].name;
+        if (lar_scene_is_word(node, names[i])) {
+            *shape = &known[i];
+            return LAR_OK;
+        }
+    }
+    return lar_scene_unknown(scene, node, LAR_ERROR_FORMAT, "the shape", "the shapes are", names,
+                             SHAPES);
+}
+
+static lar_status read_name(lar_scene *scene, const lar_yaml *node, lar_tool *tool) {
+    const lar_model *model = scene->model;
+    const char *name;
+    char fault[LAR_FAULT_SIZE];
+    lar_status status = lar_scene_text(scene, node, "the name of the tool", &name);
+    if (status) return status;
+    if (lar_tool_name_fault(name, fault))
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", fault);
+    for (int i = 0; i < model->tool_count - 1; i++)
+        if (strcmp(model->tool[i].name, name) == 0)
+            return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                                  "there is already a tool named \"%s\"; choose another name",
+                                  name);
+    tool->name = lar_strdup(name);
+    return tool->name ? LAR_OK : lar_scene_no_memory(scene, strlen(name) + 1);
+}
+
+/* The shortest turn that brings the tool's -z, where it points, to `towards`; before it, `turn`
+ * radians about the tool's own axis. */
+static void orient(const double towards[3], double turn, double q[4]) {
+    double x = 0, y = 0, w = 1 - towards[2], c = cos(turn / 2), s = sin(turn / 2);
+    if (w > 1e-12) {
+        x = towards[1];
+        y = -towards[0];
+    } else { /* straight back: half a turn about x */
+        x = 1;
+        w = 0;
+    }
+    double length = sqrt(w * w + x * x + y * y);
+    w /= length;
+    x /= length;
+    y /= length;
+    q[0] = w * c;
+    q[1] = x * c + y * s;
+    q[2] = y * c - x * s;
+    q[3] = w * s;
+}
+
+static lar_status read_pose(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
+                            lar_tool *tool) {
+    const lar_yaml *at = NULL, *towards = lar_yaml_get(entry, "towards");
+    const lar_yaml *turn = lar_yaml_get(entry, "turn");
+    double direction[3] = {0, 0, -1}, degrees = 0;
+    lar_status status = lar_scene_need(scene, entry, shape->what, "at", "at: [0, 0, 0.1]", &at);
+    if (!status) status = lar_scene_vector(scene, at, LAR_IN_POSITION, tool->rest.position);
+    if (!status && towards) status = lar_scene_direction(scene, towards, direction);
+    if (!status && turn) status = lar_scene_number(scene, turn, LAR_IN_DEGREES, &degrees);
+    orient(direction, degrees * LAR_PI / 180, tool->rest.orientation);
+    tool->rest.opening = 1;
+    return status;
+}
+
+static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
+                            lar_tool *tool) {
+    const lar_yaml *radius = NULL, *length = NULL, *spread = lar_yaml_get(entry, "spread");
+    double degrees = SPREAD;
+    lar_status status =
+        lar_scene_need(scene, entry, shape->what, "radius", "radius: 0.005", &radius);
+    if (!status) status = lar_scene_positive(scene, radius, LAR_IN_METRES, &tool->radius);
+    if (!status && shape->is_long)
+        status = lar_scene_need(scene, entry, shape->what, "length", "length: 0.02", &length);
+    if (!status && length) status = lar_scene_positive(scene, length, LAR_IN_METRES, &tool->length);
+    if (!status && spread) status = lar_scene_positive(scene, spread, LAR_IN_DEGREES, &degrees);
+    if (!status && shape->grasps) tool->spread = degrees * LAR_PI / 180;
+    return status;
+}
+
+static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
+    static const char *const keys[] = {"name", "shape",   "radius", "length", "spread",
+                                       "at",   "towards", "turn",   NULL};
+    const char *const what = "a tool";
+    const lar_yaml *name = NULL, *word = NULL;
+    const shape_keys *shape = NULL;
+    lar_status status = lar_scene_keys(scene, entry, what, keys);
+    if (!status) status = lar_scene_need(scene, entry, what, "name", "name: probe", &name);
+    if (!status) status = lar_scene_need(scene, entry, what, "shape", "shape: sphere", &word);
+    if (!status) status = read_shape(scene, word, &shape);
+    if (!status) status = lar_scene_keys(scene, entry, shape->what, shape->keys);
+    if (!status && scene->model->tool_count >= LAR_MODEL_TOOLS_MOST)
+        status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
+                                "there are more than %d tools; remove some", LAR_MODEL_TOOLS_MOST);
+    if (status) return status;
+    lar_tool *tool = LAR_MODEL_APPEND(scene->model, tool);
+    if (!tool) return lar_scene_no_memory(scene, sizeof *tool);
+    tool->shape = shape->shape;
+    status = read_name(scene, name, tool);
+    if (!status) status = read_size(scene, entry, shape, tool);
+    if (!status) status = read_pose(scene, entry, shape, tool);
+    char fault[LAR_FAULT_SIZE];
+    if (!status && lar_tool_fault(scene->model, tool, fault))
+        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", fault);
+    return status;
+}
+
+lar_status lar_scene_read_tools(lar_scene *scene, const lar_yaml *node) {
+    lar_status status = lar_scene_list(
+        scene, node, "tools, {name: probe, shape: sphere, radius: 0.005, at: [0, 0, 0.1]}");
+    if (!status) status = lar_scene_need_surface(scene);
+    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next)
+        status = read_tool(scene, entry);
+    return status;
+}
