@@ -165,6 +165,9 @@ int32_t lar_comm_self(const lar_comm *comm) {
 int32_t lar_comm_count(const lar_comm *comm) {
     return comm->options.count;
 }
+void lar_comm_number_steps(lar_comm *comm, int64_t ahead) {
+    comm->ahead = (uint64_t)ahead;
+}
 const char *lar_comm_backend_name(const lar_comm *comm) {
     return comm->backend->name;
 }
@@ -187,7 +190,7 @@ lar_status lar_comm_check(lar_comm *comm, uint64_t step, lar_error *error) {
     char complete[80] = "";
     if (step)
         snprintf(complete, sizeof complete, "the last complete step of processor %d is %llu; ",
-                 (int)comm->options.self, (unsigned long long)step - 1);
+                 (int)comm->options.self, (unsigned long long)(step - 1 + comm->ahead));
     if (lost == comm->options.self)
         return lar_fail(error, LAR_ERROR_PEER,
                         "the others have given up processor %d, which is this one (%s); %slook for "
@@ -271,8 +274,8 @@ static lar_status complain(lar_comm *comm, int32_t peer, uint64_t tail, uint64_t
     lar_fail(error, LAR_ERROR_PEER,
              "processor %d sent step %llu where processor %d waits for step %llu; the schedules "
              "do not belong together or lack an exchange in both directions: make them anew",
-             (int)peer, (unsigned long long)tail, (int)comm->options.self,
-             (unsigned long long)step);
+             (int)peer, (unsigned long long)(tail + comm->ahead), (int)comm->options.self,
+             (unsigned long long)(step + comm->ahead));
     lar_comm_abort(comm);
     return LAR_ERROR_PEER;
 }

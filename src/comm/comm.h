@@ -137,6 +137,10 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error);
 
+/* What messages call the packets of step n: step n + ahead, for who counts packets otherwise than
+ * the steps of a simulation (0 at first). While nobody waits. */
+void lar_comm_number_steps(lar_comm *comm, int64_t ahead);
+
 /* ---- the backends of this build ---------------------------------------------------------- */
 
 /* How its processors are started, and by what they find each other. */

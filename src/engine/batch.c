@@ -81,12 +81,12 @@ static void join_sums(lar_worker *worker) {
 
 /* ---- packets ------------------------------------------------------------------------------- */
 
-static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uint64_t step,
+static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uint64_t round,
                           lar_error *error) {
     lar_processor *p = worker->processor;
     const void *payload;
     lar_status status =
-        lar_comm_wait(p->comm, packet->peer, packet->offset, packet->bytes, step, &payload, error);
+        lar_comm_wait(p->comm, packet->peer, packet->offset, packet->bytes, round, &payload, error);
     if (status) return status;
     uint64_t stop;
     memcpy(&stop, payload, sizeof stop);
@@ -104,33 +104,33 @@ static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uin
     return LAR_OK;
 }
 
-static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64_t step,
+static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64_t round,
                        lar_error *error) {
     const lar_processor *p = worker->processor;
     unsigned char *bytes =
-        lar_comm_room(p->comm, packet->peer, packet->offset, packet->bytes, step);
+        lar_comm_room(p->comm, packet->peer, packet->offset, packet->bytes, round);
     if (!bytes) bytes = worker->gather;
     uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
     memcpy(bytes, &stop, sizeof stop);
     int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
     collect(p, p->value + packet->first, packet->added + packet->whole, vector);
-    return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, step, error);
+    return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, round, error);
 }
 
 /* ---- waiting for the other threads --------------------------------------------------------- */
 
-static lar_status wait_for_batch(lar_processor *p, const lar_batch_mark *mark, uint64_t step,
+static lar_status wait_for_batch(lar_processor *p, const lar_batch_mark *mark, uint64_t round,
                                  lar_error *error) {
     enum { POLLS = 50 };
     for (;;) {
         for (int i = 0; i < POLLS; i++)
-            if (__atomic_load_n(&mark->step, __ATOMIC_ACQUIRE) >= step) return LAR_OK;
+            if (__atomic_load_n(&mark->round, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
         /* The other thread itself has a deadline in everything that it waits for. */
         if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
             return lar_fail(error, LAR_ERROR_PEER,
                             "another thread of processor %d has given up in step %llu; see what "
                             "it says",
-                            (int)p->self, (unsigned long long)step - 1);
+                            (int)p->self, (unsigned long long)(round - 1 + (uint64_t)p->ahead));
         sched_yield();
     }
 }
@@ -165,15 +165,15 @@ typedef struct near_cursor {
 
 /* Asks for at most so many bytes of the packets that will be sent, or have come. */
 static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, size_t bytes,
-                       uint64_t step) {
+                       uint64_t round) {
     while (cursor->packets.count > 0 && bytes > 0) {
         const lar_packet_plan *packet = &p->packet[cursor->packets.first];
         size_t left = lar_comm_packet_bytes(packet->bytes) - cursor->at;
         size_t part = left < bytes ? left : bytes;
         if (sends)
-            lar_comm_prepare(p->comm, packet->peer, packet->offset + cursor->at, part, step);
-        else if (lar_comm_expect(p->comm, packet->offset, packet->bytes, step))
-            lar_comm_fetch(p->comm, packet->offset + cursor->at, part, step);
+            lar_comm_prepare(p->comm, packet->peer, packet->offset + cursor->at, part, round);
+        else if (lar_comm_expect(p->comm, packet->offset, packet->bytes, round))
+            lar_comm_fetch(p->comm, packet->offset + cursor->at, part, round);
         else
             return;
         bytes -= part;
@@ -187,7 +187,7 @@ static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, 
 
 /* Between the runs of elements the memory of the batch's packets comes near, a little each time:
  * a core can wait for a few dozen lines at once, and does not compute while it asks for more. */
-static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t step) {
+static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t round) {
     enum { PORTION = 4096 };
     lar_processor *p = worker->processor;
     if (p->check) {
@@ -198,8 +198,8 @@ static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t st
     near_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
     for (int32_t r = 0; r < batch->run_count; r++) {
         if (r > 0 || batch->run_count == 1) {
-            bring_near(p, &sends, true, PORTION, step);
-            bring_near(p, &receives, false, PORTION, step);
+            bring_near(p, &sends, true, PORTION, round);
+            bring_near(p, &receives, false, PORTION, round);
         }
         lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->trip);
     }
@@ -215,42 +215,43 @@ static lar_status move(lar_worker *worker, lar_error *error) {
     return LAR_OK;
 }
 
-static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t step, lar_error *error) {
+static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_error *error) {
     lar_processor *p = worker->processor;
     const lar_batch_plan *batch = &p->batch[b];
     lar_status status = LAR_OK;
     dawdle(worker);
-    recover(worker, batch, step);
+    recover(worker, batch, round);
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
-        status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], step, error);
+        status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], round, error);
     dawdle(worker);
     for (int32_t i = 0; i < batch->receives.count && !status; i++)
-        status = receive(worker, &p->packet[batch->receives.first + i], step, error);
+        status = receive(worker, &p->packet[batch->receives.first + i], round, error);
     if (batch->moves && !status) status = move(worker, error);
     if (batch->sends.count) dawdle(worker);
     for (int32_t i = 0; i < batch->sends.count && !status; i++)
-        status = send(worker, &p->packet[batch->sends.first + i], step, error);
+        status = send(worker, &p->packet[batch->sends.first + i], round, error);
     pack_parcels(worker, b);
-    if (!status) __atomic_store_n(&p->mark[b].step, step, __ATOMIC_RELEASE);
+    if (!status) __atomic_store_n(&p->mark[b].round, round, __ATOMIC_RELEASE);
     return status;
 }
 
 lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_processor *p = worker->processor;
-    uint64_t step = worker->state.step + 1; /* comm and marks count from 1 */
+    uint64_t round = worker->round + 1; /* comm and marks count from 1 */
     lar_status status = LAR_OK;
     fetch_foreign(worker);
     if (!p->check)
         lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
                        &worker->trip);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
-        status = run_batch(worker, b, step, error);
+        status = run_batch(worker, b, round, error);
     if (status) {
         worker->follows = __atomic_exchange_n(&p->failed, 1, __ATOMIC_ACQ_REL) != 0;
         if (!worker->follows && status != LAR_ERROR_PEER && p->comm) lar_comm_abort(p->comm);
         return status;
     }
     clear_parcels(worker);
+    worker->round = round;
     if (p->check)
         worker->state.step++;
     else

@@ -1,6 +1,7 @@
 #include "engine/computer.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -91,7 +92,7 @@ static void compile_seat(void *context, int32_t number) {
                                      .delays = computer->options->delays,
                                      .near = computer->team || shares_memory(computer->options)};
     seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
-    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->start);
+    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->state);
 }
 
 static void meet_seat(void *context, int32_t number) {
@@ -108,7 +109,6 @@ static lar_status size_buffers(lar_computer *computer, bool several, lar_error *
     if (!computer->shift || !computer->clock)
         return lar_fail_memory(error, 16 * (size_t)count, "the processors");
     for (int32_t p = 0; several && p < count; p++) computer->shift[p] = lar_control_bytes(count, p);
-    for (int32_t p = 0; p < count; p++) computer->clock[p] = computer->start->step;
     return LAR_OK;
 }
 
@@ -134,7 +134,7 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     computer->hosted = several ? 1 : count;
     computer->checking = options->verify != 0;
     computer->identity =
-        lar_identity(computer->whole, computer->start, computer->division.schedules.of[0].division);
+        lar_identity(computer->whole, computer->state, computer->division.schedules.of[0].division);
     /* Forces are nothing to who expects lists. */
     computer->identity = lar_hash_word(computer->identity, computer->checking);
     if (computer->checking) status = lar_verification_create(model, &computer->check, error);
@@ -164,7 +164,7 @@ static lar_status open_processors(lar_computer *computer, bool *met, lar_error *
     return status;
 }
 
-lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
+lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
                                const lar_options *options, lar_computer **out, lar_error *error) {
     lar_computer *computer = lar_calloc(1, sizeof *computer);
     lar_status status = LAR_OK;
@@ -174,12 +174,12 @@ lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
     } else {
         computer->options = options;
         computer->whole = whole;
-        computer->start = state;
+        computer->state = state;
+        computer->tools = tools;
         status = prepare(computer, error);
         if (!status) status = open_processors(computer, &met, error);
         lar_schedule_set_clear(&computer->division.schedules);
         computer->options = NULL;
-        computer->start = NULL;
     }
     /* Only the meeting of processor zero takes the listener over. */
     if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
@@ -205,7 +205,7 @@ static void take_leave(lar_computer *computer) {
     if (!comm || computer->hosted == computer->division.grid.count) return;
     const lar_order finish = {.kind = LAR_ORDER_FINISH};
     if (computer->first == 0 && computer->control && !computer->broken)
-        computer->finished = lar_control_order(computer->control, &finish, NULL) == LAR_OK;
+        computer->finished = lar_control_order(computer->control, &finish, NULL, 0, NULL) == LAR_OK;
     if (!computer->finished) lar_comm_abort(comm);
 }
 
@@ -230,21 +230,21 @@ void lar_computer_destroy(lar_computer *computer) {
 /* T 6.5.2: no two processors are further apart than the exchanges between them. Only those of one
  * process see each other's clocks. Every thread sets its processor's clock forward before it sends
  * again: another thread may be late, a step at most. */
-static void check_clocks(lar_computer *computer, int32_t self, uint64_t step) {
+static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 #ifndef NDEBUG
     uint64_t *own = &computer->clock[self], shown = __atomic_load_n(own, __ATOMIC_RELAXED);
-    while (shown < step && !__atomic_compare_exchange_n(own, &shown, step, false, __ATOMIC_ACQ_REL,
-                                                        __ATOMIC_RELAXED))
+    while (shown < round && !__atomic_compare_exchange_n(own, &shown, round, false,
+                                                         __ATOMIC_ACQ_REL, __ATOMIC_RELAXED))
         continue;
     for (int32_t i = 0; i < computer->hosted; i++) {
         int32_t other = computer->first + i;
         uint64_t theirs = __atomic_load_n(&computer->clock[other], __ATOMIC_ACQUIRE);
-        uint64_t apart = theirs > step ? theirs - step : step - theirs;
+        uint64_t apart = theirs > round ? theirs - round : round - theirs;
         int32_t most = computer->division.distance[self * computer->division.grid.count + other];
         assert(apart <= (uint64_t)most + (computer->threads > 1));
     }
 #else
-    (void)computer, (void)self, (void)step;
+    (void)computer, (void)self, (void)round;
 #endif
 }
 
@@ -261,7 +261,7 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
     if (seat == 0 && computer->first == 0 && computer->watch &&
         !computer->watch(computer->watch_context, done))
         lar_processor_ask_stop(p, stop);
-    check_clocks(computer, p->self, done);
+    check_clocks(computer, p->self, worker->round);
 }
 
 static void advance_seat(void *context, int32_t number) {
@@ -281,10 +281,20 @@ static void advance_seat(void *context, int32_t number) {
     if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
 }
 
+/* What the threads here have felt in the last advance. */
+static void report_here(const lar_computer *computer, lar_report *report) {
+    *report = (lar_report){0};
+    for (int32_t i = 0; i < seats(computer); i++)
+        lar_report_add(report, &processor_of(computer, i)->worker[i % computer->threads].acting);
+}
+
 static lar_status advance_here(lar_computer *computer, uint64_t until, lar_error *error) {
     computer->until = until;
+    for (int32_t i = 0; i < seats(computer); i++)
+        lar_report_begin(&processor_of(computer, i)->worker[i % computer->threads].acting);
     lar_crew_run(computer->crew, advance_seat, computer);
     for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].stop = 0;
+    report_here(computer, &computer->report);
     return first_failure(computer, error);
 }
 
@@ -292,26 +302,37 @@ static lar_status hear_all(lar_computer *computer, lar_trip *trip, lar_error *er
     lar_status status = LAR_OK;
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
         const lar_answer *answer;
-        status = lar_control_hear(computer->control, p, &answer, error);
-        if (!status && earlier(&answer->trip, trip)) *trip = answer->trip;
+        const void *report;
+        status = lar_control_hear(computer->control, p, &answer, &report, error);
+        if (status) break;
+        if (earlier(&answer->trip, trip)) *trip = answer->trip;
+        if (answer->bytes == sizeof computer->report) lar_report_join(&computer->report, report);
     }
     return status;
 }
 
-static lar_status refuse_broken(lar_error *error) {
+lar_status lar_computer_refuse(lar_error *error) {
     return lar_fail(error, LAR_ERROR_PEER,
                     "the parallel computer has lost a processor and cannot go on; start it again");
 }
 
+/* Where the tools go travels with the order to go on, when it has changed: so all use it from the
+ * same step on (T 6.5.1). */
+static lar_status order_advance(lar_computer *computer, uint64_t until, lar_error *error) {
+    const lar_order order = {LAR_ORDER_ADVANCE, until};
+    size_t bytes = computer->tools_sent ? 0 : lar_tools_bytes(computer->tools);
+    lar_status status = lar_control_order(computer->control, &order, computer->tools, bytes, error);
+    if (!status) computer->tools_sent = true;
+    return status;
+}
+
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
                                 void *context, lar_trip *trip, lar_error *error) {
-    if (computer->broken) return refuse_broken(error);
+    if (computer->broken) return lar_computer_refuse(error);
     uint64_t until = computer->processor[0].worker[0].state.step + steps;
-    const lar_order order = {LAR_ORDER_ADVANCE, until};
     computer->watch = watch;
     computer->watch_context = context;
-    lar_status status = LAR_OK;
-    if (computer->control) status = lar_control_order(computer->control, &order, error);
+    lar_status status = computer->control ? order_advance(computer, until, error) : LAR_OK;
     if (!status) status = advance_here(computer, until, error);
     first_trip(computer, trip);
     if (!status && computer->control) status = hear_all(computer, trip, error);
@@ -319,148 +340,62 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     return status;
 }
 
-/* ---- gathering ----------------------------------------------------------------------------- */
-
-static void take_node(const lar_domain *whole, lar_gid node, const double *u, const double *v,
-                      lar_state *state) {
-    size_t there = 4 * (size_t)whole->layout.local[node];
-    memcpy(state->u + there, u, 3 * sizeof *u);
-    memcpy(state->v + there, v, 3 * sizeof *v);
-}
-
-/* A node of several processors has moved by the same bits on each. */
-static void check_copies(const lar_computer *computer, const lar_processor *p,
-                         const lar_state *state) {
-#ifndef NDEBUG
-    const lar_layout *layout = &p->domain.layout, *whole = &computer->whole->layout;
-    for (lar_lid n = 0; n < layout->node_padded; n++) {
-        if (layout->global[n] < 0) continue;
-        size_t there = 4 * (size_t)whole->local[layout->global[n]], here = 4 * (size_t)n;
-        assert(!memcmp(state->u + there, p->worker[0].state.u + here, 3 * sizeof(double)));
-        assert(!memcmp(state->v + there, p->worker[0].state.v + here, 3 * sizeof(double)));
-    }
-#else
-    (void)computer, (void)p, (void)state;
-#endif
-}
-
-static void add_work(const lar_processor *p, int32_t threads, double *external, double *damped,
-                     double *contact) {
-    for (int32_t t = 0; t < threads; t++) {
-        *external += p->worker[t].state.external;
-        *damped += p->worker[t].state.damped;
-        *contact += p->worker[t].state.contact;
-    }
-}
-
-static void gather_here(const lar_computer *computer, lar_state *state) {
-    const lar_domain *whole = computer->whole;
-    for (int32_t i = 0; i < computer->hosted; i++) {
-        const lar_processor *p = &computer->processor[i];
-        const lar_layout *layout = &p->domain.layout;
-        const lar_state *own = &p->worker[0].state;
-        for (lar_lid n = 0; n < layout->node_padded; n++) {
-            lar_gid node = layout->global[n];
-            if (node >= 0 && computer->division.reporter[node] == p->self)
-                take_node(whole, node, own->u + 4 * (size_t)n, own->v + 4 * (size_t)n, state);
-        }
-        add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
-    }
-    for (int32_t i = 0; i < computer->hosted; i++)
-        check_copies(computer, &computer->processor[i], state);
-}
-
-/* Nodes from `node` on that processor p reports, as the answer has them. Returns where to go on. */
-static lar_gid take_answer(const lar_computer *computer, int32_t p, lar_gid node,
-                           const lar_answer *answer, lar_state *state) {
-    const lar_mesh *mesh = &computer->whole->model->mesh;
-    for (int64_t i = 0; i < answer->nodes && node < mesh->node_count; node++)
-        if (computer->division.reporter[node] == p) {
-            take_node(computer->whole, node, answer->value[i], answer->value[i] + 3, state);
-            i++;
-        }
-    return node;
-}
-
-static lar_status gather_others(lar_computer *computer, lar_state *state, lar_error *error) {
-    int32_t count = computer->division.grid.count;
-    lar_gid *from = lar_calloc((size_t)count, sizeof *from);
-    if (!from) return lar_fail_memory(error, 4 * (size_t)count, "the state");
-    lar_status status = LAR_OK;
-    bool more = true;
-    for (uint64_t round = 0; more && !status; round++) {
-        const lar_order order = {LAR_ORDER_GATHER, round};
-        more = false;
-        status = lar_control_order(computer->control, &order, error);
-        for (int32_t p = 1; p < count && !status; p++) {
-            const lar_answer *answer;
-            status = lar_control_hear(computer->control, p, &answer, error);
-            if (status) break;
-            from[p] = take_answer(computer, p, from[p], answer, state);
-            more = more || answer->nodes == LAR_ANSWER_NODES;
-            if (round > 0) continue;
-            state->external += answer->external;
-            state->damped += answer->damped;
-            state->contact += answer->contact;
-        }
-    }
-    free(from);
-    return status;
-}
-
-lar_status lar_computer_gather(lar_computer *computer, lar_state *state, lar_error *error) {
-    if (computer->broken) return refuse_broken(error);
-    state->step = computer->processor[0].worker[0].state.step;
-    state->external = state->damped = state->contact = 0;
-    gather_here(computer, state);
-    lar_status status = LAR_OK;
-    if (computer->control) status = gather_others(computer, state, error);
-    if (status) computer->broken = true;
-    return status;
-}
-
 /* ---- the other processes ------------------------------------------------------------------- */
 
-/* The nodes of one round of gathering. */
-static void fill_answer(const lar_computer *computer, uint64_t round, lar_answer *answer) {
+static lar_status refuse_order(lar_error *error) {
+    return lar_fail(error, LAR_ERROR_PEER,
+                    "processor 0 asks for what this processor does not know; start all processors "
+                    "again, from the same installation");
+}
+
+static lar_status take_tools(lar_computer *computer, const void *payload, size_t bytes,
+                             lar_error *error) {
+    if (bytes == 0) return LAR_OK;
+    lar_tools *tools = computer->tools;
+    if (bytes < offsetof(lar_tools, hold) || bytes > sizeof *tools) return refuse_order(error);
+    int32_t count = tools->count;
+    memcpy(tools, payload, bytes);
+    bool fits = tools->count == count && tools->hold_count >= 0 &&
+                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes;
+    return fits ? LAR_OK : refuse_order(error);
+}
+
+static lar_status obey(lar_computer *computer, const lar_order *order, const void *payload,
+                       size_t bytes, lar_error *error) {
     const lar_processor *p = &computer->processor[0];
-    const lar_layout *layout = &p->domain.layout;
-    const lar_state *own = &p->worker[0].state;
-    const lar_mesh *mesh = &computer->whole->model->mesh;
-    uint64_t skip = round * LAR_ANSWER_NODES;
-    answer->nodes = 0;
-    answer->external = answer->damped = answer->contact = 0;
-    add_work(p, computer->threads, &answer->external, &answer->damped, &answer->contact);
-    for (lar_gid node = 0; node < mesh->node_count && answer->nodes < LAR_ANSWER_NODES; node++) {
-        if (computer->division.reporter[node] != p->self) continue;
-        if (skip > 0) {
-            skip--;
-            continue;
-        }
-        size_t n = 4 * (size_t)layout->local[node];
-        memcpy(answer->value[answer->nodes], own->u + n, 3 * sizeof(double));
-        memcpy(answer->value[answer->nodes] + 3, own->v + n, 3 * sizeof(double));
-        answer->nodes++;
+    lar_control *control = computer->control;
+    lar_answer answer = {0};
+    if (order->kind == LAR_ORDER_GATHER)
+        return lar_computer_answer_nodes(computer, order->argument, error);
+    lar_status status = LAR_OK;
+    if (order->kind == LAR_ORDER_ADVANCE) {
+        status = take_tools(computer, payload, bytes, error);
+        if (!status) status = advance_here(computer, order->argument, error);
+        first_trip(computer, &answer.trip);
+        answer.step = p->worker[0].state.step;
+        if (status) return status;
+        return lar_control_answer(control, &answer, &computer->report, sizeof computer->report,
+                                  error);
     }
+    if (order->kind == LAR_ORDER_SCATTER)
+        status = lar_computer_take_state(computer, order->argument, payload, bytes, error);
+    else
+        status = refuse_order(error);
+    return status ? status : lar_control_answer(control, &answer, NULL, 0, error);
 }
 
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error) {
-    lar_control *control = computer->control;
-    lar_answer *answer = control ? control->answer : NULL;
     lar_status status = LAR_OK;
-    while (control && !status && !computer->finished) {
+    while (computer->control && !status && !computer->finished) {
         lar_order order;
-        status = lar_control_obey(control, &order, error);
-        computer->finished = !status && order.kind == LAR_ORDER_FINISH;
-        if (status || computer->finished) break;
-        if (order.kind == LAR_ORDER_ADVANCE)
-            status = advance_here(computer, order.argument, error);
-        else
-            fill_answer(computer, order.argument, answer);
+        const void *payload;
+        size_t bytes;
+        status = lar_control_obey(computer->control, &order, &payload, &bytes, error);
         if (status) break;
-        answer->step = computer->processor[0].worker[0].state.step;
-        first_trip(computer, &answer->trip);
-        status = lar_control_answer(control, error);
+        if (order.kind == LAR_ORDER_FINISH)
+            computer->finished = true;
+        else
+            status = obey(computer, &order, payload, bytes, error);
     }
     if (status) computer->broken = true;
     return status;

@@ -22,6 +22,7 @@
 #include "engine/control.h"
 #include "engine/division.h"
 #include "engine/processor.h"
+#include "engine/report.h"
 
 /* One thread of one processor of this process: seat = processor * threads + thread. */
 typedef struct lar_seat {
@@ -41,23 +42,26 @@ typedef struct lar_computer {
     lar_crew *crew;
     lar_seat *seat;  /* [hosted * threads] */
     size_t *shift;   /* [processors] what control needs of their buffers */
-    uint64_t *clock; /* [processors] atomic: steps done, of those in this process */
+    uint64_t *clock; /* [processors] atomic: rounds done, of those in this process */
     uint64_t until;  /* the step before which this advance ends */
     lar_watch *watch;
     void *watch_context;
-    bool broken;   /* a processor failed: nothing goes on */
-    bool finished; /* processor zero has let everyone go */
+    lar_report report; /* of the last advance; at processor zero, of all processors */
+    lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
+    lar_tools *tools;  /* of this process: zero's are those that count */
+    bool tools_sent;   /* to the other processes, as they are */
+    bool broken;       /* a processor failed: nothing goes on */
+    bool finished;     /* processor zero has let everyone go */
     /* for opening */
     const lar_options *options;
     const lar_domain *whole;
-    const lar_state *start;
     uint64_t identity;
 } lar_computer;
 
 /* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
- * the whole model at the start; `whole` must outlive the computer. Takes options->listener over,
- * whatever it returns. */
-lar_status lar_computer_create(const lar_domain *whole, const lar_state *state,
+ * the whole model at the start; they and `tools` must outlive the computer. Takes options->listener
+ * over, whatever it returns. */
+lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
                                const lar_options *options, lar_computer **computer,
                                lar_error *error);
 /* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
@@ -69,10 +73,22 @@ void lar_computer_destroy(lar_computer *computer);
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
                                 void *context, lar_trip *trip, lar_error *error);
 
-/* The state of all processors into that of the whole model. Processor zero only. */
-lar_status lar_computer_gather(lar_computer *computer, lar_state *state, lar_error *error);
+/* The state of all processors into that of the whole model, and back to all processors: they go on
+ * from there, whatever has tripped before. Processor zero only. */
+lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
+lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 
 /* Every other process: does what processor zero says until it ends. */
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
+
+/* ---- between computer.c and computer_state.c --------------------------------------------------
+ */
+
+/* The sentence for calls after a failure. */
+lar_status lar_computer_refuse(lar_error *error);
+/* Another process: answers a round of gathering; takes a scattered state. */
+lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar_error *error);
+lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
+                                   size_t bytes, lar_error *error);
 
 #endif

@@ -267,14 +267,23 @@ void lar_processor_destroy(lar_processor *p) {
 void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_state *state) {
     const lar_layout *layout = &p->domain.layout;
     lar_state *own = &p->worker[0].state;
+    memset(own->u, 0, 4 * (size_t)layout->node_padded * sizeof *own->u);
+    memset(own->v, 0, 4 * (size_t)layout->node_padded * sizeof *own->v);
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
         size_t there = 4 * (size_t)whole->layout.local[layout->global[n]], here = 4 * (size_t)n;
         memcpy(own->u + here, state->u + there, 4 * sizeof *own->u);
         memcpy(own->v + here, state->v + there, 4 * sizeof *own->v);
     }
-    for (int32_t t = 0; t < p->thread_count; t++) p->worker[t].state.step = state->step;
-    for (int32_t b = 0; b < p->batch_count; b++) p->mark[b].step = state->step;
+    for (int32_t t = 0; t < p->thread_count; t++) {
+        lar_worker *worker = &p->worker[t];
+        worker->state.step = state->step;
+        worker->state.external = worker->state.damped = worker->state.contact = 0;
+        worker->trip = (lar_trip){0};
+        memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
+    }
+    p->ahead = (int64_t)(state->step - p->worker[0].round);
+    if (p->comm) lar_comm_number_steps(p->comm, p->ahead);
 }
 
 void lar_processor_ask_stop(lar_processor *p, uint64_t step) {

@@ -33,9 +33,9 @@ typedef struct lar_batch_plan {
     bool moves;                   /* the thread's nodes */
 } lar_batch_plan;
 
-/* The step in which a batch was last finished, alone in its cache line: others poll it. */
+/* The round in which a batch was last finished, alone in its cache line: others poll it. */
 typedef struct lar_batch_mark {
-    uint64_t step;
+    uint64_t round;
 } __attribute__((aligned(64))) lar_batch_mark;
 
 /* What one thread has for the nodes that another moves: packed, because the few cache lines of a
@@ -55,6 +55,8 @@ typedef struct lar_worker {
     int32_t thread;
     int32_t batch_first, batch_end;
     lar_state state; /* u, v: the processor's; force, step and work are its own */
+    uint64_t round;  /* steps gone through since the start. Packets and marks are counted by it, so
+                        that they go on when the state is set back (docs/parallel.md) */
     lar_acting acting;
     lar_condition_context context; /* the nodes that it moves */
     lar_parcel *parcel;            /* [threads] for each of them */
@@ -83,6 +85,7 @@ typedef struct lar_processor {
     lar_verification *check; /* NULL: real forces. Not owned */
     uint64_t stop;           /* atomic: the step before which everyone stops; 0: none asked for */
     uint64_t failed;         /* atomic: a thread has given up, its siblings must */
+    int64_t ahead;           /* steps of the state minus rounds, for messages */
 } lar_processor;
 
 /* What is common to all processors of a computer. */
@@ -101,7 +104,8 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
                                 lar_processor *processor, lar_error *error);
 void lar_processor_destroy(lar_processor *processor); /* idempotent */
 
-/* Displacements, velocities and step of the whole model into the part. */
+/* Displacements, velocities and step of the whole model into the part, at rest or between two
+ * advances; sums, work and trips begin anew. Rounds go on: nobody mistakes packets. */
 void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
                            const lar_state *state);
 

@@ -75,6 +75,19 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
     return LAR_OK;
 }
 
+void lar_simulation_set_start(lar_simulation *simulation) {
+    lar_state *state = &simulation->state;
+#define LAR_STATE_CLEAR(type, name, values, kept)                                                  \
+    memset(state->name, 0, (size_t)state->node_count *(values) * sizeof(type));
+    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
+#undef LAR_STATE_CLEAR
+    state->step = 0;
+    state->damped = state->external = state->contact = 0;
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    set_initial_displacements(simulation);
+    set_initial_velocities(simulation);
+}
+
 static lar_status compile(const lar_model *model, const lar_options *options,
                           lar_simulation *simulation, lar_error *error) {
     lar_domain *domain = &simulation->domain;
@@ -87,8 +100,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;
-    set_initial_displacements(simulation);
-    set_initial_velocities(simulation);
+    lar_simulation_set_start(simulation);
     simulation->gathered = true;
     return LAR_OK;
 }
@@ -106,7 +118,8 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);
     if (!status && lar_division_asked(&chosen))
-        status = lar_computer_create(&made->domain, &made->state, &chosen, &made->computer, error);
+        status = lar_computer_create(&made->domain, &made->state, &made->tools, &chosen,
+                                     &made->computer, error);
     else if (chosen.listener >= 0)
         close(chosen.listener); /* taken over, and nobody to use it */
     if (status)
@@ -124,37 +137,70 @@ void lar_simulation_destroy(lar_simulation *simulation) {
     free(simulation);
 }
 
-/* In one process gathering cannot fail and waits until somebody looks; between processes it can. */
-static lar_status advance_computer(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                                   void *context, lar_error *error) {
-    lar_computer *computer = simulation->computer;
-    lar_status status =
-        lar_computer_advance(computer, steps, watch, context, &simulation->trip, error);
-    simulation->gathered = false;
-    if (!status && computer->control) {
-        status = lar_computer_gather(computer, &simulation->state, error);
-        simulation->gathered = true;
+static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                          void *context) {
+    lar_domain *domain = &simulation->domain;
+    lar_state *state = &simulation->state;
+    lar_trip *trip = &simulation->trip;
+    lar_report_begin(&domain->acting);
+    for (uint64_t i = 0; i < steps && !trip->kind; i++) {
+        lar_step(domain, state, trip);
+        if (trip->kind) lar_trip_examine(domain, state, trip);
+        if (watch && !watch(context, state->step)) break;
     }
+    simulation->report = (lar_report){0};
+    lar_report_add(&simulation->report, &domain->acting);
+}
+
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                                  void *context, lar_error *error) {
+    lar_computer *computer = simulation->computer;
+    lar_trip *trip = &simulation->trip;
+    lar_status status = LAR_OK;
+    if (!trip->kind) {
+        uint64_t before = lar_simulation_steps(simulation);
+        if (computer) {
+            status = lar_computer_advance(computer, steps, watch, context, trip, error);
+            simulation->report = computer->report;
+            simulation->gathered = false;
+        } else {
+            advance_alone(simulation, steps, watch, context);
+        }
+        simulation->report_steps = lar_simulation_steps(simulation) - before;
+    }
+    return status ? status : lar_trip_report(&simulation->domain, trip, error);
+}
+
+lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
+    if (!simulation->computer || simulation->gathered) return LAR_OK;
+    lar_status status = lar_computer_gather(simulation->computer, error);
+    if (!status) simulation->gathered = true;
     return status;
 }
 
+lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
+    simulation->trip = (lar_trip){0};
+    simulation->report = (lar_report){0};
+    simulation->report_steps = 0;
+    simulation->gathered = true;
+    return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
+}
+
+/* In one process gathering cannot fail and waits until somebody looks; between processes it can,
+ * and nobody who looks could say so. */
 lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
                                           lar_watch *watch, void *context, lar_error *error) {
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
-    lar_trip *trip = &simulation->trip;
-    lar_state *state = &simulation->state;
-    lar_status status = LAR_OK;
-    if (simulation->computer && !trip->kind)
-        status = advance_computer(simulation, steps, watch, context, error);
-    else
-        for (uint64_t i = 0; i < steps && !trip->kind; i++) {
-            lar_step(&simulation->domain, state, trip);
-            if (trip->kind) lar_trip_examine(&simulation->domain, state, trip);
-            if (watch && !watch(context, state->step)) break;
-        }
-    return status ? status : lar_trip_report(&simulation->domain, trip, error);
+    lar_status status = lar_simulation_compute(simulation, steps, watch, context, error);
+    bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
+    if (may_gather && simulation->computer && simulation->computer->control) {
+        lar_error lost;
+        lar_status gathered = lar_simulation_gather(simulation, &lost);
+        if (gathered) status = lar_fail(error, gathered, "%s", lost.message);
+    }
+    return status;
 }
 
 lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
@@ -172,10 +218,7 @@ lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {
 const lar_state *lar_simulation_state(const lar_simulation *simulation) {
     /* What the caller sees stays the same: the copy is brought up to date. */
     lar_simulation *own = (lar_simulation *)simulation;
-    if (own->computer && !own->gathered) {
-        lar_computer_gather(own->computer, &own->state, NULL);
-        own->gathered = true;
-    }
+    lar_simulation_gather(own, NULL);
     return &own->state;
 }
 

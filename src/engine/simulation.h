@@ -14,12 +14,33 @@ struct lar_simulation {
     lar_trip trip;
     lar_tool_list list;
     lar_tools tools;
-    lar_computer *computer; /* NULL: lar_step advances the whole model */
-    bool gathered;          /* `state` is what the computer has */
+    lar_computer *computer;       /* NULL: lar_step advances the whole model */
+    bool gathered;                /* `state` is what the computer has */
+    lar_report report;            /* of the last advance, of all processors */
+    uint64_t report_steps;        /* how many steps that was */
+    struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
 };
 
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
 const lar_state *lar_simulation_state(const lar_simulation *simulation);
+
+/* lar_simulation_advance_watched without bringing the state together: what a tick of a session
+ * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between
+ * processes it can. */
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                                  void *context, lar_error *error);
+lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
+
+/* Refuses NULL, and processors other than zero. `call`: the public name. */
+lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
+                                     lar_error *error);
+
+/* The start as lar_simulation_create makes it, into state and tools, also again. */
+void lar_simulation_set_start(lar_simulation *simulation);
+
+/* All processors go on from simulation->state and ->tools as they are now; what tripped and what
+ * was felt is forgotten. */
+lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error);
 
 /* lar_simulation_hash of a state, which may be a copy of the simulation's. */
 uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state);

@@ -1,7 +1,17 @@
 /* Tools and contact of a simulation, as the public header has them. */
 #include <math.h>
 
+#include "engine/hold.h"
 #include "engine/simulation.h"
+
+lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
+                                     lar_error *error) {
+    if (!simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs a simulation, not NULL", call);
+    if (!simulation->computer || simulation->computer->first == 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s is for processor 0; the others call lar_simulation_serve", call);
+}
 
 static lar_status check_tool(const lar_simulation *simulation, int32_t tool, const void *place,
                              lar_error *error) {
@@ -43,26 +53,121 @@ lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t to
     return status;
 }
 
-lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
-                                    const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
-    lar_tool_pose now;
-    lar_status status = check_tool(simulation, tool, pose, error);
-    if (!status) status = lar_simulation_tool_pose(simulation, tool, &now, error);
-    if (status) return status;
-    uint64_t step = lar_simulation_steps(simulation);
-    lar_tool_motion *motion = &simulation->tools.motion[tool];
-    motion->from = now;
-    motion->to = *pose;
-    motion->start = step;
-    motion->end = step + (steps ? steps : 1);
+/* ---- moving -------------------------------------------------------------------------------- */
+
+/* Beyond this a step could not be told from the next as a number. */
+static const double STEPS_MOST = 0x1p53;
+
+/* Finite, and a turn of length one but for rounding, which it then is. */
+static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_pose *clean,
+                             lar_error *error) {
+    const double *q = pose->orientation;
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    bool finite = true;
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(pose->position[i]);
+    if (!finite)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %s: a position is three finite numbers, in metres", tool->name);
+    if (!(fabs(length - 1) <= 1e-6))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %s: the orientation has length %.9g; it is a quaternion w, x, y, z "
+                        "of length 1 (1, 0, 0, 0: as the world)",
+                        tool->name, length);
+    if (!(pose->opening >= 0 && pose->opening <= 1))
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: an opening of %g; it is 0 to 1",
+                        tool->name, pose->opening);
+    *clean = *pose;
+    for (int i = 0; i < 4; i++) clean->orientation[i] = q[i] / length;
     return LAR_OK;
 }
+
+static int32_t holds_of(const lar_tools *tools, int32_t tool) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < tools->hold_count; i++) count += tools->hold[i].tool == tool;
+    return count;
+}
+
+/* How far the point at height z of the shaft goes. */
+static double way_of(const lar_tool_pose *from, const lar_tool_pose *to, double z) {
+    double shaft[3] = {0, 0, z}, begin[3], end[3], square = 0;
+    lar_turn(from->orientation, shaft, begin);
+    lar_turn(to->orientation, shaft, end);
+    for (int i = 0; i < 3; i++) {
+        double way = to->position[i] + end[i] - from->position[i] - begin[i];
+        square += way * way;
+    }
+    return sqrt(square);
+}
+
+/* Contact is looked for once in a step: what goes farther could pass through a surface. */
+static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
+                              const lar_tool_pose *pose, uint64_t steps, double time_step,
+                              lar_error *error) {
+    double tip = way_of(now, pose, 0), end = way_of(now, pose, tool->length);
+    double way = tip > end ? tip : end, most = 0.5 * tool->radius * (double)steps;
+    if (way <= most) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "
+                    "step (%.4g m/s); take more steps or a smaller way",
+                    tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
+                    0.5 * tool->radius / time_step);
+}
+
+/* Whether taking hold or letting go is asked for: only then the whole state is looked at. */
+static bool changes_hold(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
+    if (tool->shape != LAR_TOOL_GRASPER && tool->shape != LAR_TOOL_HAND) return false;
+    return motion->holding ? opening > 0.5 : opening < 0.25;
+}
+
+lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
+                                    const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
+    lar_status status = check_tool(simulation, index, pose, error);
+    if (!status) status = lar_simulation_check_zero(simulation, "lar_simulation_tool_move", error);
+    if (status) return status;
+    const lar_tool *tool = &simulation->list.tool[index];
+    lar_tools *tools = &simulation->tools;
+    lar_tool_motion *motion = &tools->motion[index];
+    lar_tool_pose now, wanted;
+    uint64_t step = lar_simulation_steps(simulation);
+    double time_step = simulation->domain.time_step;
+    if (steps < 1 || (double)steps > STEPS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
+                        tool->name, (unsigned long long)steps);
+    lar_tool_at(motion, step, time_step, &now, NULL);
+    status = check_pose(tool, pose, &wanted, error);
+    if (!status && !(tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0))
+        status = check_speed(tool, &now, &wanted, steps, time_step, error);
+    if (!status && changes_hold(tool, motion, wanted.opening)) {
+        status = lar_simulation_gather(simulation, error);
+        if (!status)
+            status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
+                                     index, &wanted, tools, error);
+    }
+    if (status) return status;
+    motion->from = now;
+    motion->to = wanted;
+    motion->start = step;
+    motion->end = step + steps;
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+/* ---- what came of it ----------------------------------------------------------------------- */
 
 lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                      lar_tool_force *force, lar_error *error) {
     lar_status status = check_tool(simulation, tool, force, error);
-    if (!status) *force = (lar_tool_force){0};
-    return status;
+    if (status) return status;
+    const lar_tool_sum *sum = &simulation->report.tool[tool];
+    double steps = simulation->report_steps ? (double)simulation->report_steps : 1;
+    double unit = 1 / (simulation->domain.scale * steps);
+    *force =
+        (lar_tool_force){.touching = sum->touching, .held = holds_of(&simulation->tools, tool)};
+    for (int i = 0; i < 3; i++) {
+        force->force[i] = (double)sum->force[i] * unit;
+        force->torque[i] = (double)sum->torque[i] * unit;
+    }
+    return LAR_OK;
 }
 
 void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {

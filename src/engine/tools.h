@@ -14,6 +14,7 @@
 #define LAR_ENGINE_TOOLS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "model/model.h"
 
@@ -52,6 +53,11 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_
                                 lar_error *error);
 /* All at rest, holding nothing. */
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools);
+
+/* Bytes of the used part, from the beginning on: what travels. */
+static inline size_t lar_tools_bytes(const lar_tools *tools) {
+    return offsetof(lar_tools, hold) + (size_t)tools->hold_count * sizeof tools->hold[0];
+}
 
 /* Pose and velocity (of the tip, [m/s]; may be NULL) of a tool at a step. */
 void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,

@@ -1,0 +1,38 @@
+/* What an advance brings besides the state: what the tools felt, what contact did. Sums of whole
+ * numbers, so that threads and processors can be added in any order. Plain, travels as it is. */
+#ifndef LAR_ENGINE_REPORT_H
+#define LAR_ENGINE_REPORT_H
+
+#include "engine/acting.h"
+
+typedef struct lar_report {
+    lar_tool_sum tool[LAR_TOOLS_MOST];
+} lar_report;
+
+/* Before an advance: what one thread has felt is forgotten. */
+static inline void lar_report_begin(lar_acting *acting) {
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->touch.sum[i] = (lar_tool_sum){0};
+}
+
+/* Adds `other` to `sum`. */
+static inline void lar_report_join(lar_report *sum, const lar_report *other) {
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) {
+        lar_tool_sum *to = &sum->tool[i];
+        const lar_tool_sum *from = &other->tool[i];
+        for (int k = 0; k < 3; k++) {
+            to->force[k] += from->force[k];
+            to->torque[k] += from->torque[k];
+        }
+        to->touching += from->touching;
+        to->held += from->held;
+    }
+}
+
+/* Adds what one thread has felt since lar_report_begin. */
+static inline void lar_report_add(lar_report *sum, const lar_acting *acting) {
+    lar_report own;
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
+    lar_report_join(sum, &own);
+}
+
+#endif
