@@ -79,6 +79,9 @@ LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
 LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
     return (lar_lane)_mm512_abs_pd((__m512d)a);
 }
+LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
+    return (lar_lane)_mm512_max_pd((__m512d)a, (__m512d)b);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)_mm512_load_si512(p);
 }
@@ -256,6 +259,9 @@ LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
 LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
     return (lar_lane)_mm256_andnot_pd(_mm256_set1_pd(-0.0), (__m256d)a);
 }
+LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
+    return (lar_lane)_mm256_max_pd((__m256d)a, (__m256d)b);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)_mm256_load_si256((const __m256i *)p);
 }
@@ -337,6 +343,9 @@ LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
 LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
     return (lar_lane)vabsq_f64((float64x2_t)a);
 }
+LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
+    return (lar_lane)vmaxq_f64((float64x2_t)a, (float64x2_t)b);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)vld1q_s64(p);
 }
@@ -412,6 +421,9 @@ LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
 
 LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
     return fabs(a);
+}
+LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
+    return a > b ? a : b;
 }
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return *p;

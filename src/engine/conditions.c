@@ -238,6 +238,7 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         double old = lar_constraint_value(model, constraint, time);
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
+        state->fastest = fmax(state->fastest, fabs(*v));
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         state->damped += weight * (before + *v) * (before + *v);
         double mean = 0.5 * (*v + before);

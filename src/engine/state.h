@@ -23,6 +23,7 @@ typedef struct lar_state {
     double damped;   /* sum over the steps of sum m |v + v'|^2 */
     double external; /* work of loads, prescribed motion and tools so far [J] */
     double contact;  /* what contacts have taken from the bodies so far [J] */
+    double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)

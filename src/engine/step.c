@@ -82,8 +82,10 @@ static void move_nodes(const lar_domain *domain, const lar_condition_context *co
     }
     if (state->step % LAR_WATCH_INTERVAL == 0) park_spares(domain, context, state);
     const double *weight = model->damping > 0 ? domain->weight : NULL;
+    state->fastest = 0;
     if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
-                                 state->force, domain->push, weight, &state->damped) &&
+                                 state->force, domain->push, weight, &state->damped,
+                                 &state->fastest) &&
         !trip->kind)
         *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
 }

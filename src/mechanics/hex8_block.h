@@ -99,10 +99,12 @@ typedef struct lar_motion {
  *     v' = keep v - push f + drift,   u' = u + dt v',   f = 0
  * u, v, f are [nodes][4], aligned to 64 bytes; push [nodes] is dt / (m (1 + c dt/2)) times the
  * force unit. With `mass` (not NULL; [nodes], kg) *damped grows by sum m |v + v'|^2, for the energy
- * that damping takes. Returns false when a node reached `speed`. */
+ * that damping takes. *fastest becomes the largest |v'| of an axis where that is more: nothing has
+ * moved further than sqrt(3) dt of it, which is what the search for contact builds on. Returns
+ * false when a node reached `speed`; *fastest then says nothing. */
 typedef bool (*lar_node_update)(const lar_motion *motion, int32_t first, int32_t end, double *u,
                                 double *v, int64_t *force, const double *push, const double *mass,
-                                double *damped);
+                                double *damped, double *fastest);
 
 /* The kernels of one instruction set. */
 typedef struct lar_kernels {

@@ -325,10 +325,10 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
 /* Nodes are runs of four values (the last always 0), so every value is treated alike. */
 LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t end, double *u,
                               double *v, int64_t *force, const double *push, const double *mass,
-                              double *damped) {
+                              double *damped, double *fastest) {
     const lar_lane keep = lar_lane_set(motion->keep), dt = lar_lane_set(motion->dt);
     const lar_lane speed = lar_lane_set(motion->speed);
-    lar_lane sum = lar_lane_set(0);
+    lar_lane sum = lar_lane_set(0), most = lar_lane_set(0);
     unsigned beyond = 0;
     for (int64_t k = 4 * first; k < 4 * end; k += LAR_LANES) {
         lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
@@ -338,24 +338,30 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_lane_store(v + k, after);
         lar_lane_store(u + k, lar_lane_fma(dt, after, lar_lane_load(u + k)));
         lar_ilane_store(force + k, (lar_ilane){0});
-        beyond |= lar_lane_not_greater(speed, lar_lane_abs(after));
+        lar_lane size = lar_lane_abs(after);
+        beyond |= lar_lane_not_greater(speed, size);
+        most = lar_lane_max(most, size);
         if (mass) {
             lar_lane twice = before + after;
             sum = lar_lane_fma(lar_lane_per_node(mass, k) * twice, twice, sum);
         }
     }
+    double values[LAR_LANES] __attribute__((aligned(64)));
     if (mass) {
-        double values[LAR_LANES] __attribute__((aligned(64)));
         lar_lane_store(values, sum);
         for (int i = 0; i < LAR_LANES; i++) *damped += values[i];
     }
+    lar_lane_store(values, most);
+    for (int i = 0; i < LAR_LANES; i++)
+        if (values[i] > *fastest) *fastest = values[i];
     return beyond == 0;
 }
 
 static bool update(const lar_motion *motion, int32_t first, int32_t end, double *u, double *v,
-                   int64_t *force, const double *push, const double *mass, double *damped) {
-    if (mass) return update_values(motion, first, end, u, v, force, push, mass, damped);
-    return update_values(motion, first, end, u, v, force, push, NULL, NULL);
+                   int64_t *force, const double *push, const double *mass, double *damped,
+                   double *fastest) {
+    if (mass) return update_values(motion, first, end, u, v, force, push, mass, damped, fastest);
+    return update_values(motion, first, end, u, v, force, push, NULL, NULL, fastest);
 }
 
 #if LAR_SIMD == LAR_SIMD_AVX512

@@ -42,8 +42,9 @@ static void make_nodes(uint64_t *seed, nodes *n) {
 }
 
 static bool move(int k, const lar_motion *motion, int first, int end, nodes *n, double *damped) {
+    double fastest = 0;
     return kernels[k]->update(motion, first, end, n->u, n->v, n->force, n->push,
-                              damped ? n->mass : NULL, damped);
+                              damped ? n->mass : NULL, damped, &fastest);
 }
 
 /* The formula, written down once more. */
@@ -151,6 +152,30 @@ static void speed_limit(void **state) {
         }
 }
 
+/* The largest velocity of all that were moved, and none that was not; what was there stays when it
+ * is more. */
+static void the_fastest_value(void **state) {
+    (void)state;
+    static nodes n;
+    uint64_t seed = 64;
+    const lar_motion still = {1, 1e-4, 1e3, {0}};
+    for (int k = 0; k < kernel_count; k++)
+        for (int i = 0; i < VALUES; i++) {
+            make_nodes(&seed, &n);
+            memset(n.force, 0, sizeof n.force);
+            int first = 2, end = NODES - 2;
+            bool moved = i / 4 >= first && i / 4 < end;
+            double most = 0, fastest = 0, more = 1e6;
+            n.v[i] = i % 2 ? 500 : -500;
+            for (int j = 4 * first; j < 4 * end; j++) most = fmax(most, fabs(n.v[j]));
+            assert_true(moved ? most == 500 : most < 500);
+            kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &fastest);
+            assert_true(fastest == most);
+            kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &more);
+            assert_true(more == 1e6);
+        }
+}
+
 /* Force sums become doubles with one rounding, to nearest, halves to even, over the whole range. */
 static void integers_to_doubles(void **state) {
     (void)state;
@@ -202,7 +227,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_bits_everywhere), cmocka_unit_test(free_fall),
         cmocka_unit_test(damping_energy),       cmocka_unit_test(speed_limit),
-        cmocka_unit_test(integers_to_doubles),
+        cmocka_unit_test(the_fastest_value),    cmocka_unit_test(integers_to_doubles),
     };
     return cmocka_run_group_tests(tests, find_kernels, NULL);
 }
