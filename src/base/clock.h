@@ -1,0 +1,29 @@
+/* The clock that only goes forward: for measuring, for pacing, for waiting until a moment.
+ */
+#ifndef LAR_BASE_CLOCK_H
+#define LAR_BASE_CLOCK_H
+
+#include <stdint.h>
+#include <time.h>
+
+/* Since some moment in the past [ns]. */
+static inline int64_t lar_clock_ns(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
+}
+
+/* The same in seconds, to better than a microsecond. */
+static inline double lar_clock_seconds(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+/* Sleeps until that moment [ns], or until a signal comes. */
+static inline void lar_clock_sleep_until(int64_t ns) {
+    struct timespec at = {ns / 1000000000, ns % 1000000000};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
+}
+
+#endif

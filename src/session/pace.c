@@ -1,0 +1,167 @@
+#include "session/pace.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include "base/clock.h"
+
+static const int64_t LAG_MOST = (int64_t)(1e9 * LAR_LAG_MOST);
+static const int64_t WINDOW_STEP = 100000000, SECOND = 1000000000; /* [ns] */
+
+/* How long before the tick sleeping ends and polling begins [ns]: about as much as a timer is late
+ * on an idle machine. */
+static const int64_t WAKE_EARLY = 20000;
+
+void lar_pace_prompt(void) {
+#ifdef PR_SET_TIMERSLACK
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+#endif
+}
+
+static double played(const lar_pace *pace, int64_t now) {
+    return pace->before +
+           (pace->running && now > pace->since ? 1e-9 * (double)(now - pace->since) : 0);
+}
+
+static void set_factor(lar_pace *pace) {
+    if (pace->total.played > 0) pace->factor = pace->total.simulated / pace->total.played;
+}
+
+void lar_pace_restart(lar_pace *pace) {
+    int64_t now = lar_clock_ns();
+    if (pace->running) {
+        pace->before = played(pace, pace->due < now ? pace->due : now);
+        pace->since = now;
+    }
+    pace->due = now;
+    pace->fraction = 0;
+}
+
+void lar_pace_start(lar_pace *pace) {
+    if (pace->running) return;
+    pace->running = true;
+    pace->since = pace->due = lar_clock_ns();
+    pace->fraction = 0;
+    pace->given_up_at = 0;
+    pace->moments = 0; /* rates do not look across a pause */
+}
+
+void lar_pace_stop(lar_pace *pace) {
+    if (!pace->running) return;
+    int64_t now = lar_clock_ns();
+    pace->before = played(pace, pace->pace > 0 && pace->due > now ? pace->due : now);
+    pace->running = false;
+    pace->total.played = pace->before;
+    set_factor(pace);
+    pace->given_up_at = 0;
+    pace->moments = 0;
+}
+
+void lar_pace_set(lar_pace *pace, double wanted) {
+    if (wanted == pace->pace) return;
+    pace->pace = wanted;
+    lar_pace_restart(pace);
+}
+
+void lar_pace_wait(lar_pace *pace) {
+    if (pace->pace <= 0) return;
+    int64_t now = lar_clock_ns();
+    if (pace->due - WAKE_EARLY > now) lar_clock_sleep_until(pace->due - WAKE_EARLY);
+    while (lar_clock_ns() < pace->due) continue;
+}
+
+/* What cannot be made up for within LAG_MOST. */
+static void give_up(lar_pace *pace, int64_t now) {
+    int64_t excess = now - pace->due - LAG_MOST;
+    if (excess <= 0) return;
+    pace->due += excess;
+    pace->skipped += 1e-9 * (double)excess;
+    pace->given_up_at = now;
+}
+
+void lar_pace_begin(lar_pace *pace, uint64_t steps, double seconds) {
+    int64_t now = lar_clock_ns();
+    (void)steps;
+    pace->begun = now;
+    pace->period = pace->pace > 0 ? 1e9 * seconds / pace->pace : 0;
+    if (pace->pace > 0)
+        give_up(pace, now);
+    else
+        pace->due = now;
+    pace->total.at = now;
+    pace->total.played = played(pace, now);
+    set_factor(pace); /* without this tick, whose time is still to come */
+    pace->total.simulated += seconds;
+}
+
+void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine) {
+    lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / (steps ? steps : 1));
+    pace->total.steps += steps;
+}
+
+void lar_pace_answered(lar_pace *pace) {
+    int64_t now = lar_clock_ns();
+    lar_histogram_add(&pace->ticks, (uint64_t)(now - pace->due));
+    pace->total.ticks++;
+    if (pace->pace <= 0) return;
+    double next = pace->fraction + pace->period;
+    pace->due += (int64_t)next;
+    pace->fraction = next - floor(next);
+    if (now > pace->due) pace->misses++;
+}
+
+bool lar_pace_look(lar_pace *pace) {
+    int64_t now = lar_clock_ns();
+    if (pace->moments > 0 && now - pace->window[pace->moments - 1].at < WINDOW_STEP) return false;
+    if (pace->moments == LAR_PACE_WINDOW) {
+        memmove(pace->window, pace->window + 1, (LAR_PACE_WINDOW - 1) * sizeof pace->window[0]);
+        pace->moments--;
+    }
+    lar_pace_moment *moment = &pace->window[pace->moments++];
+    *moment = pace->total;
+    moment->at = now;
+    moment->played = played(pace, now);
+    return true;
+}
+
+static void report_rates(const lar_pace *pace, lar_session_status *status) {
+    const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
+    status->engine_rate = status->haptic_rate = status->snapshot_rate = 0;
+    status->real_time_factor_now = 0;
+    if (pace->moments < 2) return;
+    double seconds = 1e-9 * (double)(last->at - first->at);
+    double time = last->played - first->played;
+    status->engine_rate = (double)(last->steps - first->steps) / seconds;
+    status->haptic_rate = (double)(last->exchanges - first->exchanges) / seconds;
+    status->snapshot_rate = (double)(last->snapshots - first->snapshots) / seconds;
+    if (time > 0) status->real_time_factor_now = (last->simulated - first->simulated) / time;
+}
+
+static void report_quantiles(const lar_pace *pace, lar_session_status *status) {
+    status->step_p50 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.5);
+    status->step_p99 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.99);
+    status->step_p999 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.999);
+    status->tick_p50 = 1e-9 * lar_histogram_quantile(&pace->ticks, 0.5);
+    status->tick_p99 = 1e-9 * lar_histogram_quantile(&pace->ticks, 0.99);
+    status->tick_p999 = 1e-9 * lar_histogram_quantile(&pace->ticks, 0.999);
+}
+
+void lar_pace_report(const lar_pace *pace, bool quantiles, lar_session_status *status) {
+    int64_t now = lar_clock_ns();
+    status->real_time_factor = pace->factor;
+    status->ticks = pace->total.ticks;
+    status->misses = pace->misses;
+    status->skipped = pace->skipped;
+    status->lag =
+        pace->running && pace->pace > 0 && now > pace->due ? 1e-9 * (double)(now - pace->due) : 0;
+    status->slow_motion = pace->given_up_at > 0 && now - pace->given_up_at < SECOND;
+    status->step_max = 1e-9 * (double)pace->steps.most;
+    status->tick_max = 1e-9 * (double)pace->ticks.most;
+    if (!quantiles) return;
+    report_rates(pace, status);
+    report_quantiles(pace, status);
+}

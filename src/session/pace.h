@@ -1,0 +1,82 @@
+/* Ticks by the clock, and what became of them.
+ *
+ *     due 0         due 1         due 2         due 3            due n+1 = due n + tick / pace
+ *       |=tick=|      |=======tick=====|=tick=|   |=tick=|
+ *              forces                  forces: after due 2, a miss
+ *
+ * A tick begins when it is due, or at once when the one before was late: so lost time is made up
+ * for, as fast as the machine can. What is more than LAR_LAG_MOST behind is given up: it counts as
+ * skipped, the simulation is in slow motion, and says so.
+ *
+ * Real-time factor: simulated time per time of the clock in which it was meant to go on; pauses and
+ * waiting for a file do not belong to it, time that was given up does.
+ */
+#ifndef LAR_SESSION_PACE_H
+#define LAR_SESSION_PACE_H
+
+#include <stdbool.h>
+
+#include "base/histogram.h"
+#include "lariat.h"
+
+#define LAR_LAG_MOST 0.1 /* [s] */
+
+enum { LAR_PACE_WINDOW = 11 }; /* moments kept for rates: one every tenth of a second */
+
+/* What is counted, at one moment. */
+typedef struct lar_pace_moment {
+    int64_t at;       /* [ns] */
+    double simulated; /* [s] since the start */
+    double played;    /* time of the clock that was played [s] */
+    uint64_t steps, ticks, exchanges, snapshots;
+} lar_pace_moment;
+
+typedef struct lar_pace {
+    double pace;         /* simulated per clock second; 0: as fast as it goes */
+    int64_t due;         /* when the tick under way, or the next one, is due [ns] */
+    int64_t begun;       /* when it began */
+    double period;       /* of the tick under way [ns]; 0 without pace */
+    double fraction;     /* of a nanosecond, what `due` leaves out */
+    bool running;        /* between lar_pace_start and lar_pace_stop */
+    int64_t since;       /* of this stretch's start [ns] */
+    double before;       /* played before this stretch [s] */
+    int64_t given_up_at; /* when time was last given up [ns]; 0: never */
+    lar_pace_moment total;
+    lar_pace_moment window[LAR_PACE_WINDOW];
+    int moments;
+    uint64_t misses;
+    double skipped;
+    double factor;       /* real-time factor when the latest tick was due */
+    lar_histogram steps; /* time of a step, engine alone [ns] */
+    lar_histogram ticks; /* from due to forces [ns] */
+} lar_pace;
+
+/* The calling thread's timers become as exact as the system allows. */
+void lar_pace_prompt(void);
+
+/* Play begins now, or goes on after a pause; the next tick is due now. Twice is once. */
+void lar_pace_start(lar_pace *pace);
+/* A pause: it begins when the next tick would be due. */
+void lar_pace_stop(lar_pace *pace);
+/* Nothing that lies behind is made up for: the next tick is due now. */
+void lar_pace_restart(lar_pace *pace);
+void lar_pace_set(lar_pace *pace, double wanted);
+
+/* Waits until the next tick is due. */
+void lar_pace_wait(lar_pace *pace);
+/* A tick of `steps` steps that last `seconds` (simulated) begins. */
+void lar_pace_begin(lar_pace *pace, uint64_t steps, double seconds);
+/* The steps are done: `engine` is the time that they took [ns]. */
+void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine);
+/* The forces are out. */
+void lar_pace_answered(lar_pace *pace);
+
+/* Once in a while: the window of rates. True when a tenth of a second has passed since it last
+ * was. */
+bool lar_pace_look(lar_pace *pace);
+
+/* Fills in what is counted, and with `quantiles` also what has to be summed up: some ten
+ * microseconds. */
+void lar_pace_report(const lar_pace *pace, bool quantiles, lar_session_status *status);
+
+#endif

@@ -1,0 +1,91 @@
+#include "session/snapshot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One letter: this head, then u and v as the state has them. */
+typedef struct frame {
+    uint64_t step, hash;
+    double time;
+    bool hashed; /* by the first thread that took it */
+} frame;
+
+static size_t head_size(void) {
+    return (sizeof(frame) + 63) / 64 * 64;
+}
+
+static size_t values_of(const lar_simulation *simulation) {
+    return 4 * (size_t)simulation->domain.layout.node_padded;
+}
+
+/* The frame's arrays as a state that can be hashed. */
+static lar_state state_of(frame *f, const lar_simulation *simulation) {
+    double *u = (double *)((unsigned char *)f + head_size());
+    return (lar_state){.step = f->step,
+                       .node_count = simulation->domain.layout.node_padded,
+                       .u = u,
+                       .v = u + values_of(simulation)};
+}
+
+lar_status lar_snapshots_create(const lar_simulation *simulation, lar_snapshots *snapshots,
+                                lar_error *error) {
+    size_t bytes = head_size() + 2 * values_of(simulation) * sizeof(double);
+    return lar_mailbox_create(&snapshots->frames, bytes, "snapshots", error);
+}
+
+void lar_snapshots_destroy(lar_snapshots *snapshots) {
+    lar_mailbox_destroy(&snapshots->frames);
+}
+
+uint64_t lar_snapshots_ask(lar_snapshots *snapshots) {
+    return __atomic_add_fetch(&snapshots->asked, 1, __ATOMIC_ACQ_REL);
+}
+
+bool lar_snapshots_ready(const lar_snapshots *snapshots, uint64_t number) {
+    return __atomic_load_n(&snapshots->ready, __ATOMIC_ACQUIRE) >= number;
+}
+
+bool lar_snapshots_wanted(const lar_snapshots *snapshots) {
+    return __atomic_load_n(&snapshots->asked, __ATOMIC_ACQUIRE) != snapshots->answered;
+}
+
+bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulation) {
+    uint64_t asked = __atomic_load_n(&snapshots->asked, __ATOMIC_ACQUIRE);
+    if (asked == snapshots->answered) return false;
+    const lar_state *state = lar_simulation_state(simulation);
+    frame *f = lar_mailbox_draft(&snapshots->frames);
+    *f = (frame){.step = state->step, .time = lar_simulation_time(simulation)};
+    lar_state copy = state_of(f, simulation);
+    memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
+    memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);
+    lar_mailbox_send(&snapshots->frames);
+    snapshots->answered = asked;
+    __atomic_store_n(&snapshots->ready, asked, __ATOMIC_RELEASE);
+    return true;
+}
+
+lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *simulation,
+                              lar_snapshot *snapshot, lar_error *error) {
+    const lar_domain *domain = &simulation->domain;
+    bool finite = true;
+    lar_mailbox_lock(&snapshots->frames);
+    frame *f = lar_mailbox_newest(&snapshots->frames, NULL);
+    const lar_state state = state_of(f, simulation);
+    if (!f->hashed) f->hash = lar_state_hash(domain, &state);
+    f->hashed = true;
+    snapshot->step = f->step;
+    snapshot->time = f->time;
+    snapshot->hash = f->hash;
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        const double *u = state.u + 4 * (size_t)domain->layout.local[g];
+        memcpy(snapshot->u[g], u, sizeof snapshot->u[g]);
+        finite = finite && isfinite(u[0] + u[1] + u[2]);
+    }
+    lar_mailbox_unlock(&snapshots->frames);
+    if (finite) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "the state at step %llu is not finite and cannot be shown; reset the session "
+                    "or load a saved state",
+                    (unsigned long long)snapshot->step);
+}
