@@ -84,6 +84,100 @@ static void test_small_questions(void **state) {
     lar_model_destroy(model);
 }
 
+/* A good model with one contact of the whole surface with itself, or against `against`. */
+static lar_model *touching_model(int kind, int32_t against) {
+    lar_model *model = good_model();
+    lar_contact *contact = LAR_MODEL_APPEND(model, contact);
+    contact->kind = kind;
+    contact->face_count = model->surface.face_count - 1;
+    contact->face = lar_calloc((size_t)contact->face_count, sizeof(int32_t));
+    for (int32_t i = 0; i < contact->face_count; i++) contact->face[i] = model->surface.face[i + 1];
+    contact->against_count = 1;
+    contact->against = lar_calloc(1, sizeof(int32_t));
+    contact->against[0] = against;
+    contact->normal[2] = 1;
+    return model;
+}
+
+static void test_contacts(void **state) {
+    (void)state;
+    lar_model *model = touching_model(LAR_CONTACT_SELF, 0);
+    assert_int_equal(lar_model_check(model, NULL), LAR_OK);
+    model->contact[0].face[3] = 1; /* between the first two elements */
+    refused_and_destroyed(model,
+                          "test.yaml: contact entry 1: its faces must be in ascending order");
+    model = touching_model(LAR_CONTACT_SELF, 0);
+    model->contact[0].face[0] = 1;
+    refused_and_destroyed(model, "contact entry 1: face 1 of element 101 is inside the body");
+    model = touching_model(LAR_CONTACT_SELF, 0);
+    model->contact[0].face_count = 0;
+    refused_and_destroyed(model, "contact entry 1: there is no face in this contact");
+    model = touching_model(LAR_CONTACT_SELF, 0);
+    model->contact[0].face[22] = 6 * BRICK_ELEMENTS;
+    refused_and_destroyed(model, "contact entry 1: there is no face 48 in the mesh");
+    model = touching_model(LAR_CONTACT_BETWEEN, 0);
+    assert_int_equal(lar_model_check(model, NULL), LAR_OK);
+    model->contact[0].against[0] = model->surface.face[23];
+    refused_and_destroyed(model, "have 1 in common (one is face 5 of element 108)");
+    model = touching_model(LAR_CONTACT_BETWEEN, -1);
+    refused_and_destroyed(model, "contact entry 1: there is no face -1 in the mesh");
+    model = touching_model(LAR_CONTACT_PLANE, 0);
+    assert_int_equal(lar_model_check(model, NULL), LAR_OK);
+    model->contact[0].normal[0] = 1;
+    refused_and_destroyed(model, "contact entry 1: the plane needs a finite point and a normal");
+    model = touching_model(LAR_CONTACT_PLANE, 0);
+    model->contact[0].through[1] = NAN;
+    refused_and_destroyed(model, "contact entry 1: the plane needs a finite point");
+    model = touching_model(LAR_CONTACT_PLANE, 0);
+    model->contact[0].through[2] = 0.012;
+    refused_and_destroyed(model, "lies 0.012 m behind this plane at the start");
+}
+
+static lar_tool *add_tool(lar_model *model, const char *name) {
+    lar_tool *tool = LAR_MODEL_APPEND(model, tool);
+    *tool = (lar_tool){.name = lar_strdup(name),
+                       .shape = LAR_TOOL_GRASPER,
+                       .radius = 0.001,
+                       .length = 0.02,
+                       .spread = 1,
+                       .rest = {.position = {0, 0, 1}, .orientation = {1, 0, 0, 0}, .opening = 1}};
+    return tool;
+}
+
+static void test_tools(void **state) {
+    (void)state;
+#define REFUSED(change, words)                                                                     \
+    do {                                                                                           \
+        lar_model *model = good_model();                                                           \
+        lar_tool *tool = add_tool(model, "jaws");                                                  \
+        assert_int_equal(lar_model_check(model, NULL), LAR_OK);                                    \
+        change;                                                                                    \
+        refused_and_destroyed(model, "test.yaml: tool entry 1: " words);                           \
+    } while (0)
+    REFUSED(tool->radius = 0, "the radius must be finite and more than zero");
+    REFUSED(tool->radius = INFINITY, "the radius must be finite");
+    REFUSED(tool->length = -1, "the length must be finite and more than zero");
+    REFUSED(tool->length = NAN, "the length must be finite");
+    REFUSED(tool->spread = 0, "the spread must be more than zero and less than 180 degrees");
+    REFUSED(tool->spread = 3.2, "the spread must be");
+    REFUSED(tool->shape = LAR_TOOL_SPHERE, "a sphere has no length");
+    REFUSED(tool->shape = LAR_TOOL_CAPSULE, "only a grasper has a spread");
+    REFUSED(tool->shape = LAR_TOOL_HAND, "the shape must be a sphere, a capsule or a grasper");
+    REFUSED(tool->rest.position[1] = NAN, "its place must be finite");
+    REFUSED(tool->rest.orientation[1] = 1, "its orientation must be a quaternion of length one");
+    REFUSED(tool->rest.opening = 1.5, "its opening must be between 0 and 1");
+    REFUSED(tool->rest.position[2] = 0.02, "the tool would begin");
+    REFUSED((free(tool->name), tool->name = NULL), "the name of a tool has 1 to 63 bytes");
+    REFUSED(strcpy(tool->name, "hand"), "\"hand\" is the name of the hand");
+    lar_model *two = good_model();
+    add_tool(two, "jaws");
+    add_tool(two, "jaws");
+    refused_and_destroyed(two, "tool entry 2: tool entry 1 is called \"jaws\" too");
+    lar_model *many = good_model();
+    for (int i = 0; i <= LAR_MODEL_TOOLS_MOST; i++) add_tool(many, (char[]){(char)('a' + i), 0});
+    refused_and_destroyed(many, "test.yaml: 13 tools; there can be 12");
+}
+
 static void test_empty_model(void **state) {
     (void)state;
     refused_and_destroyed(lar_model_create(), "no elements");
@@ -183,7 +277,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_append),          cmocka_unit_test(test_notices),
         cmocka_unit_test(test_small_questions), cmocka_unit_test(test_empty_model),
-        cmocka_unit_test(test_materials),       cmocka_unit_test(test_conflicts),
+        cmocka_unit_test(test_materials),       cmocka_unit_test(test_contacts),
+        cmocka_unit_test(test_tools),           cmocka_unit_test(test_conflicts),
         cmocka_unit_test(test_ranges),          cmocka_unit_test(test_numbers_and_curves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

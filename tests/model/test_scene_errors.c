@@ -383,7 +383,7 @@ static void test_tools(void **state) {
 #define SPHERE(values) "tools: [{shape: sphere, " values "}]\n"
 #define GRASPER(values)                                                                            \
     "tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [0, 0, 0.1], " values "}]" \
-                                                                                              "\n"
+    "\n"
     static const wrong_scene extra[] = {
         {"tools: probe\n", "4:8", "expected a list of tools, {name: probe, shape: sphere"},
         {"tools: [probe]\n", "4:9", "a tool as a mapping"},
@@ -432,6 +432,12 @@ static void test_tools(void **state) {
          "the tool would begin 0.011 m inside the body"},
         {"tools: [{name: a, shape: capsule, radius: 0.001, length: 1, at: [0.01, 0.01, -1]}]\n",
          "4:9", "the tool would begin 0.001 m inside the body, at element 101"},
+        {"tools: [{name: a, shape: capsule, radius: 0.0151421356, length: 1, at: [0.26, 0.28, "
+         "-0.22], towards: [1, 1, -1]}]\n",
+         "4:9", "the tool would begin 0.001 m inside the body"}, /* across an edge */
+        {"tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [0.01, 0.01, 0.037], "
+         "spread: 30}]\n",
+         "4:9", "inside the body"},
     };
     REFUSES(extra, BASE);
     char text[1000] = "tools:\n";
