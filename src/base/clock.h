@@ -6,6 +6,10 @@
 #include <stdint.h>
 #include <time.h>
 
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
 /* Since some moment in the past [ns]. */
 static inline int64_t lar_clock_ns(void) {
     struct timespec at;
@@ -24,6 +28,21 @@ static inline double lar_clock_seconds(void) {
 static inline void lar_clock_sleep_until(int64_t ns) {
     struct timespec at = {ns / 1000000000, ns % 1000000000};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
+}
+
+/* The same, but exactly: sleeps until `early` ns before and looks at the clock from there. A thread
+ * that only sleeps wakes late by what the system takes to wake it. */
+static inline void lar_clock_wait_until(int64_t ns, int64_t early) {
+    if (ns - early > lar_clock_ns()) lar_clock_sleep_until(ns - early);
+    while (lar_clock_ns() < ns) continue;
+}
+
+/* The calling thread wakes as promptly as the system can: Linux lets others wake up to 50 us late
+ * to save energy. */
+static inline void lar_clock_be_prompt(void) {
+#ifdef PR_SET_TIMERSLACK
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+#endif
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "comm/backend.h"
 #include "comm/meeting.h"
@@ -175,9 +176,7 @@ const char *lar_comm_backend_name(const lar_comm *comm) {
 /* ---- who is lost ------------------------------------------------------------------------- */
 
 double lar_comm_now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+    return lar_clock_seconds();
 }
 
 lar_status lar_comm_check(lar_comm *comm, uint64_t step, lar_error *error) {

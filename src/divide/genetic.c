@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "divide/cut.h"
 #include "divide/exchange.h"
 
@@ -44,12 +44,6 @@ lar_genetic_options lar_genetic_options_default(void) {
                                  .shaping = 0.6,
                                  .exchanges = 300,
                                  .slack = 0.2};
-}
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static lar_status check_options(const lar_genetic_options *o, lar_error *error) {
@@ -179,7 +173,7 @@ static void shuffle(search *s, individual *pool, int32_t count) {
 
 /* A generation of a large model may take longer than there is time for. */
 static bool late(const search *s) {
-    return s->options.seconds > 0 && now() - s->began > s->options.seconds;
+    return s->options.seconds > 0 && lar_clock_seconds() - s->began > s->options.seconds;
 }
 
 static void vary(search *s, individual *pool, int32_t count) {
@@ -254,13 +248,13 @@ static void search_run(search *s, lar_genetic_result *result) {
     while (more && s->done < 1) {
         generation(s);
         progress.generation++;
-        progress.seconds = now() - s->began;
+        progress.seconds = lar_clock_seconds() - s->began;
         progress.best = s->best.cost;
         s->done = share_done(o, &progress);
         if (o->watch && !o->watch(o->context, &progress)) more = false;
     }
     *result =
-        (lar_genetic_result){progress.start, s->best.cost, progress.generation, now() - s->began};
+        (lar_genetic_result){progress.start, s->best.cost, progress.generation, lar_clock_seconds() - s->began};
 }
 
 lar_status lar_genetic_search(const lar_mesh *mesh, const lar_incidence *incidence,
@@ -270,7 +264,7 @@ lar_status lar_genetic_search(const lar_mesh *mesh, const lar_incidence *inciden
                 .incidence = incidence,
                 .grid = grid,
                 .options = options ? *options : lar_genetic_options_default(),
-                .began = now()};
+                .began = lar_clock_seconds()};
     lar_status status = check_options(&s.options, error);
     if (status) return status;
     s.random.state = s.options.seed;

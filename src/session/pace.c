@@ -3,10 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-
 #include "base/clock.h"
 
 static const int64_t LAG_MOST = (int64_t)(1e9 * LAR_LAG_MOST);
@@ -15,12 +11,6 @@ static const int64_t WINDOW_STEP = 100000000, SECOND = 1000000000; /* [ns] */
 /* How long before the tick sleeping ends and polling begins [ns]: about as much as a timer is late
  * on an idle machine. */
 static const int64_t WAKE_EARLY = 20000;
-
-void lar_pace_prompt(void) {
-#ifdef PR_SET_TIMERSLACK
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-#endif
-}
 
 static double played(const lar_pace *pace, int64_t now) {
     return pace->before +
@@ -68,10 +58,7 @@ void lar_pace_set(lar_pace *pace, double wanted) {
 }
 
 void lar_pace_wait(lar_pace *pace) {
-    if (pace->pace <= 0) return;
-    int64_t now = lar_clock_ns();
-    if (pace->due - WAKE_EARLY > now) lar_clock_sleep_until(pace->due - WAKE_EARLY);
-    while (lar_clock_ns() < pace->due) continue;
+    if (pace->pace > 0) lar_clock_wait_until(pace->due, WAKE_EARLY);
 }
 
 /* What cannot be made up for within LAG_MOST. */

@@ -51,9 +51,6 @@ typedef struct lar_pace {
     lar_histogram ticks; /* from due to forces [ns] */
 } lar_pace;
 
-/* The calling thread's timers become as exact as the system allows. */
-void lar_pace_prompt(void);
-
 /* Play begins now, or goes on after a pause; the next tick is due now. Twice is once. */
 void lar_pace_start(lar_pace *pace);
 /* A pause: it begins when the next tick would be due. */

@@ -248,7 +248,7 @@ static void rest(lar_session *session, double *fade) {
 void *lar_session_run(void *argument) {
     lar_session *session = argument;
     double fade = FADE;
-    lar_pace_prompt();
+    lar_clock_be_prompt();
     if (session->status.state == LAR_SESSION_PLAYING) lar_pace_start(&session->pace);
     while (!session->ended) {
         obey_requests(session);

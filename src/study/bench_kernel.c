@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "engine/simulation.h"
 #include "model/model.h"
 #include "study/fma_peak.h"
@@ -131,27 +131,21 @@ static void set_in_motion(lar_simulation *simulation) {
     }
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Seconds that `steps` steps take; they mean nothing when *status is not LAR_OK. */
 static double time_steps(lar_simulation *simulation, uint64_t steps, lar_status *status,
                          lar_error *error) {
-    double begin = seconds();
+    double begin = lar_clock_seconds();
     *status = lar_simulation_advance(simulation, steps, error);
-    return seconds() - begin;
+    return lar_clock_seconds() - begin;
 }
 
 /* The result of the peak's loop goes here, so that no compiler leaves the loop out. */
 static volatile double peak_result;
 
 static double time_peak(const lar_fma_peak *peak, uint64_t rounds) {
-    double begin = seconds();
+    double begin = lar_clock_seconds();
     peak_result = peak->run(rounds);
-    return seconds() - begin;
+    return lar_clock_seconds() - begin;
 }
 
 /* Repetitions that take about `wanted` seconds; doubles until the clock can see them. */

@@ -15,6 +15,7 @@
 #include <sys/prctl.h>
 #endif
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "comm/comm.h"
 #include "comm/job.h"
@@ -46,12 +47,6 @@ struct lar_processes {
     char address[LAR_COMM_ADDRESS_TEXT];
     int32_t named; /* whose end has been told already; 0: nobody's */
 };
-
-static double now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
-}
 
 static void nap(void) {
     nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
@@ -297,7 +292,7 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
 }
 
 void lar_processes_hesitate(const lar_processes *p) {
-    for (double until = now() + HESITATION; p->has_parent && now() < until;) nap();
+    for (double until = lar_clock_seconds() + HESITATION; p->has_parent && lar_clock_seconds() < until;) nap();
 }
 
 /* ---- the end ------------------------------------------------------------------------------- */
@@ -354,11 +349,11 @@ static void end_all(const lar_processes *p, lar_status failure, lar_error *worst
 
 static void reap_all(lar_processes *p, lar_status failure, lar_error *worst) {
     double patience = failure && failure != LAR_ERROR_PEER ? SHORT_GRACE : GRACE;
-    double until = now() + patience;
+    double until = lar_clock_seconds() + patience;
     lar_error ignored = {.status = LAR_OK};
     bool killed = false;
     while (reap(p, failure, killed ? &ignored : worst) > 0) {
-        if (!killed && now() > until) {
+        if (!killed && lar_clock_seconds() > until) {
             end_all(p, failure, worst);
             killed = true;
         }

@@ -1,46 +1,20 @@
 #include "study/step_clock.h"
 
 #include <string.h>
-#include <time.h>
 
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
+#include "base/clock.h"
 
 /* How long before the tick sleeping ends and polling begins [ns]: more than a timer is late on an
  * idle machine. */
 static const int64_t WAKE_EARLY = 30000;
 
-static int64_t now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
-}
-
-static void wait_until(int64_t tick) {
-    int64_t wake = tick - WAKE_EARLY;
-    if (wake > now()) {
-        struct timespec at = {wake / 1000000000, wake % 1000000000};
-        /* A signal ends the sleep: whoever asked to stop is heard after the tick. */
-        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
-    }
-    while (now() < tick) continue;
-}
-
-/* Linux lets a sleeping thread wake up to 50 us late to save energy; half a tick is too much. */
-static void ask_for_prompt_waking(void) {
-#ifdef PR_SET_TIMERSLACK
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-#endif
-}
-
 void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simulation,
                           bool paced) {
     memset(step_clock, 0, sizeof *step_clock);
     step_clock->paced = paced;
-    if (paced) ask_for_prompt_waking();
+    if (paced) lar_clock_be_prompt();
     step_clock->first_step = lar_simulation_steps(simulation);
-    step_clock->start = 1e-9 * (double)now();
+    step_clock->start = 1e-9 * (double)lar_clock_ns();
 }
 
 /* What the watch over an advance knows. */
@@ -67,22 +41,22 @@ static int64_t pace(const stretch *s, uint64_t step, int64_t end) {
     if (end > deadline)
         s->clock->misses++;
     else
-        wait_until(deadline);
-    return now();
+        lar_clock_wait_until(deadline, WAKE_EARLY);
+    return lar_clock_ns();
 }
 
 /* Everything between two steps happens here: the end of one is measured first, the beginning of the
  * next last. */
 static int after_step(void *context, uint64_t step) {
     stretch *s = context;
-    int64_t end = now();
+    int64_t end = lar_clock_ns();
     bool on = true;
     lar_histogram_add(&s->clock->times, (uint64_t)(end - s->begin));
     s->begin = end;
     if (s->clock->paced && !asked_to_stop(s)) s->begin = pace(s, step, end);
     if (s->glance && end >= s->look) {
         on = s->glance->look(s->glance->context);
-        s->begin = now();
+        s->begin = lar_clock_ns();
         s->look = s->begin + nanoseconds(s->glance->every);
     }
     return on && !asked_to_stop(s);
@@ -97,13 +71,13 @@ lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *si
                  .tick = 1e9 * lar_simulation_time_step(simulation),
                  .start = (int64_t)(1e9 * step_clock->start)};
     if (asked_to_stop(&s)) return LAR_OK;
-    s.begin = now();
+    s.begin = lar_clock_ns();
     s.look = s.begin + (glance ? nanoseconds(glance->every) : 0);
     return lar_simulation_advance_watched(simulation, steps, after_step, &s, error);
 }
 
 double lar_step_clock_elapsed(const lar_step_clock *step_clock) {
-    return 1e-9 * (double)now() - step_clock->start;
+    return 1e-9 * (double)lar_clock_ns() - step_clock->start;
 }
 
 double lar_step_clock_busy(const lar_step_clock *step_clock) {
