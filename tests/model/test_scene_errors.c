@@ -426,15 +426,22 @@ static void test_tools(void **state) {
         {GRASPER("towards: [0, 0, 0]"), "4:90", "towards: this vector has no direction"},
         {GRASPER("towards: down"), "4:90", "towards: expected three numbers, a direction"},
         {GRASPER("turn: left"), "4:87", "turn: expected a number in degrees"},
-        {SPHERE("name: a, radius: 0.01, at: [0.01, 0.01, 0.029]"), "4:9",
-         "the tool would begin 0.001 m inside the body, at element 105; begin outside and move it"},
+        {SPHERE("name: a, radius: 0.01, at: [0.015, 0.015, 0.029]"), "4:9",
+         "the tool would begin 0.001 m inside the body, at element 108; begin outside and move it"},
         {SPHERE("name: a, radius: 0.001, at: [0.01, 0.01, 0.01]"), "4:9",
          "the tool would begin 0.011 m inside the body"},
-        {"tools: [{name: a, shape: capsule, radius: 0.001, length: 1, at: [0.01, 0.01, -1]}]\n",
-         "4:9", "the tool would begin 0.001 m inside the body, at element 101"},
-        {"tools: [{name: a, shape: capsule, radius: 0.0151421356, length: 1, at: [0.26, 0.28, "
+        {"tools: [{name: a, shape: capsule, radius: 0.001, length: 1.005, at: [0.013, 0.012, "
+         "-1]}]\n",
+         "4:9", "the tool would begin 0.001 m inside the body, at element 104"},
+        {"tools: [{name: a, shape: capsule, radius: 0.0151421356, length: 1, at: [0.265, 0.28, "
          "-0.22], towards: [1, 1, -1]}]\n",
          "4:9", "the tool would begin 0.001 m inside the body"}, /* across an edge */
+        {"tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [0.03, 0.01, 0.03], "
+         "spread: 90}]\n",
+         "4:9", "inside the body"}, /* one jaw, */
+        {"tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [-0.01, 0.01, 0.03], "
+         "spread: 90}]\n",
+         "4:9", "inside the body"}, /* and the other */
         {"tools: [{name: a, shape: grasper, radius: 0.001, length: 0.02, at: [0.01, 0.01, 0.037], "
          "spread: 30}]\n",
          "4:9", "inside the body"},
