@@ -5,8 +5,8 @@
 #   tools/setup.sh [build] [check] [fuzz]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
-#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, the cross compiler and emulator
-#           for NEON
+#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2, the cross compiler and
+#           emulator for NEON
 #   fuzz    clang with libFuzzer
 #
 # What belongs to `check` and `fuzz` is optional: without it the tests that need it are left out,
@@ -32,6 +32,8 @@ HWLOC_PACKAGES="
 libhwloc-dev      m:hwloc"
 UCX_PACKAGES="
 libucx-dev        m:ucx"
+SDL_PACKAGES="
+libsdl2-dev       m:sdl2"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
@@ -150,6 +152,7 @@ for group in "$@"; do
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
         want "$HWLOC_PACKAGES" "threads are not bound to cores" || true
         want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
+        want "$SDL_PACKAGES" "game controllers are neither built nor tested" || true
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         ;;

@@ -1,0 +1,61 @@
+/* Who holds a device's place on the network, and how much of the force it gets.
+ *
+ *     first good packet: its sender is the owner, until it has been silent for 1 s
+ *
+ *     force   1 -----------.                        .--------   the whole force
+ *                           \                      /
+ *             0 .            '--------------------'             none
+ *               | packets  20 50 ms  silence       | 300 ms
+ *                          of silence              packets again
+ *
+ * After a silence, and at the beginning, the hand is somewhere else than the tool: the pose is led
+ * from where the tool is to where the hand is within the same 300 ms, so that nothing jumps.
+ *
+ * Time is CLOCK_MONOTONIC in ns, as a number that the caller gives: no clock, no socket, no memory
+ * in here, so that a test and the fuzzer can play everything that a network does.
+ */
+#ifndef LAR_SESSION_DEVICE_LINK_H
+#define LAR_SESSION_DEVICE_LINK_H
+
+#include "session/device_packet.h"
+
+typedef enum lar_link_verdict {
+    LAR_LINK_TAKEN = 0, /* the newest */
+    LAR_LINK_LATE,      /* a newer one has come before, or the same */
+    LAR_LINK_REFUSED    /* no packet, a wrong token, somebody else's, a jump in the numbers */
+} lar_link_verdict;
+
+/* Where a packet comes from, as bytes that are the same for the same sender. */
+typedef struct lar_link_address {
+    unsigned char bytes[32];
+} lar_link_address;
+
+typedef struct lar_link {
+    char token[LAR_PACKET_TOKEN]; /* zeros: none is asked for */
+    bool owned;
+    lar_link_address owner;
+    uint64_t last_packet; /* of the owner [ns] */
+    uint64_t last_time;   /* of the last call of lar_link_advance [ns] */
+    bool silent;          /* between a time-out and the next packet */
+    double strength;      /* 0..1: share of the force */
+    double approach;      /* 0..1: share of the way to the hand */
+    lar_position_packet newest;
+    lar_tool_pose tool; /* where the tool is; the caller's to keep */
+    lar_tool_pose from; /* where the approach began: where the tool was */
+    lar_tool_pose pose; /* what was given last */
+    uint64_t received, refused, late, lost, timeouts;
+} lar_link;
+
+/* `token`: NULL or "": none. */
+void lar_link_create(lar_link *link, const char *token, const lar_tool_pose *tool);
+
+/* A packet has come. Good ones become link->newest. */
+lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, const void *bytes,
+                               size_t size, uint64_t now);
+
+/* Once in a tick, after its packets: moves strength, approach and pose on to `now`. While `paused`
+ * the force fades as in a silence. True when the pose is the hand's (false: nobody is there, and
+ * it stays where it was). */
+bool lar_link_advance(lar_link *link, bool paused, uint64_t now);
+
+#endif
