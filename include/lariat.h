@@ -142,6 +142,18 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 /* The material of an element: index into those of lar_model_material. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
+/* What may touch what: one entry of a model's contact. */
+typedef struct lar_model_contact_info {
+    const char *kind;             /* "self", "between" or "plane" */
+    int32_t faces, against;       /* counts; the second of "between", else 0 */
+    double through[3], normal[3]; /* of a plane [m], unit length; else zero */
+} lar_model_contact_info;
+
+LAR_API int32_t lar_model_contact_count(const lar_model *model);
+/* Entry `index` of the count; LAR_ERROR_ARGUMENT beyond. */
+LAR_API lar_status lar_model_contact(const lar_model *model, int32_t index,
+                                     lar_model_contact_info *info, lar_error *error);
+
 /* ---- tools ------------------------------------------------------------------------------ */
 
 typedef enum lar_tool_shape {

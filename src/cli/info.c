@@ -6,7 +6,57 @@
 #include "cli/commands.h"
 #include "cli/json.h"
 
+/* The words of scenes; hands are in none. */
+static const char *const shape_word[] = {"sphere", "capsule", "grasper", "hand"};
+
+static double degrees(double radians) {
+    static const double HALF_TURN = 3.14159265358979323846;
+    return radians * 180 / HALF_TURN;
+}
+
+/* Where the tip points: the tool's own -z. */
+static void towards(const lar_tool_pose *pose, double out[3]) {
+    const double *q = pose->orientation;
+    out[0] = 0 - 2 * (q[1] * q[3] + q[0] * q[2]);
+    out[1] = 0 - 2 * (q[2] * q[3] - q[0] * q[1]);
+    out[2] = -(1 - 2 * (q[1] * q[1] + q[2] * q[2]));
+}
+
 /* ---- for machines ----------------------------------------------------------------------- */
+
+static void write_contacts(json_writer *json, const lar_model *model) {
+    lar_model_contact_info contact;
+    json_open(json, "contacts", '[');
+    for (int32_t i = 0; !lar_model_contact(model, i, &contact, NULL); i++) {
+        json_open(json, NULL, '{');
+        json_text(json, "kind", contact.kind);
+        json_integer(json, "faces", contact.faces);
+        json_integer(json, "against", contact.against);
+        json_vector(json, "through", contact.through);
+        json_vector(json, "normal", contact.normal);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void write_tools(json_writer *json, const lar_model *model) {
+    lar_tool_info tool;
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; !lar_model_tool(model, i, &tool, NULL); i++) {
+        double direction[3];
+        towards(&tool.rest, direction);
+        json_open(json, NULL, '{');
+        json_text(json, "name", tool.name);
+        json_text(json, "shape", shape_word[tool.shape]);
+        json_number(json, "radius", tool.radius);
+        json_number(json, "length", tool.length);
+        json_number(json, "spread", degrees(tool.spread));
+        json_vector(json, "at", tool.rest.position);
+        json_vector(json, "towards", direction);
+        json_close(json);
+    }
+    json_close(json);
+}
 
 static void write_json(const char *path, const lar_model *model, const lar_model_info *info) {
     json_writer json = json_begin(stdout);
@@ -53,6 +103,8 @@ static void write_json(const char *path, const lar_model *model, const lar_model
         json_close(&json);
     }
     json_close(&json);
+    write_contacts(&json, model);
+    write_tools(&json, model);
     json_open(&json, "notices", '[');
     for (int32_t i = 0; i < lar_model_notice_count(model); i++)
         json_text(&json, NULL, lar_model_notice_text(model, i));
@@ -76,6 +128,32 @@ static void print_sets(const lar_model *model) {
     for (int32_t i = 0; i < count && i < SHOWN && !lar_model_set(model, i, &set, NULL); i++)
         printf("%-17s%s: %d %s\n", i ? "" : "sets", set.name, (int)set.count, set.kind);
     if (count > SHOWN) printf("%-17sand %d more (--json lists all)\n", "", (int)(count - SHOWN));
+}
+
+static void print_contacts(const lar_model *model) {
+    lar_model_contact_info c;
+    for (int32_t i = 0; !lar_model_contact(model, i, &c, NULL); i++) {
+        printf("%-17s%d faces ", i ? "" : "contact", (int)c.faces);
+        if (c.kind[0] == 'b')
+            printf("with %d others\n", (int)c.against);
+        else if (c.kind[0] == 'p')
+            printf("with a plane through (%.4g, %.4g, %.4g), normal (%.4g, %.4g, %.4g)\n",
+                   c.through[0], c.through[1], c.through[2], c.normal[0], c.normal[1], c.normal[2]);
+        else
+            printf("with each other\n");
+    }
+}
+
+static void print_tools(const lar_model *model) {
+    lar_tool_info t;
+    for (int32_t i = 0; !lar_model_tool(model, i, &t, NULL); i++) {
+        printf("%-17s%s: %s, radius %.4g m", i ? "" : "tools", t.name, shape_word[t.shape],
+               t.radius);
+        if (t.length > 0) printf(", length %.4g m", t.length);
+        if (t.spread > 0) printf(", spread %.4g degrees", degrees(t.spread));
+        const double *at = t.rest.position;
+        printf(", at (%.4g, %.4g, %.4g)\n", at[0], at[1], at[2]);
+    }
 }
 
 static void print_duration(const lar_model *model) {
@@ -112,6 +190,8 @@ static void print_table(const lar_model *model, const lar_model_info *info) {
     print_duration(model);
     print_materials(model);
     print_sets(model);
+    print_contacts(model);
+    print_tools(model);
 }
 
 /* Organs are not ten metres long: a mesh in millimetres is the commonest slip. */

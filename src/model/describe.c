@@ -1,4 +1,6 @@
 /* What a model tells about its parts through the public header. */
+#include <string.h>
+
 #include "model/model.h"
 
 int64_t lar_model_element_id(const lar_model *model, int32_t element) {
@@ -68,6 +70,25 @@ void lar_model_surface(const lar_model *model, lar_surface_info *info) {
 int32_t lar_model_element_material(const lar_model *model, int32_t element) {
     bool known = element >= 0 && element < model->mesh.element_count;
     return known ? model->element_material[element] : -1;
+}
+
+int32_t lar_model_contact_count(const lar_model *model) {
+    return model->contact_count;
+}
+
+lar_status lar_model_contact(const lar_model *model, int32_t index, lar_model_contact_info *info,
+                             lar_error *error) {
+    static const char *const kind[] = {"self", "between", "plane"};
+    if (!model || !info) return refuse_null("lar_model_contact", error);
+    if (index < 0 || index >= model->contact_count)
+        return refuse_index("contact", index, model->contact_count, error);
+    const lar_contact *contact = &model->contact[index];
+    *info = (lar_model_contact_info){.kind = kind[contact->kind],
+                                     .faces = contact->face_count,
+                                     .against = contact->against_count};
+    memcpy(info->through, contact->through, sizeof info->through);
+    memcpy(info->normal, contact->normal, sizeof info->normal);
+    return LAR_OK;
 }
 
 int32_t lar_model_tool_count(const lar_model *model) {

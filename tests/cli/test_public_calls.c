@@ -29,6 +29,8 @@ static void model_calls(void **unused) {
     lar_model_info info;
     lar_material_info material;
     lar_set_info set;
+    lar_model_contact_info contact;
+    lar_tool_info tool;
     REFUSED(lar_model_open(NULL, &model, &error));
     REFUSED(lar_model_open(BEAM, NULL, &error));
     assert_null(model);
@@ -43,6 +45,14 @@ static void model_calls(void **unused) {
     REFUSED(lar_model_set(model, 0, NULL, &error));
     REFUSED(lar_model_set(model, -1, &set, &error));
     REFUSED(lar_model_set(model, 99, &set, &error));
+    assert_int_equal(lar_model_contact_count(model), 0);
+    REFUSED(lar_model_contact(NULL, 0, &contact, &error));
+    REFUSED(lar_model_contact(model, 0, NULL, &error));
+    REFUSED(lar_model_contact(model, 0, &contact, &error));
+    assert_int_equal(lar_model_tool_count(model), 0);
+    REFUSED(lar_model_tool(NULL, 0, &tool, &error));
+    REFUSED(lar_model_tool(model, 0, NULL, &error));
+    REFUSED(lar_model_tool(model, 0, &tool, &error));
     REFUSED(lar_demo_write(NULL, &error));
     lar_model_destroy(model);
     lar_model_destroy(NULL);
