@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "engine/field.h"
 #include "engine/measure.h"
 
 lar_options lar_options_default(void) {
@@ -132,6 +133,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
 void lar_simulation_destroy(lar_simulation *simulation) {
     if (!simulation) return;
     lar_computer_destroy(simulation->computer);
+    lar_field_plan_destroy(simulation->field);
     lar_state_destroy(&simulation->state);
     lar_domain_destroy(&simulation->domain);
     free(simulation);

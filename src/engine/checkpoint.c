@@ -1,0 +1,373 @@
+#include "engine/checkpoint.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "engine/identity.h"
+
+/* ---- what stands in a file ------------------------------------------------------------------ */
+
+static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
+enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304 };
+
+typedef struct file_head {
+    char magic[8];
+    uint32_t version, byte_order;
+    uint64_t bytes; /* of the file */
+    lar_model_identity identity;
+    uint64_t step;
+    double external, damped, contact;
+    uint64_t hash; /* of the state, as lar_simulation_hash */
+    int32_t tools, holds;
+} file_head;
+
+/* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
+_Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
+_Static_assert(sizeof(file_head) == 144, "the format");
+_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
+
+typedef double node_vector[3];
+
+static size_t file_bytes(size_t tools, size_t holds, size_t nodes) {
+    return sizeof(file_head) + tools * sizeof(lar_tool_motion) + holds * sizeof(lar_hold) +
+           2 * nodes * sizeof(node_vector) + sizeof(uint64_t);
+}
+
+uint64_t lar_checkpoint_sum(const void *data, size_t words) {
+    const unsigned char *at = data;
+    uint64_t sum = 0;
+    for (size_t i = 0; i < words; i++) {
+        uint64_t word;
+        memcpy(&word, at + 8 * i, sizeof word);
+        sum = lar_hash_word(sum, word);
+    }
+    return sum;
+}
+
+/* As lar_state_hash, for nodes in the mesh's order. */
+static uint64_t hash_state(uint64_t step, const node_vector *u, const node_vector *v,
+                           lar_gid nodes) {
+    uint64_t hash = lar_hash_word(0, step);
+    for (lar_gid n = 0; n < nodes; n++) {
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
+    }
+    return hash;
+}
+
+/* ---- writing -------------------------------------------------------------------------------- */
+
+static lar_status check_finite(const char *path, const lar_domain *whole, const lar_state *state,
+                               lar_error *error) {
+    const lar_mesh *mesh = &whole->model->mesh;
+    bool finite = isfinite(state->external) && isfinite(state->damped) && isfinite(state->contact);
+    for (lar_gid g = 0; g < mesh->node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            size_t value = 4 * (size_t)whole->layout.local[g] + (size_t)i;
+            finite = finite && isfinite(state->u[value]) && isfinite(state->v[value]);
+        }
+    if (finite) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "%s: the state has left the range of numbers and is not saved; go back to an "
+                    "earlier checkpoint or to the start",
+                    path);
+}
+
+/* A mesh or a scene that is named by mistake stays as it is. */
+static lar_status spare_others(const char *path, lar_error *error) {
+    char begin[sizeof MAGIC];
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return LAR_OK; /* none there, or writing will tell */
+    ssize_t got = read(file, begin, sizeof begin);
+    close(file);
+    if (got == 0 || (got == (ssize_t)sizeof begin && memcmp(begin, MAGIC, sizeof begin) == 0))
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is there and is not a checkpoint; it is not overwritten, choose another "
+                    "name",
+                    path);
+}
+
+static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
+                           size_t bytes) {
+    unsigned char *data = lar_calloc(bytes, 1);
+    if (!data) return NULL;
+    lar_gid nodes = whole->model->mesh.node_count;
+    unsigned char *at = data + sizeof(file_head);
+    size_t motions = (size_t)tools->count * sizeof tools->motion[0];
+    size_t holds = (size_t)tools->hold_count * sizeof tools->hold[0];
+    memcpy(at, tools->motion, motions);
+    memcpy(at + motions, tools->hold, holds);
+    node_vector *u = (node_vector *)(void *)(at + motions + holds), *v = u + nodes;
+    for (lar_gid g = 0; g < nodes; g++) {
+        memcpy(u[g], state->u + 4 * (size_t)whole->layout.local[g], sizeof u[g]);
+        memcpy(v[g], state->v + 4 * (size_t)whole->layout.local[g], sizeof v[g]);
+    }
+    file_head head = {
+        .version = VERSION,
+        .byte_order = BYTE_ORDER_MARK,
+        .bytes = bytes,
+        .step = state->step,
+        .external = state->external,
+        .damped = state->damped,
+        .contact = state->contact,
+        .hash = hash_state(state->step, (const node_vector *)u, (const node_vector *)v, nodes),
+        .tools = tools->count,
+        .holds = tools->hold_count};
+    memcpy(head.magic, MAGIC, sizeof MAGIC);
+    lar_model_identify(whole, &head.identity);
+    memcpy(data, &head, sizeof head);
+    uint64_t sum = lar_checkpoint_sum(data, bytes / 8 - 1);
+    memcpy(data + bytes - 8, &sum, sizeof sum);
+    return data;
+}
+
+static bool write_all(int file, const unsigned char *data, size_t bytes) {
+    while (bytes > 0) {
+        ssize_t written = write(file, data, bytes);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        data += written;
+        bytes -= (size_t)written;
+    }
+    return true;
+}
+
+/* A name is safe when its folder is. */
+static void sync_folder(const char *path) {
+    char *folder = lar_path_beside(path, ".");
+    int file = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (file >= 0) {
+        fsync(file);
+        close(file);
+    }
+    free(folder);
+}
+
+static lar_status write_file(const char *path, const unsigned char *data, size_t bytes,
+                             lar_error *error) {
+    size_t size = strlen(path) + sizeof ".part";
+    char *part = lar_calloc(size, 1);
+    if (!part) return lar_fail_memory(error, size, path);
+    snprintf(part, size, "%s.part", path);
+    errno = 0;
+    int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    bool good = file >= 0 && write_all(file, data, bytes) && fsync(file) == 0;
+    int cause = errno;
+    if (file >= 0 && close(file) != 0 && good) {
+        good = false;
+        cause = errno;
+    }
+    if (good && rename(part, path) != 0) {
+        good = false;
+        cause = errno;
+    }
+    if (good) sync_folder(path);
+    if (file >= 0 && !good) remove(part);
+    free(part);
+    if (good) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: cannot be written: %s; check the folder, its permissions and the free "
+                    "space",
+                    path, strerror(cause ? cause : EIO));
+}
+
+lar_status lar_checkpoint_write(const char *path, const lar_domain *whole, const lar_state *state,
+                                const lar_tools *tools, lar_error *error) {
+    lar_status status = check_finite(path, whole, state, error);
+    if (!status) status = spare_others(path, error);
+    if (status) return status;
+    size_t bytes = file_bytes((size_t)tools->count, (size_t)tools->hold_count,
+                              (size_t)whole->model->mesh.node_count);
+    unsigned char *data = fill(whole, state, tools, bytes);
+    if (!data) return lar_fail_memory(error, bytes, path);
+    status = write_file(path, data, bytes, error);
+    free(data);
+    return status;
+}
+
+/* ---- reading -------------------------------------------------------------------------------- */
+
+static lar_status refuse(lar_error *error, const char *path, const char *why) {
+    return lar_fail(error, LAR_ERROR_FORMAT, "%s: %s", path, why);
+}
+
+/* Whether it is a whole file of ours. */
+static lar_status check_file(const char *path, const lar_bytes *bytes, file_head *head,
+                             lar_error *error) {
+    *head = (file_head){0};
+    memcpy(head, bytes->data, bytes->size < sizeof *head ? bytes->size : sizeof *head);
+    if (bytes->size < sizeof MAGIC || memcmp(head->magic, MAGIC, sizeof MAGIC) != 0)
+        return refuse(error, path, "is not a checkpoint of Lariat; name a file that it has saved");
+    if (bytes->size >= 16 && head->byte_order == 0x04030201)
+        return refuse(error, path,
+                      "was saved on a machine with another order of bytes; load it on one like "
+                      "that");
+    if (bytes->size >= 16 && head->version != VERSION)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s: is a checkpoint of version %lu, this Lariat reads version %d; save it "
+                        "anew with this one",
+                        path, (unsigned long)head->version, VERSION);
+    if (bytes->size < sizeof *head || bytes->size < head->bytes)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: is cut off after %zu bytes; take another checkpoint", path,
+                        bytes->size);
+    if (bytes->size > head->bytes || bytes->size % 8 != 0)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: has %zu bytes and says %llu; it has been altered, take another "
+                        "checkpoint",
+                        path, bytes->size, (unsigned long long)head->bytes);
+    uint64_t sum;
+    memcpy(&sum, bytes->data + bytes->size - 8, sizeof sum);
+    if (sum != lar_checkpoint_sum(bytes->data, bytes->size / 8 - 1) ||
+        head->byte_order != BYTE_ORDER_MARK)
+        return refuse(error, path,
+                      "is damaged: its checksum does not fit; take another checkpoint");
+    return LAR_OK;
+}
+
+static lar_status refuse_model(lar_error *error, const char *path, const char *what) {
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: was saved from another model: %s; load it into the model that it was "
+                    "saved from",
+                    path, what);
+}
+
+/* The coarsest difference first. */
+static lar_status check_model(const char *path, const file_head *head, const lar_domain *whole,
+                              lar_error *error) {
+    static const char *const kinds[] = {"hex8", "hex8-full", "hex8-matrix"};
+    const lar_model_identity *there = &head->identity;
+    lar_model_identity here;
+    char what[200];
+    lar_model_identify(whole, &here);
+    if (there->nodes != here.nodes || there->elements != here.elements) {
+        snprintf(what, sizeof what,
+                 "%llu nodes and %llu elements instead of %llu nodes and %llu elements",
+                 (unsigned long long)there->nodes, (unsigned long long)there->elements,
+                 (unsigned long long)here.nodes, (unsigned long long)here.elements);
+        return refuse_model(error, path, what);
+    }
+    if (there->mesh != here.mesh)
+        return refuse_model(error, path, "its nodes or elements are at other places");
+    if (there->materials != here.materials)
+        return refuse_model(error, path, "its materials are others");
+    if (there->conditions != here.conditions)
+        return refuse_model(error, path, "its supports, loads, damping or gravity are others");
+    if (there->contact != here.contact)
+        return refuse_model(error, path, "what may touch what is different");
+    if (there->tools != here.tools)
+        return refuse_model(error, path, "its tools are others (hands count, too)");
+    if (there->element_kind != here.element_kind) {
+        const char *name = there->element_kind < 3 ? kinds[there->element_kind] : "of another kind";
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: was saved with elements %s, this simulation has %s; choose the same",
+                        path, name, kinds[here.element_kind]);
+    }
+    if (there->time_step != here.time_step)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: was saved with a time step of %.17g s, this simulation has %.17g s; "
+                        "choose the same",
+                        path, there->time_step, here.time_step);
+    return LAR_OK;
+}
+
+static bool all_finite(const double *value, size_t count) {
+    bool finite = true;
+    for (size_t i = 0; i < count; i++) finite = finite && isfinite(value[i]);
+    return finite;
+}
+
+static bool good_pose(const lar_tool_pose *pose) {
+    double square = 0;
+    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
+    return all_finite(pose->position, 3) && fabs(square - 1) <= 1e-5 && pose->opening >= 0 &&
+           pose->opening <= 1;
+}
+
+/* Numbers of steps are far below this: sums of two of them do not overflow. */
+static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+
+static bool good_motion(const lar_tool_motion *motion) {
+    return good_pose(&motion->from) && good_pose(&motion->to) && motion->start <= motion->end &&
+           motion->end <= STEPS_MOST && (motion->holding == 0 || motion->holding == 1) &&
+           motion->padding == 0;
+}
+
+static bool good_hold(const lar_hold *hold, const file_head *head, const lar_model *model) {
+    double sum = hold->weight[0] + hold->weight[1] + hold->weight[2] + hold->weight[3];
+    return hold->tool >= 0 && hold->tool < head->tools && hold->face >= 0 &&
+           hold->face < model->surface.face_count && all_finite(hold->weight, 4) &&
+           fabs(sum - 1) <= 1e-6 && all_finite(hold->anchor, 3) && isfinite(hold->stiffness) &&
+           hold->stiffness >= 0;
+}
+
+/* Tools and holds; *at moves behind them. */
+static bool take_tools(const file_head *head, const lar_model *model, const unsigned char **at,
+                       lar_tools *tools) {
+    bool good = true;
+    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds};
+    for (int32_t i = 0; i < tools->count; i++, *at += sizeof tools->motion[i]) {
+        memcpy(&tools->motion[i], *at, sizeof tools->motion[i]);
+        good = good && good_motion(&tools->motion[i]);
+    }
+    for (int32_t i = 0; i < tools->hold_count; i++, *at += sizeof tools->hold[i]) {
+        memcpy(&tools->hold[i], *at, sizeof tools->hold[i]);
+        good = good && good_hold(&tools->hold[i], head, model);
+    }
+    return good;
+}
+
+lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
+                                lar_checkpoint *checkpoint, lar_error *error) {
+    const lar_model *model = whole->model;
+    const lar_tool_list *list = whole->acting.touch.list;
+    size_t nodes = (size_t)model->mesh.node_count;
+    file_head head;
+    lar_status status = check_file(path, bytes, &head, error);
+    if (!status) status = check_model(path, &head, whole, error);
+    if (status) return status;
+    if (head.tools != (list ? list->count : 0) || head.holds < 0 || head.holds > LAR_HOLDS_MOST ||
+        bytes->size != file_bytes((size_t)head.tools, (size_t)head.holds, nodes))
+        return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
+    lar_checkpoint found = {.step = head.step,
+                            .external = head.external,
+                            .damped = head.damped,
+                            .contact = head.contact};
+    const unsigned char *at = bytes->data + sizeof head;
+    if (!take_tools(&head, model, &at, &found.tools))
+        return refuse(error, path, "has a tool at no place; take another checkpoint");
+    found.u = (const node_vector *)(const void *)at;
+    found.v = found.u + nodes;
+    bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
+    if (!finite || !all_finite(found.u[0], 6 * nodes) || head.step > STEPS_MOST)
+        return refuse(error, path, "has numbers beyond all range; take another checkpoint");
+    if (head.hash != hash_state(head.step, found.u, found.v, (lar_gid)nodes))
+        return refuse(error, path, "has a state with another hash; take another checkpoint");
+    *checkpoint = found;
+    return LAR_OK;
+}
+
+void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *whole,
+                         lar_state *state, lar_tools *tools) {
+    size_t values = 4 * (size_t)state->node_count;
+    memset(state->u, 0, values * sizeof *state->u);
+    memset(state->v, 0, values * sizeof *state->v);
+    memset(state->force, 0, values * sizeof *state->force);
+    for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
+        size_t there = 4 * (size_t)whole->layout.local[g];
+        memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
+        memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
+    }
+    state->step = checkpoint->step;
+    state->external = checkpoint->external;
+    state->damped = checkpoint->damped;
+    state->contact = checkpoint->contact;
+    *tools = checkpoint->tools;
+}

@@ -1,0 +1,42 @@
+/* A state in a file: everything that the next step depends on, and nothing about who computes it.
+ *
+ *     | head | tools and holds | u of all nodes | v of all nodes | checksum |
+ *
+ * Binary, words of eight bytes, described in docs/formats.md. The nodes are in the mesh's order, so
+ * that a checkpoint of one grid goes on on any other; numbers are written as they are, so that the
+ * bits are the same. What a state belongs to is hashed part by part (identity.h), for a refusal
+ * that says what differs.
+ */
+#ifndef LAR_ENGINE_CHECKPOINT_H
+#define LAR_ENGINE_CHECKPOINT_H
+
+#include "engine/domain.h"
+#include "engine/state.h"
+#include "engine/tools.h"
+
+/* What a file says, found to be right. u and v stand in the bytes that were parsed. */
+typedef struct lar_checkpoint {
+    uint64_t step;
+    double external, damped, contact; /* as in lar_state */
+    lar_tools tools;
+    const double (*u)[3], (*v)[3]; /* [nodes of the mesh] */
+} lar_checkpoint;
+
+/* Writes state and tools of the whole model: beside first, then renamed when all of it is on the
+ * disk. A state that is not finite is refused, and so is a path where something else stands. */
+lar_status lar_checkpoint_write(const char *path, const lar_domain *whole, const lar_state *state,
+                                const lar_tools *tools, lar_error *error);
+
+/* Checks every byte. `path` is for messages; `bytes` must stay, at an address that is a multiple of
+ * 8, as malloc gives it. */
+lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
+                                lar_checkpoint *checkpoint, lar_error *error);
+
+/* Puts a parsed one into the state and tools of the whole model. */
+void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *whole,
+                         lar_state *state, lar_tools *tools);
+
+/* For tests that damage files: the checksum of `words` words, as it stands behind them. */
+uint64_t lar_checkpoint_sum(const void *data, size_t words);
+
+#endif

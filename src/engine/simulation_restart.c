@@ -1,0 +1,55 @@
+/* Going back to the start, saving and loading, as the public header has them. */
+#include "engine/checkpoint.h"
+#include "engine/simulation.h"
+
+static lar_status check_whole(const lar_simulation *simulation, lar_error *error) {
+    return simulation->computer && simulation->computer->broken ? lar_computer_refuse(error)
+                                                                : LAR_OK;
+}
+
+lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_reset", error);
+    if (!status) status = check_whole(simulation, error);
+    if (status) return status;
+    lar_simulation_set_start(simulation);
+    return lar_simulation_take_up(simulation, error);
+}
+
+static lar_status check_path(const char *path, const char *call, lar_error *error) {
+    if (path && *path) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs the path of a checkpoint", call);
+}
+
+lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,
+                               lar_error *error) {
+    /* Bringing the state together changes nothing that the caller sees. */
+    lar_simulation *own = (lar_simulation *)simulation;
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_save", error);
+    if (!status) status = check_path(path, "lar_simulation_save", error);
+    if (status) return status;
+    if (simulation->trip.kind)
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "%s: is not written: the run has broken off, and would again from here; "
+                        "load an earlier checkpoint or go back to the start",
+                        path);
+    status = lar_simulation_gather(own, error);
+    if (status) return status;
+    return lar_checkpoint_write(path, &simulation->domain, &simulation->state, &simulation->tools,
+                                error);
+}
+
+lar_status lar_simulation_load(lar_simulation *simulation, const char *path, lar_error *error) {
+    lar_bytes bytes = {0};
+    lar_checkpoint checkpoint;
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_load", error);
+    if (!status) status = check_path(path, "lar_simulation_load", error);
+    if (!status) status = check_whole(simulation, error);
+    if (!status) status = lar_bytes_read(path, &bytes, error);
+    if (!status)
+        status = lar_checkpoint_parse(path, &bytes, &simulation->domain, &checkpoint, error);
+    if (!status)
+        lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state,
+                            &simulation->tools);
+    lar_bytes_free(&bytes);
+    return status ? status : lar_simulation_take_up(simulation, error);
+}

@@ -1,0 +1,410 @@
+/* Saving, loading and going back: from then on everything is as if nothing had been. */
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/checkpoint.h"
+#include "engine/engine_test.h"
+#include "engine/tools_test.h"
+
+static const char *const grids[] = {NULL, "2x1x1", "2x2x1", "1x2x3"};
+static const char *const schemes[] = {NULL, "all", "local", "two"};
+enum { GRIDS = 4 };
+
+#define PATH LAR_TEST_BUILD "/test.checkpoint"
+
+static lar_options setting(int grid) {
+    lar_options options = lar_options_default();
+    options.grid = grids[grid];
+    options.scheme = schemes[grid];
+    options.threads = grid ? 1 + grid % 2 : 0;
+    options.delays = grid ? (uint64_t)(17 + grid) : 0;
+    options.hands = 1;
+    return options;
+}
+
+static void save(lar_simulation *simulation, const char *path) {
+    lar_error error;
+    if (lar_simulation_save(simulation, path, &error)) fail_msg("%s", error.message);
+}
+
+static void load(lar_simulation *simulation, const char *path) {
+    lar_error error;
+    if (lar_simulation_load(simulation, path, &error)) fail_msg("%s", error.message);
+}
+
+static void reset(lar_simulation *simulation) {
+    lar_error error;
+    if (lar_simulation_reset(simulation, &error)) fail_msg("%s", error.message);
+}
+
+/* Hashes of a run that nothing interrupts, after 0, 8 and 20 ticks. */
+typedef struct course {
+    uint64_t start, middle, end;
+    lar_energy energy; /* at the end */
+} course;
+
+static course straight_course(const lar_model *model) {
+    lar_simulation *simulation = start_with(model, setting(0));
+    course c = {.start = lar_simulation_hash(simulation)};
+    act(simulation, 0, 8);
+    c.middle = lar_simulation_hash(simulation);
+    act(simulation, 8, 20);
+    c.end = lar_simulation_hash(simulation);
+    lar_simulation_energy(simulation, &c.energy);
+    lar_simulation_destroy(simulation);
+    return c;
+}
+
+/* Saved on one grid, taken up on another: with tools and what they hold. */
+static void a_loaded_run_goes_on_as_if_never_stopped(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    course c = straight_course(model);
+    for (int from = 0; from < GRIDS; from++) {
+        lar_simulation *simulation = start_with(model, setting(from));
+        act(simulation, 0, 8);
+        save(simulation, PATH);
+        assert_int_equal(lar_simulation_hash(simulation), c.middle);
+        act(simulation, 8, 20);
+        assert_int_equal(lar_simulation_hash(simulation), c.end);
+        lar_simulation_destroy(simulation);
+
+        int to = (from + 1) % GRIDS;
+        lar_simulation *other = start_with(model, setting(to));
+        if (from % 2) act(other, 0, 3); /* wherever it has been before */
+        load(other, PATH);
+        assert_int_equal(lar_simulation_steps(other), 8 * TICK_STEPS);
+        assert_int_equal(lar_simulation_hash(other), c.middle);
+        act(other, 8, 20);
+        assert_int_equal(lar_simulation_hash(other), c.end);
+        lar_energy energy;
+        lar_simulation_energy(other, &energy);
+        double scale = c.energy.strain + c.energy.kinetic + fabs(c.energy.external);
+        assert_true(fabs(energy.external - c.energy.external) <= 1e-10 * scale);
+        assert_true(fabs(energy.damping - c.energy.damping) <= 1e-10 * scale);
+        lar_simulation_destroy(other);
+    }
+    lar_model_destroy(model);
+}
+
+/* Back and forth between past and future, after even and odd numbers of steps, so that packets of
+ * every round have met those of another: rounds that were steps would take old packets for new. */
+static void time_may_go_back_again_and_again(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    course c = straight_course(model);
+    for (int grid = 0; grid < GRIDS; grid++) {
+        lar_simulation *simulation = start_with(model, setting(grid));
+        for (int i = 0; i < 3; i++) {
+            act(simulation, 0, 2);
+            advance(simulation, (uint64_t)(1 + i));
+            reset(simulation);
+            assert_int_equal(lar_simulation_steps(simulation), 0);
+            assert_int_equal(lar_simulation_hash(simulation), c.start);
+        }
+        act(simulation, 0, 8);
+        assert_int_equal(lar_simulation_hash(simulation), c.middle);
+        save(simulation, PATH);
+        for (int i = 0; i < 3; i++) {
+            advance(simulation, (uint64_t)(2 + i));
+            load(simulation, PATH);
+            assert_int_equal(lar_simulation_hash(simulation), c.middle);
+        }
+        act(simulation, 8, 20);
+        assert_int_equal(lar_simulation_hash(simulation), c.end);
+        lar_simulation_destroy(simulation);
+    }
+    lar_model_destroy(model);
+}
+
+/* ---- runs that have broken off -------------------------------------------------------------- */
+
+static void a_broken_run_is_taken_up_again(void **unused) {
+    (void)unused;
+    lar_model *model = everything_model(&tool_brick);
+    static const double crash[3] = {-200, 0, 0};
+    throw_node(model, brick_node(&tool_brick, 3, 2, 2), crash);
+    lar_error error;
+    for (int grid = 0; grid < GRIDS; grid++) {
+        lar_simulation *simulation = start_with(model, setting(grid));
+        uint64_t begin = lar_simulation_hash(simulation);
+        save(simulation, PATH);
+        for (int i = 0; i < 4; i++) {
+            assert_int_equal(lar_simulation_advance(simulation, 500, &error), LAR_ERROR_UNSTABLE);
+            assert_int_equal(lar_simulation_advance(simulation, 1, &error), LAR_ERROR_UNSTABLE);
+            assert_int_equal(lar_simulation_save(simulation, PATH ".no", &error),
+                             LAR_ERROR_UNSTABLE);
+            if (i % 2)
+                load(simulation, PATH);
+            else
+                reset(simulation);
+            assert_int_equal(lar_simulation_hash(simulation), begin);
+            if (lar_simulation_advance(simulation, 1, &error)) fail_msg("%s", error.message);
+        }
+        lar_simulation_destroy(simulation);
+    }
+    assert_int_equal(access(PATH ".no", F_OK), -1);
+    lar_model_destroy(model);
+}
+
+/* ---- other processes: two simulations in two threads ---------------------------------------- */
+
+typedef struct participant {
+    const lar_model *model;
+    lar_options options;
+    const course *course;
+    lar_error error;
+    lar_status status;
+} participant;
+
+static void *serve(void *context) {
+    participant *p = context;
+    lar_simulation *simulation = NULL;
+    p->status = lar_simulation_create(p->model, &p->options, &simulation, &p->error);
+    if (!p->status) p->status = lar_simulation_serve(simulation, &p->error);
+    lar_simulation_destroy(simulation);
+    return NULL;
+}
+
+static void go_back_and_forth(lar_simulation *simulation, const course *c) {
+    act(simulation, 0, 3);
+    advance(simulation, 1);
+    reset(simulation);
+    assert_int_equal(lar_simulation_hash(simulation), c->start);
+    act(simulation, 0, 8);
+    assert_int_equal(lar_simulation_hash(simulation), c->middle);
+    save(simulation, PATH);
+    advance(simulation, 7);
+    load(simulation, PATH);
+    assert_int_equal(lar_simulation_hash(simulation), c->middle);
+    act(simulation, 8, 20);
+    assert_int_equal(lar_simulation_hash(simulation), c->end);
+}
+
+static void processes_go_back_together(void **unused) {
+    (void)unused;
+    static const char *const backends[] = {"shm", "tcp", "shm"};
+    static const char *const grid[] = {"2x1x1", "2x1x1", "2x2x1"};
+    lar_model *model = tool_model();
+    course c = straight_course(model);
+    for (int i = 0; i < 3; i++) {
+        lar_error error;
+        char master[LAR_COMM_ADDRESS_TEXT];
+        int listener, count = i == 2 ? 4 : 2;
+        participant other[4];
+        pthread_t thread[4];
+        if (lar_comm_listen("127.0.0.1:0", &listener, master, &error))
+            fail_msg("%s", error.message);
+        lar_options options = setting(1);
+        options.grid = grid[i];
+        options.threads = 1 + i % 2;
+        options.comm = backends[i];
+        options.master = master;
+        for (int p = 1; p < count; p++) {
+            other[p] = (participant){.model = model, .options = options, .course = &c};
+            other[p].options.processor = p;
+            assert_int_equal(pthread_create(&thread[p], NULL, serve, &other[p]), 0);
+        }
+        options.listener = listener;
+        lar_simulation *simulation = NULL;
+        if (lar_simulation_create(model, &options, &simulation, &error))
+            fail_msg("%s", error.message);
+        go_back_and_forth(simulation, &c);
+        lar_simulation_destroy(simulation);
+        for (int p = 1; p < count; p++) {
+            pthread_join(thread[p], NULL);
+            if (other[p].status) fail_msg("processor %d: %s", p, other[p].error.message);
+        }
+    }
+    lar_model_destroy(model);
+}
+
+/* ---- files ---------------------------------------------------------------------------------- */
+
+static lar_bytes saved_bytes(lar_simulation *simulation) {
+    lar_bytes bytes = {0};
+    lar_error error;
+    save(simulation, PATH);
+    if (lar_bytes_read(PATH, &bytes, &error)) fail_msg("%s", error.message);
+    return bytes;
+}
+
+static void write_bytes(const char *path, const lar_bytes *bytes) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    if (bytes->size) assert_int_equal(fwrite(bytes->data, bytes->size, 1, file), 1);
+    assert_int_equal(fclose(file), 0);
+}
+
+#define BAD LAR_TEST_BUILD "/bad.checkpoint"
+
+/* Refused with these words, and nothing has changed. */
+static void refuse(lar_simulation *simulation, const char *path, lar_status status,
+                   const char *why) {
+    uint64_t before = lar_simulation_hash(simulation);
+    lar_error error = {0};
+    assert_int_equal(lar_simulation_load(simulation, path, &error), status);
+    if (!strstr(error.message, why)) fail_msg("'%s' lacks '%s'", error.message, why);
+    assert_int_equal(lar_simulation_hash(simulation), before);
+}
+
+static void repair_sum(lar_bytes *bytes) {
+    uint64_t sum = lar_checkpoint_sum(bytes->data, bytes->size / 8 - 1);
+    memcpy(bytes->data + bytes->size - 8, &sum, sizeof sum);
+}
+
+static void damaged_files_are_refused(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(0));
+    act(simulation, 0, 8);
+    lar_bytes good = saved_bytes(simulation);
+    lar_bytes bad = {lar_calloc(good.size + 8, 1), good.size};
+    memcpy(bad.data, good.data, good.size);
+    for (size_t size = 1; size < good.size; size += size < 160 ? 1 : 977) {
+        bad.size = size;
+        write_bytes(BAD, &bad);
+        refuse(simulation, BAD, LAR_ERROR_FORMAT, size < 8 ? "not a checkpoint" : "cut off");
+    }
+    bad.size = good.size + 8;
+    write_bytes(BAD, &bad);
+    refuse(simulation, BAD, LAR_ERROR_FORMAT, "altered");
+    bad.size = good.size;
+    for (size_t at = 24; at < good.size; at += at < 200 ? 1 : 1009) {
+        bad.data[at] ^= 0x10;
+        write_bytes(BAD, &bad);
+        refuse(simulation, BAD, LAR_ERROR_FORMAT, "checksum");
+        bad.data[at] ^= 0x10;
+    }
+    bad.data[8] = 9;
+    write_bytes(BAD, &bad);
+    refuse(simulation, BAD, LAR_ERROR_UNSUPPORTED, "version 9");
+    bad.data[8] = good.data[8];
+    memcpy(bad.data + 12, (unsigned char[]){1, 2, 3, 4}, 4);
+    write_bytes(BAD, &bad);
+    refuse(simulation, BAD, LAR_ERROR_FORMAT, "order of bytes");
+    memcpy(bad.data + 12, good.data + 12, 4);
+    lar_bytes_free(&bad);
+    lar_bytes_free(&good);
+    refuse(simulation, LAR_TEST_BUILD "/nowhere/x", LAR_ERROR_IO, "nowhere");
+    finish(simulation, model);
+}
+
+/* Whoever forges the checksum still gets no state that is none. */
+static void forged_files_are_refused(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(0));
+    act(simulation, 0, 8);
+    lar_bytes bytes = saved_bytes(simulation);
+    const struct {
+        size_t at, size;
+        double value; /* as a double, or as a 32-bit integer */
+        const char *why;
+    } forged[] = {
+        {96, 8, 1e300, "numbers beyond"},     /* the step */
+        {104, 8, NAN, "numbers beyond"},      /* work */
+        {136, 4, 3, "sizes"},                 /* tools */
+        {140, 4, 300, "sizes"},               /* holds */
+        {144, 8, INFINITY, "tool"},           /* a position */
+        {144 + 24, 8, 0.5, "tool"},           /* an orientation */
+        {144 + 56, 8, 1.5, "tool"},           /* an opening */
+        {144 + 128, 8, 1e300, "tool"},        /* the step at which it began */
+        {144 + 144, 4, 2, "tool"},            /* whether it holds */
+        {bytes.size - 16, 8, NAN, "numbers"}, /* a velocity */
+        {bytes.size - 16, 8, 3, "hash"},
+    };
+    for (size_t i = 0; i < sizeof forged / sizeof forged[0]; i++) {
+        lar_bytes bad = {lar_calloc(bytes.size, 1), bytes.size};
+        memcpy(bad.data, bytes.data, bytes.size);
+        int32_t integer = forged[i].size == 4 ? (int32_t)forged[i].value : 0;
+        const void *value = forged[i].size == 8 ? (const void *)&forged[i].value : &integer;
+        memcpy(bad.data + forged[i].at, value, forged[i].size);
+        repair_sum(&bad);
+        write_bytes(BAD, &bad);
+        refuse(simulation, BAD, LAR_ERROR_FORMAT, forged[i].why);
+        lar_bytes_free(&bad);
+    }
+    lar_bytes_free(&bytes);
+    finish(simulation, model);
+}
+
+static void refuse_with(const lar_model *model, lar_options options, const char *why) {
+    lar_simulation *simulation = start_with(model, options);
+    refuse(simulation, PATH, LAR_ERROR_MODEL, why);
+    lar_simulation_destroy(simulation);
+}
+
+/* Says what is different. */
+static void other_models_are_refused(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(0));
+    act(simulation, 0, 3);
+    save(simulation, PATH);
+    double step = lar_simulation_time_step(simulation);
+    lar_simulation_destroy(simulation);
+    lar_options options = setting(0);
+    options.time_step = step / 2;
+    refuse_with(model, options, "time step");
+    options = setting(0);
+    options.element = LAR_ELEMENT_HEX8_FULL;
+    refuse_with(model, options, "hex8-full");
+    options = setting(0);
+    options.hands = 2;
+    refuse_with(model, options, "hands");
+    options = setting(0);
+    options.time_step = step;
+    lar_model *other = tool_model();
+    other->material[1].density *= 1.001;
+    refuse_with(other, options, "materials");
+    other->material[1].density = model->material[1].density;
+    other->mesh.position[17][1] += 1e-9;
+    refuse_with(other, options, "places");
+    other->mesh.position[17][1] = model->mesh.position[17][1];
+    other->damping += 1;
+    refuse_with(other, options, "damping");
+    other->damping -= 1;
+    other->tool[1].radius *= 1.05;
+    refuse_with(other, options, "tools");
+    lar_model_destroy(other);
+    other = everything_model(&soft_brick);
+    refuse_with(other, setting(0), "48 elements");
+    lar_model_destroy(other);
+    lar_model_destroy(model);
+}
+
+/* A file is whole or not there; what is no checkpoint is not overwritten. */
+static void saving_spares_what_is_there(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(0));
+    lar_error error = {0};
+    lar_bytes scene = {(unsigned char *)lar_strdup("lariat: 1\nmesh: x.vtu\n"), 22};
+    write_bytes(BAD, &scene);
+    lar_bytes_free(&scene);
+    assert_int_equal(lar_simulation_save(simulation, BAD, &error), LAR_ERROR_IO);
+    assert_non_null(strstr(error.message, "not overwritten"));
+    assert_int_equal(lar_simulation_save(simulation, LAR_TEST_BUILD "/nowhere/x", &error),
+                     LAR_ERROR_IO);
+    assert_int_equal(lar_simulation_save(simulation, LAR_TEST_BUILD, &error), LAR_ERROR_IO);
+    save(simulation, PATH);
+    save(simulation, PATH); /* a checkpoint is */
+    assert_int_equal(access(PATH ".part", F_OK), -1);
+    finish(simulation, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_loaded_run_goes_on_as_if_never_stopped),
+        cmocka_unit_test(time_may_go_back_again_and_again),
+        cmocka_unit_test(a_broken_run_is_taken_up_again),
+        cmocka_unit_test(processes_go_back_together),
+        cmocka_unit_test(damaged_files_are_refused),
+        cmocka_unit_test(forged_files_are_refused),
+        cmocka_unit_test(other_models_are_refused),
+        cmocka_unit_test(saving_spares_what_is_there),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,63 @@
+/* What the tests of tools, checkpoints and sessions share: a body with tools, and hands that do
+ * something with them, tick after tick, the same every time.
+ *
+ * Include engine_test.h first. */
+#ifndef LAR_TESTS_TOOLS_TEST_H
+#define LAR_TESTS_TOOLS_TEST_H
+
+enum { TICK_STEPS = 10, BALL = 0, ROD, GRASPER, HAND, TEST_TOOLS };
+
+/* Slightly irregular, no row of it straight; big enough for twelve processors. 6 x 5 x 4 cm. */
+static const brick tool_brick = {{6, 5, 4}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+
+TEST_UNUSED static void add_tool(lar_model *model, const char *name, lar_tool_shape shape, double x,
+                                 double y, double z) {
+    *(lar_tool *)LAR_MODEL_APPEND(model, tool) =
+        (lar_tool){.name = lar_strdup(name),
+                   .shape = shape,
+                   .radius = 0.008,
+                   .length = shape == LAR_TOOL_SPHERE ? 0 : 0.03,
+                   .spread = shape == LAR_TOOL_GRASPER ? 0.6 : 0,
+                   .rest = {.position = {x, y, z}, .orientation = {1, 0, 0, 0}, .opening = 1}};
+}
+
+/* everything_model with a ball and a rod above its top and a grasper beside it, all open. */
+TEST_UNUSED static lar_model *tool_model(void) {
+    lar_model *model = everything_model(&tool_brick);
+    add_tool(model, "ball", LAR_TOOL_SPHERE, 0.03, 0.025, 0.052);
+    add_tool(model, "rod", LAR_TOOL_CAPSULE, 0.045, 0.01, 0.052);
+    add_tool(model, "grasper", LAR_TOOL_GRASPER, 0.03, 0.015, 0.095);
+    model->tool[GRASPER].radius = 0.003;
+    return model;
+}
+
+TEST_UNUSED static void place_tool(lar_simulation *simulation, int32_t tool, double x, double y,
+                                   double z, double opening) {
+    lar_tool_pose pose = {{x, y, z}, {1, 0, 0, 0}, opening};
+    lar_error error;
+    if (lar_simulation_tool_move(simulation, tool, &pose, TICK_STEPS, &error))
+        fail_msg("%s", error.message);
+}
+
+/* What happens at the beginning of a tick: the ball is pressed into the top and drawn along it, the
+ * rod dips and turns away, the grasper comes down, closes, pulls and lets go, the hand takes hold
+ * of a corner and shakes it. The options need a hand. */
+TEST_UNUSED static void act_at(lar_simulation *simulation, int tick) {
+    double t = tick, down = t < 6 ? 0.0015 * t : 0.009;
+    place_tool(simulation, BALL, 0.03 + 0.0006 * t, 0.025, 0.052 - down, 1);
+    place_tool(simulation, ROD, 0.045, 0.01 + 0.0004 * t, 0.052 - 0.5 * down, 1);
+    double height = t < 5 ? 0.095 - 0.0054 * t : 0.068 + 0.0008 * (t - 5);
+    place_tool(simulation, GRASPER, 0.03, 0.015, height, tick < 6 || tick > 16 ? 1 : 0.1);
+    double pull = tick < 4 ? 0 : 0.0006 * (t - 4);
+    place_tool(simulation, HAND, 0.06 + pull, 0.05, 0.04 + pull, tick < 3 || tick > 14 ? 1 : 0);
+}
+
+/* Ticks first .. last - 1. */
+TEST_UNUSED static void act(lar_simulation *simulation, int first, int last) {
+    for (int tick = first; tick < last; tick++) {
+        act_at(simulation, tick);
+        advance(simulation, TICK_STEPS);
+    }
+}
+
+#endif
