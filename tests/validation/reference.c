@@ -206,7 +206,7 @@ void set_ramp(lar_model *model, int curve, double time, double over, double from
 
 /* ---- running ------------------------------------------------------------------------------ */
 
-lar_simulation *start(const lar_model *model, lar_element_kind element) {
+lar_simulation *start(lar_model *model, lar_element_kind element) {
     lar_options options = lar_options_default();
     lar_simulation *simulation = NULL;
     lar_error error;

@@ -67,7 +67,7 @@ void set_ramp(lar_model *model, int curve, double time, double over, double from
 
 /* ---- running ------------------------------------------------------------------------------ */
 
-lar_simulation *start(const lar_model *model, lar_element_kind element);
+lar_simulation *start(lar_model *model, lar_element_kind element);
 /* Runs until `until` [s] of simulated time. */
 void run_until(lar_simulation *simulation, double until);
 /* Runs on until the kinetic energy stays below `share` of the strain energy for a time of
