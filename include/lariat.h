@@ -194,8 +194,8 @@ typedef struct lar_tool_force {
     int32_t held;     /* surface points that it has hold of */
 } lar_tool_force;
 
-/* Writes the demonstration organ (uterus.yaml and its mesh) into a folder, which is made when it
- * is missing. */
+/* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
+ * its scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). */
 LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
 
 /* ---- simulation ------------------------------------------------------------------------- */

@@ -11,9 +11,9 @@ static int demo_model_main(int argc, char **argv) {
     lar_error error;
     if (lar_demo_write(folder, &error))
         return cli_complain(&cli_demo_model, CLI_FAILED, "%s", error.message);
-    printf("%s/uterus.yaml and %s/uterus.vtu are written. Try\n"
+    printf("%s/uterus.yaml, uterus_live.yaml and uterus.vtu are written. Try\n"
            "    lariat run %s/uterus.yaml --out %s/results\n",
-           folder, folder, folder, folder);
+           folder, folder, folder);
     return CLI_DONE;
 }
 
@@ -21,8 +21,10 @@ const cli_command cli_demo_model = {
     .name = "demo-model",
     .summary = "write the demonstration organ, a scene like any other",
     .arguments = "DIR",
-    .description = "Writes DIR/uterus.yaml, a scene with comments, and its mesh DIR/uterus.vtu of\n"
-                   "1840 hexahedra. The folder is made when it is missing.",
+    .description =
+        "Writes a mesh of 1840 hexahedra, DIR/uterus.vtu, and two scenes with comments:\n"
+        "in DIR/uterus.yaml a force pulls the organ, in DIR/uterus_live.yaml a person\n"
+        "does. The folder is made when it is missing.",
     .examples = "  lariat demo-model demo\n"
                 "  lariat info demo/uterus.yaml\n"
                 "  lariat run demo/uterus.yaml --out demo/results\n",

@@ -10,8 +10,13 @@ scene=$demo/uterus.yaml
 expect 0 "$LARIAT" info "$scene"
 says '^mesh  *1840 elements'
 says 'fundus: .* nodes'
+says '^contact  *[0-9]* faces with each other'
+says 'grasper: grasper, radius 0.0015 m, length 0.02 m, spread 50 degrees, at '
 expect 0 "$LARIAT" info "$scene" --json
-has_keys title file lower upper sets.0.name sets.0.kind materials.0.law notices --numbers nodes \
+has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts.0.kind \
+    contacts.0.through contacts.0.normal tools.0.name tools.0.shape tools.0.at tools.0.towards \
+    notices --numbers contacts.0.faces contacts.0.against tools.0.radius tools.0.length \
+    tools.0.spread nodes \
     elements fixed_nodes volume mass shortest_edge scaled_jacobian.min scaled_jacobian.mean \
     scaled_jacobian.worst_element stable_step stable_step_element time_step duration \
     output_interval sets.0.count materials.0.shear_modulus

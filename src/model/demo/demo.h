@@ -2,7 +2,7 @@
  *
  * It stands for the organ of the thesis (T 3.2.2, figures 2.5 and 3.6): 1840 hexahedra, about 12 cm
  * from left to right. Its 2,567 nodes lie within 2 % of the thesis's 2,528. How it is made is in
- * demo_parts.h; lar_demo_write (lariat.h) writes it with its scene.
+ * demo_parts.h; lar_demo_write (lariat.h) writes it with its scenes (demo_scene.h).
  *
  * Axes, as in DICOM: x to the patient's left, y to the back, z up; the cervix stands on z = 0.
  * Cell tags 1..4 and element sets: uterus, tubes, ovaries, ligaments.

@@ -1,0 +1,103 @@
+#include "model/demo/demo_scene.h"
+
+#define UNITS                                                                                      \
+    "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n"               \
+    "# x points to the patient's left, y to the back, z up.\n"
+
+/* ---- uterus.yaml: pulled by a force -----------------------------------------------------------
+ */
+
+static const char pulled_head[] =
+    "# The demonstration organ of Lariat: a uterus with tubes, ovaries and ligaments, about 12 cm\n"
+    "# from left to right, 1840 hexahedra. Try\n"
+    "#\n"
+    "#     lariat info uterus.yaml\n"
+    "#     lariat run uterus.yaml --out results\n"
+    "#\n"
+    "# To take hold of it yourself: uterus_live.yaml.\n" UNITS "lariat: 1\n"
+    "title: Uterus\n"
+    "mesh: uterus.vtu\n"
+    "\n"
+    "# The organ is shown as in laparoscopy, held up by its neighbours: no weight of its own.\n"
+    "# With [0, 0, -1.0] it sags a little, with [0, 1.0, 0] it leans back as with the patient\n"
+    "# lying down; under its full weight, 9.81, and nothing around it, it falls over.\n"
+    "gravity: [0, 0, 0]\n"
+    "time_step: auto          # about 0.1 milliseconds\n"
+    "damping: 4.0             # 1/s; motion dies away within a second\n"
+    "duration: 0.6            # s; a run lasts so long unless --time says otherwise\n"
+    "\n";
+
+static const char pulled_end[] =
+    "\n"
+    "# A forceps at the fundus: the force grows smoothly over 0.2 seconds and then stays. It is\n"
+    "# the total, shared equally by the nodes of the set.\n"
+    "load:\n"
+    "  - { nodes: fundus, force: [0.04, 0.10, 0.12], over: 0.2 }\n"
+    "\n"
+    "output:\n"
+    "  every: 0.02\n"
+    "  fields: [displacement, von_mises]\n"
+    "  probes:\n"
+    "    - { name: fundus, set: fundus }                         # mean displacement\n"
+    "    - { name: ovary_left, set: ovary_left }\n"
+    "    - { name: cervix_reaction, set: cervix, sum: reaction } # force of the supports\n";
+
+/* ---- uterus_live.yaml: pulled by a person ------------------------------------------------------
+ */
+
+/* The slowest motion, the fundus swaying back and forth, takes about 0.6 s: 14 1/s is 0.7 of what
+ * would just keep it from swaying. */
+static const char live_head[] =
+    "# The demonstration organ of Lariat to take hold of: no load but your hand and two tools.\n"
+    "# uterus.yaml is the same organ, pulled by a force.\n" UNITS "lariat: 1\n"
+    "title: Uterus\n"
+    "mesh: uterus.vtu\n"
+    "\n"
+    "gravity: [0, 0, 0]       # held up by its neighbours\n"
+    "time_step: auto          # about 0.1 milliseconds\n"
+    "damping: 14.0            # 1/s; let go, it is back within half a second and sways once\n"
+    "\n";
+
+static const char live_end[] = "\n"
+                               "output:\n"
+                               "  every: 0.02\n"
+                               "  fields: [displacement, von_mises]\n"
+                               "  probes: [ { name: fundus, set: fundus } ]\n";
+
+/* ---- both ------------------------------------------------------------------------------------ */
+
+/* The moduli are chosen for the explicit scheme: the stable step is that of a pressure wave across
+ * the smallest element, and 1840 elements in 12 cm leave them about 4 mm. */
+static const char body[] =
+    "# Approximate shear moduli; magnetic resonance elastography of living women finds 2 to 3\n"
+    "# kPa for the uterus, here it is softer, so that the stable step stays above 0.1 ms\n"
+    "# (doubling both moduli divides it by 1.4). Nearly incompressible: bulk / shear modulus = "
+    "200.\n"
+    "materials:\n"
+    "  - { cells: uterus,    law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: tubes,     law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.4e3, bulk_modulus: 2.8e5 }\n"
+    "  - { cells: ovaries,   law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: ligaments, law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.2e3, bulk_modulus: 2.4e5 }\n"
+    "\n"
+    "# Named sets come with the mesh. Nodes: cervix, ligament_ends (and ligament_end_left,\n"
+    "# ligament_end_right), fundus, posterior, ovary_left, ovary_right. Cells: uterus, tubes,\n"
+    "# ovaries, ligaments.\n"
+    "fix:\n"
+    "  - { nodes: cervix, axes: xyz }\n"
+    "  - { nodes: ligament_ends, axes: xyz }      # the round ligaments end at the body wall\n"
+    "\n"
+    "# Nothing passes through the organ: not the organ itself, and not these instruments, which\n"
+    "# wait in front of it until a device or the mouse moves them.\n"
+    "contact: [ { self: true } ]\n"
+    "tools:\n"
+    "  - { name: probe, shape: sphere, radius: 0.005, at: [0.045, -0.045, 0.075] }\n"
+    "  - { name: grasper, shape: grasper, radius: 0.0015, length: 0.02, spread: 50,\n"
+    "      at: [-0.035, -0.055, 0.09], towards: [0.35, 0.75, -0.5] }\n";
+
+const lar_demo_scene lar_demo_scene_of[LAR_DEMO_SCENES] = {
+    {"uterus.yaml", {pulled_head, body, pulled_end}},
+    {"uterus_live.yaml", {live_head, body, live_end}}};
