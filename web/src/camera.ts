@@ -1,0 +1,113 @@
+/* The endoscope: a camera that looks at a point, turned about it, moved nearer and aside. z is up.
+ * Movements glide to where they are meant to end, unless the user prefers less motion. */
+import * as THREE from 'three';
+
+const GLIDE = 0.09; // s, time constant
+const STEEPEST = 1.5; // rad above or below the horizon
+
+export class Endoscope {
+    readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 10);
+    private readonly still = matchMedia('(prefers-reduced-motion: reduce)');
+    private readonly home = { target: new THREE.Vector3(), size: 1 };
+    private readonly wanted = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
+    private readonly now = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
+    private readonly ray = new THREE.Raycaster();
+    private readonly screen = new THREE.Vector2();
+
+    /* Everything in sight, from the front and a little above. */
+    frame(center: readonly [number, number, number], size: number): void {
+        this.home.target.set(center[0], center[1], center[2]);
+        this.home.size = size;
+        this.reset(true);
+    }
+
+    reset(atOnce = false): void {
+        this.wanted.target.copy(this.home.target);
+        this.wanted.azimuth = nearestTurn(-0.42, this.now.azimuth);
+        this.wanted.height = 0.3;
+        this.wanted.distance = this.fitting();
+        if (atOnce) this.jump();
+    }
+
+    turn(dx: number, dy: number): void {
+        this.wanted.azimuth -= dx;
+        this.wanted.height = Math.min(STEEPEST, Math.max(-STEEPEST, this.wanted.height + dy));
+    }
+
+    zoom(factor: number): void {
+        const distance = this.wanted.distance * factor;
+        this.wanted.distance = Math.min(this.home.size * 40, Math.max(this.home.size * 0.25, distance));
+    }
+
+    /* By fractions of the picture's height. */
+    pan(dx: number, dy: number): void {
+        const scale = 2 * this.now.distance * Math.tan((this.camera.fov * Math.PI) / 360);
+        const e = this.camera.matrixWorld.elements;
+        const target = this.wanted.target;
+        for (let k = 0; k < 3; k++) {
+            const by = (-dx * e[k]! + dy * e[4 + k]!) * scale;
+            target.setComponent(k, target.getComponent(k) + by);
+        }
+    }
+
+    /* Looks at a point from nearer. */
+    focus(point: readonly [number, number, number]): void {
+        this.wanted.target.set(point[0], point[1], point[2]);
+        this.zoom(0.6);
+    }
+
+    /* Moves on by `seconds`. True while the picture changes. */
+    update(seconds: number): boolean {
+        const before = this.now.azimuth + this.now.height + this.now.distance + this.now.target.length();
+        if (this.still.matches) this.jump();
+        const part = 1 - Math.exp(-seconds / GLIDE);
+        this.now.target.lerp(this.wanted.target, part);
+        this.now.distance += (this.wanted.distance - this.now.distance) * part;
+        this.now.azimuth += (this.wanted.azimuth - this.now.azimuth) * part;
+        this.now.height += (this.wanted.height - this.now.height) * part;
+        const { target, distance, azimuth, height } = this.now;
+        const flat = distance * Math.cos(height);
+        this.camera.position.set(
+            target.x + flat * Math.sin(azimuth),
+            target.y - flat * Math.cos(azimuth),
+            target.z + distance * Math.sin(height),
+        );
+        this.camera.up.set(0, 0, 1);
+        this.camera.near = Math.max(distance - this.home.size * 4, distance * 0.02);
+        this.camera.far = distance + this.home.size * 8;
+        this.camera.updateProjectionMatrix();
+        this.camera.lookAt(target);
+        this.camera.updateMatrixWorld();
+        const after = this.now.azimuth + this.now.height + this.now.distance + this.now.target.length();
+        return Math.abs(after - before) > 1e-6 * distance;
+    }
+
+    resize(aspect: number): void {
+        const atHome = Math.abs(this.wanted.distance - this.fitting()) < 1e-9;
+        this.camera.aspect = aspect;
+        if (atHome) this.wanted.distance = this.fitting();
+    }
+
+    /* The ray through a point of the picture, x and y from -1 to 1. */
+    rayThrough(x: number, y: number): THREE.Ray {
+        this.ray.setFromCamera(this.screen.set(x, y), this.camera);
+        return this.ray.ray;
+    }
+
+    private fitting(): number {
+        const narrow = Math.min(1, this.camera.aspect);
+        return (this.home.size * 1.12) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
+    }
+
+    private jump(): void {
+        this.now.target.copy(this.wanted.target);
+        this.now.distance = this.wanted.distance;
+        this.now.azimuth = this.wanted.azimuth;
+        this.now.height = this.wanted.height;
+    }
+}
+
+/* The same angle, plus whole turns, next to another: the camera goes home the short way. */
+function nearestTurn(angle: number, to: number): number {
+    return angle + Math.round((to - angle) / (2 * Math.PI)) * 2 * Math.PI;
+}

@@ -1,0 +1,155 @@
+/* The force over the last five seconds, one value per tick, and the range that bar, graph and arrow
+ * share. A ring of numbers; drawing takes the least and greatest of each column of pixels. */
+
+const SECONDS = 5;
+const MOST = 8192;
+
+export class ForceHistory {
+    readonly values = new Float32Array(MOST);
+    count = 0; // ever
+    interval = 0.001;
+
+    clear(): void {
+        this.count = 0;
+    }
+
+    /* Lengths of vectors, three numbers each. */
+    add(vectors: Float32Array, interval: number): void {
+        this.interval = interval;
+        for (let i = 0; i + 2 < vectors.length; i += 3)
+            this.values[this.count++ % MOST] = Math.hypot(vectors[i]!, vectors[i + 1]!, vectors[i + 2]!);
+    }
+
+    /* How many make up the time that is shown. */
+    get shown(): number {
+        return Math.min(MOST, Math.round(SECONDS / this.interval));
+    }
+
+    /* The value so many ticks ago; 0 is the last one. */
+    ago(ticks: number): number {
+        return ticks < Math.min(this.count, MOST) ? this.values[(this.count - 1 - ticks) % MOST]! : 0;
+    }
+
+    peak(): number {
+        let most = 0;
+        for (let i = Math.min(this.shown, this.count) - 1; i >= 0; i--) most = Math.max(most, this.ago(i));
+        return most;
+    }
+}
+
+/* The least of 1, 2, 5, 10, 20 ... times `from` that is not below `value`. */
+export function niceRange(value: number, from = 0.05): number {
+    let range = from;
+    for (let i = 0; range < value && i < 30; i++) range *= i % 3 === 1 ? 2.5 : 2;
+    return Number(range.toPrecision(2));
+}
+
+export class Graph {
+    private readonly pen: CanvasRenderingContext2D | null;
+    private width = 0;
+    private height = 0;
+
+    constructor(private readonly canvas: HTMLCanvasElement) {
+        this.pen = canvas.getContext('2d');
+        new ResizeObserver(() => this.resize()).observe(canvas);
+        this.resize();
+    }
+
+    draw(history: ForceHistory, range: number): void {
+        const pen = this.pen;
+        if (!pen || !this.width) return;
+        const left = 30;
+        const bottom = this.height - 17;
+        const top = 7;
+        const wide = this.width - left - 4;
+        const tall = bottom - top;
+        pen.clearRect(0, 0, this.width, this.height);
+        this.axes(pen, left, top, wide, tall, range);
+
+        const shown = history.shown;
+        const have = Math.min(history.count, shown);
+        const columns = Math.max(1, Math.floor(wide));
+        pen.beginPath();
+        let started = false;
+        let first = left;
+        for (let column = 0; column <= columns; column++) {
+            const from = Math.floor(((columns - column) / columns) * (shown - 1));
+            const to = Math.max(0, Math.floor(((columns - column - 1) / columns) * (shown - 1)) + 1);
+            if (from >= have) continue;
+            let most = -1;
+            let least = Infinity;
+            for (let ago = from; ago >= Math.min(to, from); ago--) {
+                const value = history.ago(ago);
+                most = Math.max(most, value);
+                least = Math.min(least, value);
+            }
+            const x = left + (column / columns) * wide;
+            if (!started) {
+                pen.moveTo(x, bottom - Math.min(1, least / range) * tall);
+                first = x;
+            }
+            started = true;
+            pen.lineTo(x, bottom - Math.min(1, most / range) * tall);
+            if (most - least > range / tall) pen.lineTo(x, bottom - Math.min(1, least / range) * tall);
+        }
+        if (!started) return;
+        pen.strokeStyle = '#ffb938';
+        pen.lineWidth = 1.6;
+        pen.lineJoin = 'round';
+        pen.stroke();
+        pen.lineTo(left + wide, bottom);
+        pen.lineTo(first, bottom);
+        pen.fillStyle = 'rgb(255 185 56 / 0.14)';
+        pen.fill();
+    }
+
+    private axes(
+        pen: CanvasRenderingContext2D,
+        left: number,
+        top: number,
+        wide: number,
+        tall: number,
+        range: number,
+    ): void {
+        pen.font = '11px system-ui, "DejaVu Sans", sans-serif';
+        pen.fillStyle = '#a3abb5';
+        pen.strokeStyle = 'rgb(255 255 255 / 0.10)';
+        pen.lineWidth = 1;
+        pen.textBaseline = 'middle';
+        pen.textAlign = 'right';
+        for (let i = 0; i <= 2; i++) {
+            const y = Math.round(top + (tall * i) / 2) + 0.5;
+            pen.beginPath();
+            pen.moveTo(left, y);
+            pen.lineTo(left + wide, y);
+            pen.stroke();
+            pen.fillText(i === 2 ? '0' : label((range * (2 - i)) / 2), left - 5, y);
+        }
+        pen.textBaseline = 'alphabetic';
+        pen.textAlign = 'center';
+        for (let second = 0; second <= SECONDS; second++) {
+            const x = Math.round(left + (wide * (SECONDS - second)) / SECONDS) + 0.5;
+            pen.beginPath();
+            pen.moveTo(x, top);
+            pen.lineTo(x, top + tall);
+            pen.stroke();
+            if (second > 0 && second < SECONDS) pen.fillText(`−${second}`, x, top + tall + 13);
+        }
+        pen.textAlign = 'right';
+        pen.fillText('now', left + wide + 2, top + tall + 13);
+        pen.textAlign = 'left';
+        pen.fillText('N', 2, top + tall + 13);
+        pen.fillText('s', left - 4, top + tall + 13);
+    }
+
+    private resize(): void {
+        const ratio = devicePixelRatio || 1;
+        this.width = this.canvas.clientWidth;
+        this.height = this.canvas.clientHeight;
+        this.canvas.width = Math.round(this.width * ratio);
+        this.canvas.height = Math.round(this.height * ratio);
+        this.pen?.setTransform(ratio, 0, 0, ratio, 0, 0);
+    }
+}
+
+const label = (value: number): string => String(Number(value.toPrecision(2)));

@@ -1,0 +1,162 @@
+/* The viewer: puts the parts together and runs the loop of animation frames. */
+import { Colours } from './colours';
+import { element } from './dom';
+import { ForceCard } from './forcecard';
+import { Hand } from './hand';
+import { Instrument } from './instrument';
+import { listenToKeys } from './keys';
+import { Hints, Trouble, note } from './notices';
+import { Panel, StateLine } from './panel';
+import { Pointer } from './pointer';
+import { Session } from './session';
+import { ToolCard } from './toolcard';
+import { Transport } from './transport';
+import { View } from './view';
+import { publish } from './window';
+
+const trouble = new Trouble();
+
+function start(): void {
+    const canvas = element<HTMLCanvasElement>('picture');
+    if (!document.createElement('canvas').getContext('webgl2')) {
+        return trouble.show(
+            'This browser shows no 3D pictures',
+            'The viewer draws with WebGL 2, and this browser has none, or it is switched off.',
+            'Switch on hardware acceleration in its settings, or open this address in a current Firefox or Chromium.',
+            { text: 'Try again', do: () => location.reload() },
+        );
+    }
+    const view = new View(canvas);
+    const force = new ForceCard();
+    const panel = new Panel();
+    const line = new StateLine();
+    const hints = new Hints();
+    const help = (): void => element<HTMLDialogElement>('help').showModal();
+    const used = (what: string): void => hints.used(what);
+
+    const session = new Session({
+        hello(hello) {
+            line.setTitle(hello.title);
+            panel.setHello(hello);
+            transport.setHello(hello);
+            view.instruments.set(hello.tools, hello.hands);
+            toolCard.setHello(hello);
+            hand.forget();
+            force.clear();
+            instrument.choose(-1);
+            stopped = false;
+            trouble.hide();
+        },
+        surface(surface) {
+            view.setSurface(surface);
+            colours.setHello(session.hello!);
+            view.showEdges(edges.checked);
+            hints.start();
+        },
+        frame(frame) {
+            view.setFrame(frame);
+            colours.frame(frame);
+        },
+        forces: (forces) => force.add(forces),
+        status(status) {
+            transport.update(status);
+            panel.update(status);
+            line.update(status);
+            toolCard.update(status);
+            showStop(status.state === 'stopped', status.message);
+        },
+        hand(news) {
+            hand.news(news);
+            chooseForce();
+        },
+        note,
+        lost(loss) {
+            pointer.end();
+            hand.forget();
+            transport.enable(false);
+            line.lost();
+            hints.hide();
+            const again = { text: 'Try now', do: () => session.connect() };
+            if (!loss.again)
+                return trouble.show(
+                    'The engine asks for a token',
+                    loss.because || 'The token in the address is missing or wrong.',
+                    'Open the whole address that lariat view has printed, with what follows the #.',
+                    again,
+                );
+            trouble.show(
+                'No connection to the engine',
+                loss.because || 'It has ended, or cannot be reached.',
+                'This page connects by itself as soon as the engine is there again. ' +
+                    'If you have ended it, start it anew: lariat view SCENE',
+                again,
+            );
+        },
+    });
+
+    const hand = new Hand(session, view, note);
+    const instrument = new Instrument(session, view, (tool) => {
+        toolCard.show(tool);
+        chooseForce();
+    });
+    const toolCard = new ToolCard(instrument);
+    const transport = new Transport(session, help);
+    const colours = new Colours(view, (field) => (session.field = field));
+    const pointer = new Pointer(view, hand, instrument, used);
+    listenToKeys({ view, hand, instrument, transport, colours, panel, say: note, used, help });
+
+    const edges = element<HTMLInputElement>('edges');
+    edges.addEventListener('change', () => view.showEdges(edges.checked));
+
+    /* Bar and graph show the chosen instrument, or the hand. */
+    function chooseForce(): void {
+        const hello = session.hello;
+        if (!hello) return;
+        const pulling = hand.busy || instrument.chosen < 0;
+        const tool = pulling ? (hand.tool >= 0 ? hand.tool : (hello.hands[0] ?? -1)) : instrument.chosen;
+        if (tool !== session.forceTool) force.history.clear();
+        session.showForcesOf(tool);
+        force.name(pulling ? 'Your pull' : (hello.tools[tool]?.name ?? 'Force'));
+    }
+
+    let stopped = false;
+    function showStop(now: boolean, because: string): void {
+        if (now === stopped) return;
+        stopped = now;
+        if (!now) return trouble.hide();
+        pointer.end();
+        hand.forget();
+        const ways = [{ text: 'Reset', do: () => transport.reset() }];
+        if (session.status?.saved.length)
+            ways.push({ text: 'Load the last checkpoint', do: () => transport.loadLast() });
+        trouble.show(
+            'The simulation has stopped',
+            because,
+            'Reset takes it back to the start. Pull less far, or more slowly, if it stops again.',
+            ...ways,
+        );
+    }
+
+    let before = performance.now();
+    let pictures = 0;
+    let counted = before;
+    function loop(now: number): void {
+        requestAnimationFrame(loop);
+        session.ask(now);
+        hand.update(now, force.range);
+        instrument.update(now);
+        pointer.update();
+        if (view.draw(Math.min(0.1, (now - before) / 1000))) pictures++;
+        before = now;
+        if (now - counted > 1000) {
+            panel.pictureRate = (pictures * 1000) / (now - counted);
+            pictures = 0;
+            counted = now;
+        }
+    }
+    publish(session, view, hand, force);
+    requestAnimationFrame(loop);
+    session.connect();
+}
+
+start();

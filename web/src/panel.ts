@@ -1,0 +1,125 @@
+/* How the engine does: times, deadlines, rates. And what nobody must miss: slow motion. */
+import { element, number, write } from './dom';
+import type { Hello, Status } from './protocol';
+
+type Row = [name: string, value: (s: Status) => string, bad?: (s: Status) => boolean];
+
+const rate = (perSecond: number): string =>
+    perSecond >= 9999.5 ? `${(perSecond / 1000).toFixed(1)} kHz` : `${perSecond.toFixed(0)} Hz`;
+
+export class Panel {
+    pictureRate = 0;
+    private tick = 0.001;
+    private readonly cells: HTMLTableCellElement[] = [];
+    private readonly body = element('panel-rows');
+    private readonly details = element<HTMLDetailsElement>('panel');
+
+    private readonly rows: Row[] = [
+        ['simulated time', (s) => `${s.time.toFixed(2)} s`],
+        ['step', (s) => String(s.step)],
+        ['real-time factor', (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
+        ['since the start', (s) => number(s.real_time_factor, 3)],
+        ['a step, median', (s) => `${number(s.step_us.p50, 1)} µs`],
+        ['99 % below', (s) => `${number(s.step_us.p99, 1)} µs`],
+        ['longest', (s) => `${number(s.step_us.max, 0)} µs`],
+        ['answer, 99.9 % below', (s) => `${number(s.tick_us.p999, 0)} µs`, (s) => this.late(s)],
+        ['deadlines missed', (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
+        ['engine', (s) => rate(s.engine_rate)],
+        ['haptics', (s) => rate(s.haptic_rate)],
+        ['pictures', () => rate(this.pictureRate)],
+        ['given up', (s) => `${s.skipped.toFixed(2)} s`, (s) => s.skipped > 0],
+        ['viewers', (s) => String(s.viewers)],
+    ];
+
+    constructor() {
+        for (const [name] of this.rows) {
+            const row = document.createElement('tr');
+            const head = document.createElement('th');
+            head.scope = 'row';
+            head.textContent = name;
+            const cell = document.createElement('td');
+            row.append(head, cell);
+            this.body.append(row);
+            this.cells.push(cell);
+        }
+        this.details.open = innerWidth > 760 && innerHeight > 700;
+    }
+
+    setHello(hello: Hello): void {
+        this.tick = hello.tick;
+        this.details.title =
+            `${hello.elements} elements, ${hello.nodes} nodes, ${hello.processors} processors, ` +
+            `${hello.isa}, steps of ${(hello.time_step * 1e6).toFixed(1)} µs, Lariat ${hello.lariat}`;
+    }
+
+    toggle(): void {
+        this.details.open = !this.details.open;
+    }
+
+    update(status: Status): void {
+        write(element('panel-short'), `${number(status.real_time_factor_now, 2)} × real time`);
+        if (!this.details.open) return;
+        this.rows.forEach(([, value, bad], i) => {
+            const cell = this.cells[i]!;
+            write(cell, value(status));
+            cell.parentElement!.classList.toggle('bad', bad?.(status) ?? false);
+        });
+    }
+
+    private late(status: Status): boolean {
+        return (status.tick_us.p999 ?? 0) > this.tick * 1e6;
+    }
+
+    private misses(status: Status): string {
+        const share = status.ticks > 0 ? (100 * status.misses) / status.ticks : 0;
+        return `${status.misses} (${share.toFixed(share < 0.1 ? 3 : 1)} %)`;
+    }
+}
+
+/* The title line and the banner. */
+export class StateLine {
+    private readonly line = element('state');
+    private readonly text = element('state-text');
+    private readonly slow = element('slow');
+    private shownSince = 0;
+
+    setTitle(title: string): void {
+        write(element('title'), title || 'Lariat');
+        document.title = `${title || 'Model'} – Lariat`;
+    }
+
+    update(status: Status): void {
+        const texts: Record<Status['state'], string> = {
+            idle: 'not started',
+            playing: status.pace === 1 ? 'real time' : this.pace(status),
+            paused: 'paused',
+            stopped: 'stopped',
+        };
+        const slow = status.slow_motion && status.state === 'playing';
+        this.line.className = slow ? 'slow' : status.state;
+        write(this.text, slow ? 'slow motion' : texts[status.state]);
+        const now = performance.now();
+        if (slow) this.shownSince = now;
+        // Stays for a second, so that it can be read.
+        this.slow.hidden = !slow && (this.shownSince === 0 || now - this.shownSince > 1000);
+        if (slow)
+            write(
+                element('slow-text'),
+                `${number(status.real_time_factor_now, 2)} × real time instead of ${status.pace}: ` +
+                    'the engine cannot keep up',
+            );
+    }
+
+    lost(): void {
+        this.line.className = 'lost';
+        this.slow.hidden = true;
+        this.shownSince = 0;
+        write(this.text, 'no connection');
+    }
+
+    private pace(status: Status): string {
+        return status.pace === 0
+            ? `as fast as it goes: ${number(status.real_time_factor_now, 1)} × real time`
+            : `${status.pace} × real time, as asked for`;
+    }
+}

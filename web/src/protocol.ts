@@ -1,0 +1,228 @@
+/* What server and viewer say to each other: docs/viewer-protocol.md. */
+
+export interface Pose {
+    position: [number, number, number];
+    orientation: [number, number, number, number]; // w, x, y, z
+    opening: number;
+}
+
+export interface ToolInfo {
+    name: string;
+    shape: 'sphere' | 'capsule' | 'grasper' | 'hand';
+    radius: number;
+    length: number;
+    spread: number;
+    rest: Pose;
+}
+
+export interface FieldInfo {
+    name: string;
+    number: number;
+    title: string;
+    unit: string;
+}
+
+export interface Hello {
+    kind: 'hello';
+    protocol: number;
+    lariat: string;
+    title: string;
+    nodes: number;
+    elements: number;
+    time_step: number;
+    tick: number;
+    isa: string;
+    processors: number;
+    threads: number;
+    materials: { name: string; law: string; elements: number; shear_modulus: number }[];
+    tools: ToolInfo[];
+    hands: number[];
+    fields: FieldInfo[];
+    saves: boolean;
+    hand_force: number;
+    tool_speed: number;
+}
+
+export interface Percentiles {
+    p50: number | null;
+    p99: number | null;
+    p999: number | null;
+    max: number | null;
+}
+
+export interface ToolStatus extends Pose {
+    force: [number, number, number];
+    torque: [number, number, number];
+    touching: number;
+    held: number;
+    by: 'nobody' | 'you' | 'other' | 'device';
+}
+
+export interface Status {
+    kind: 'status';
+    state: 'idle' | 'playing' | 'paused' | 'stopped';
+    step: number;
+    time: number;
+    pace: number;
+    step_us: Percentiles;
+    tick_us: Percentiles;
+    ticks: number;
+    misses: number;
+    real_time_factor: number | null;
+    real_time_factor_now: number | null;
+    engine_rate: number;
+    haptic_rate: number;
+    snapshot_rate: number;
+    slow_motion: boolean;
+    lag: number;
+    skipped: number;
+    recording: boolean;
+    message: string;
+    viewers: number;
+    saved: string[];
+    tools: ToolStatus[];
+}
+
+export interface HandNews {
+    kind: 'hand';
+    hand: number;
+    tool: number | null;
+    state: 'holding' | 'missed' | 'refused' | 'lost';
+}
+
+export type Text =
+    | Hello
+    | Status
+    | HandNews
+    | { kind: 'saved'; what: string; name: string }
+    | { kind: 'no_frame' | 'note' | 'error'; text: string };
+
+export interface SurfaceMessage {
+    rest: Float32Array;
+    faces: Uint32Array;
+    material: Uint32Array;
+    body: Uint32Array;
+    processor: Uint32Array;
+}
+
+/* One frame. The arrays look into the message; the object is made once and filled again. */
+export interface Frame {
+    step: number;
+    time: number;
+    hash: string;
+    whole: boolean; // the positions are those that the engine hashed
+    checksum: number;
+    field: number;
+    least: number;
+    most: number;
+    positions: Float32Array;
+    values: Float32Array;
+    tools: Float32Array; // 16 words per tool
+    counts: Uint32Array; // the same words: 14 touching, 15 held
+}
+
+export const TOOL_WORDS = 16;
+export const KIND_SURFACE = 1;
+export const KIND_FRAME = 2;
+export const KIND_FORCES = 3;
+
+export const kindOf = (data: ArrayBuffer): number =>
+    data.byteLength >= 4 ? new DataView(data).getUint32(0, true) : 0;
+
+export function readSurface(data: ArrayBuffer): SurfaceMessage {
+    const head = new Uint32Array(data, 0, 4);
+    const n = head[1]!;
+    const f = head[2]!;
+    if (data.byteLength !== 16 + 16 * n + 24 * f + 4 * n) throw new Error('a surface of wrong length');
+    let at = 16;
+    const part = (words: number): [ArrayBuffer, number, number] => {
+        const place: [ArrayBuffer, number, number] = [data, at, words];
+        at += 4 * words;
+        return place;
+    };
+    return {
+        rest: new Float32Array(...part(3 * n)),
+        faces: new Uint32Array(...part(4 * f)),
+        material: new Uint32Array(...part(f)),
+        body: new Uint32Array(...part(f)),
+        processor: new Uint32Array(...part(n)),
+    };
+}
+
+export function emptyFrame(): Frame {
+    const none = new Float32Array(0);
+    return {
+        step: 0, time: 0, hash: '', whole: true, checksum: 0, field: 0, least: 0, most: 0,
+        positions: none, values: none, tools: none, counts: new Uint32Array(0),
+    };
+}
+
+export function readFrame(data: ArrayBuffer, into: Frame): void {
+    const view = new DataView(data);
+    const n = view.getUint32(4, true);
+    const v = view.getUint32(44, true);
+    const t = view.getUint32(64, true);
+    if (data.byteLength !== 72 + 12 * n + 4 * v + 64 * t) throw new Error('a frame of wrong length');
+    into.step = view.getUint32(8, true) + view.getUint32(12, true) * 2 ** 32;
+    into.time = view.getFloat64(16, true);
+    into.hash = hex(view.getUint32(28, true)) + hex(view.getUint32(24, true));
+    into.field = view.getUint32(40, true);
+    into.least = view.getFloat64(48, true);
+    into.most = view.getFloat64(56, true);
+    into.positions = new Float32Array(data, 72, 3 * n);
+    into.values = new Float32Array(data, 72 + 12 * n, v);
+    into.tools = new Float32Array(data, 72 + 12 * n + 4 * v, TOOL_WORDS * t);
+    into.counts = new Uint32Array(data, 72 + 12 * n + 4 * v, TOOL_WORDS * t);
+    const words = new Uint32Array(data, 72, 3 * n);
+    let a = 0;
+    let b = 0;
+    for (let i = 0; i < words.length; i++) {
+        if (i & 1) b = Math.imul(((b << 5) | (b >>> 27)) ^ words[i]!, 0x9e3779b1);
+        else a = Math.imul(((a << 5) | (a >>> 27)) ^ words[i]!, 0x9e3779b1);
+    }
+    into.checksum = (a ^ b) >>> 0;
+    into.whole = a >>> 0 === view.getUint32(32, true) && b >>> 0 === view.getUint32(36, true);
+}
+
+export interface Forces {
+    tool: number;
+    last: number;
+    interval: number;
+    values: Float32Array; // three per tick, oldest first
+}
+
+export function readForces(data: ArrayBuffer): Forces {
+    const view = new DataView(data);
+    const count = view.getUint32(8, true);
+    if (data.byteLength !== 32 + 12 * count) throw new Error('forces of wrong length');
+    return {
+        tool: view.getUint32(4, true),
+        last: view.getUint32(16, true) + view.getUint32(20, true) * 2 ** 32,
+        interval: view.getFloat64(24, true),
+        values: new Float32Array(data, 32, 3 * count),
+    };
+}
+
+const hex = (word: number): string => word.toString(16).padStart(8, '0');
+
+type Point = readonly [number, number, number];
+
+/* Everything that a viewer may ask for. */
+export type Request =
+    | { do: 'frame'; field: string }
+    | { do: 'forces'; tool: number; after: number }
+    | { do: 'grab'; hand: number; point: Point }
+    | { do: 'pull'; hand: number; to: Point }
+    | { do: 'release'; hand: number }
+    | {
+          do: 'tool';
+          tool: number;
+          position: Point;
+          orientation?: readonly [number, number, number, number];
+          opening?: number;
+      }
+    | { do: 'play' | 'pause' | 'reset' | 'save' }
+    | { do: 'step'; steps: number }
+    | { do: 'pace'; value: number }
+    | { do: 'record'; on: boolean }
+    | { do: 'load'; name?: string };

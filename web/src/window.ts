@@ -1,0 +1,26 @@
+/* window.lariat: what tests and curious people may read (docs/viewer.md). It changes nothing. */
+import type { ForceCard } from './forcecard';
+import type { Hand } from './hand';
+import type { Session } from './session';
+import type { View } from './view';
+
+export function publish(session: Session, view: View, hand: Hand, force: ForceCard): void {
+    const state = {
+        get connected() { return session.connected; },
+        get connections() { return session.connections; },
+        get state() { return session.status?.state ?? 'unknown'; },
+        get step() { return session.frame.step; },
+        get hash() { return session.frame.hash; },
+        get checksum() { return session.frame.checksum; },
+        get frames() { return session.frames; },
+        get torn() { return session.torn; },
+        get pictures() { return view.drawn; },
+        get field() { return session.frame.field; },
+        get hand() { return hand.state; },
+        get force() { return force.history.ago(0); },
+        get forces() { return force.history.count; },
+        get peak() { return force.history.peak(); },
+        get nodes() { return view.surface?.nodes ?? 0; },
+    };
+    Object.defineProperty(window, 'lariat', { value: Object.freeze(state) });
+}

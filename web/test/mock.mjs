@@ -1,0 +1,315 @@
+// A stand-in for the engine's server: speaks docs/viewer-protocol.md over an organ that is no more than a
+// surface with springs. For work on the viewer without the engine, and for tests of what the
+// engine rarely does (slow motion, a stop, refusals).
+//
+//     node test/mock.mjs [--port 8123] [--surface FILE.json] [--dist DIR]
+import { createServer } from 'node:http';
+import { readFileSync, existsSync } from 'node:fs';
+import { dirname, extname, join, normalize } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { WebSocketServer } from 'ws';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
+const POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; " +
+    "font-src 'self'; connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/* A pear of quads: a cube blown up to a sphere, narrower below. */
+function pear(n = 14) {
+    const x = [];
+    const f = [];
+    const known = new Map();
+    const node = (a, b, c) => {
+        const key = `${a},${b},${c}`;
+        if (known.has(key)) return known.get(key);
+        const p = [a, b, c].map((v) => Math.tan(((v / n) * 2 - 1) * (Math.PI / 4)));
+        const l = Math.hypot(...p);
+        const [u, v, w] = p.map((k) => k / l);
+        const wide = 0.035 * (0.75 + 0.35 * w);
+        x.push(u * wide, v * wide * 0.75, 0.045 * w + 0.045);
+        known.set(key, x.length / 3 - 1);
+        return x.length / 3 - 1;
+    };
+    for (let i = 0; i < n; i++)
+        for (let j = 0; j < n; j++) {
+            f.push(node(i, j, 0), node(i, j + 1, 0), node(i + 1, j + 1, 0), node(i + 1, j, 0));
+            f.push(node(i, j, n), node(i + 1, j, n), node(i + 1, j + 1, n), node(i, j + 1, n));
+            f.push(node(i, 0, j), node(i + 1, 0, j), node(i + 1, 0, j + 1), node(i, 0, j + 1));
+            f.push(node(i, n, j), node(i, n, j + 1), node(i + 1, n, j + 1), node(i + 1, n, j));
+            f.push(node(0, i, j), node(0, i, j + 1), node(0, i + 1, j + 1), node(0, i + 1, j));
+            f.push(node(n, i, j), node(n, i + 1, j), node(n, i + 1, j + 1), node(n, i, j + 1));
+        }
+    return { x, f, m: f.filter((_, i) => i % 4 === 0).map((_, i) => (i % 6 === 0 ? 1 : 0)) };
+}
+
+export function mock({ port = 0, surface = null, dist = join(here, '../dist') } = {}) {
+    const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
+    const n = mesh.x.length / 3;
+    const faces = mesh.f.length / 4;
+    const rest = Float32Array.from(mesh.x);
+    const now = rest.slice();
+    const speed = new Float32Array(rest.length);
+    const low = Math.min(...mesh.x.filter((_, i) => i % 3 === 2));
+    const high = Math.max(...mesh.x.filter((_, i) => i % 3 === 2));
+    const materials = 1 + Math.max(...mesh.m);
+
+    const state = {
+        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, message: '', saved: [],
+        slow: false, handStolen: false,
+    };
+    const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
+        rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
+    const tools = [tool, hand('hand 1'), hand('hand 2')];
+    const poses = tools.map((t) => structuredClone(t.rest));
+    const forces = [[], []].map(() => []).concat([[]]);
+    let held = null; // { client, hand, node, target }
+
+    function hand(name) {
+        return { name, shape: 'hand', radius: 0.006, length: 0, spread: 0,
+            rest: { position: [0, 0, 0.1], orientation: [1, 0, 0, 0], opening: 1 } };
+    }
+    function turned() {
+        const a = 0.9 / 2;
+        return [Math.cos(a), 0, Math.sin(a), 0];
+    }
+
+    /* One tick: every node returns to rest; a held one pulls its surroundings along. */
+    function tick() {
+        state.tick++;
+        state.step += 10;
+        let force = [0, 0, 0];
+        if (held) {
+            const h = held.node * 3;
+            for (let i = 0; i < n; i++) {
+                const d = Math.hypot(rest[3 * i] - rest[h], rest[3 * i + 1] - rest[h + 1], rest[3 * i + 2] - rest[h + 2]);
+                const hold = Math.min(1, (rest[3 * i + 2] - low) / (high - low) * 2.5);
+                const share = Math.exp(-((d / 0.026) ** 2)) * hold;
+                for (let k = 0; k < 3; k++) {
+                    const goal = rest[3 * i + k] + share * (held.target[k] - rest[h + k]);
+                    speed[3 * i + k] += (goal - now[3 * i + k]) * 0.004 - speed[3 * i + k] * 0.09;
+                }
+            }
+            force = [0, 1, 2].map((k) => (rest[h + k] - now[h + k]) * 18 + Math.sin(state.tick / 9) * 0.003);
+        } else {
+            for (let i = 0; i < rest.length; i++) speed[i] += (rest[i] - now[i]) * 0.0025 - speed[i] * 0.03;
+        }
+        for (let i = 0; i < rest.length; i++) now[i] += speed[i];
+        for (let t = 0; t < 3; t++) {
+            forces[t].push(t === 1 ? force : [0, 0, 0]);
+            if (forces[t].length > 8192) forces[t].shift();
+        }
+        if (held) poses[1].position = [...held.target];
+    }
+
+    let due = performance.now();
+    const engine = setInterval(() => {
+        const at = performance.now();
+        if (state.state !== 'playing') return (due = at);
+        const every = 1 / (state.pace || 3) / (state.slow ? 0.4 : 1);
+        let most = 60;
+        while (due < at && most-- > 0) {
+            tick();
+            due += every;
+        }
+        if (due < at) due = at;
+    }, 4);
+
+    const hello = () => ({
+        kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
+        surface: { nodes: n, faces }, lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
+        isa: 'mock', processors: 4, threads: 1,
+        materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
+            name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),
+        tools, hands: [1, 2],
+        fields: [
+            { name: 'displacement', number: 1, title: 'displacement', unit: 'm' },
+            { name: 'von_mises', number: 4, title: 'von Mises stress', unit: 'Pa' },
+            { name: 'pressure', number: 8, title: 'pressure', unit: 'Pa' },
+            { name: 'energy', number: 16, title: 'strain energy density', unit: 'J/m³' },
+            { name: 'processor', number: 32, title: 'processor', unit: '' },
+        ],
+        saves: true, hand_force: 5, tool_speed: 1,
+    });
+    const status = () => ({
+        kind: 'status', state: state.state, step: state.step, time: state.step * 1e-4, pace: state.pace,
+        step_us: { p50: 21.0, p99: 30.1, p999: 44.0, max: 120.0 },
+        tick_us: { p50: 231.0, p99: 320.0, p999: 450.0, max: 1520.0 },
+        ticks: state.tick, misses: 0, real_time_factor: 1, real_time_factor_now: state.slow ? 0.4 : 1,
+        engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, lag: 0, skipped: 0,
+        recording: state.recording, message: state.message, viewers: 1, saved: state.saved,
+        tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
+            touching: 0, held: 0, by: 'nobody' })),
+    });
+
+    function surfaceMessage() {
+        const out = new ArrayBuffer(16 + 20 * n + 24 * faces);
+        new Uint32Array(out, 0, 4).set([1, n, faces, 0]);
+        new Float32Array(out, 16, 3 * n).set(rest);
+        new Uint32Array(out, 16 + 12 * n, 4 * faces).set(mesh.f);
+        new Uint32Array(out, 16 + 12 * n + 16 * faces, faces).set(mesh.m);
+        const processor = new Uint32Array(out, 16 + 12 * n + 24 * faces, n);
+        for (let i = 0; i < n; i++) processor[i] = (rest[3 * i] > 0 ? 1 : 0) + (rest[3 * i + 2] > (low + high) / 2 ? 2 : 0);
+        return out;
+    }
+
+    function frameMessage(field) {
+        const info = hello().fields.find((f) => f.name === field);
+        const v = info ? n : 0;
+        const t = tools.length;
+        const out = new ArrayBuffer(72 + 12 * n + 4 * v + 64 * t);
+        const view = new DataView(out);
+        view.setUint32(0, 2, true);
+        view.setUint32(4, n, true);
+        view.setBigUint64(8, BigInt(state.step), true);
+        view.setFloat64(16, state.step * 1e-4, true);
+        view.setUint32(40, info?.number ?? 0, true);
+        view.setUint32(44, v, true);
+        view.setUint32(64, t, true);
+        const positions = new Float32Array(out, 72, 3 * n);
+        positions.set(now);
+        const words = new Uint32Array(out, 72, 3 * n);
+        let a = 0, b = 0;
+        for (let i = 0; i < words.length; i++)
+            if (i & 1) b = Math.imul(((b << 5) | (b >>> 27)) ^ words[i], 0x9e3779b1);
+            else a = Math.imul(((a << 5) | (a >>> 27)) ^ words[i], 0x9e3779b1);
+        view.setUint32(32, a >>> 0, true);
+        view.setUint32(36, b >>> 0, true);
+        if (v) {
+            const values = new Float32Array(out, 72 + 12 * n, n);
+            for (let i = 0; i < n; i++) {
+                const d = [0, 1, 2].map((k) => now[3 * i + k] - rest[3 * i + k]);
+                const length = Math.hypot(...d);
+                values[i] = { displacement: length, von_mises: length * 40000, pressure: d[2] * 30000, energy: length * 900 }[field] ?? 0;
+            }
+            view.setFloat64(48, Math.min(...values), true);
+            view.setFloat64(56, Math.max(...values), true);
+        }
+        const words2 = new Float32Array(out, 72 + 12 * n + 4 * v, 16 * t);
+        for (let i = 0; i < t; i++) {
+            words2.set([...poses[i].position, ...poses[i].orientation, poses[i].opening, ...(forces[i].at(-1) ?? [0, 0, 0])], 16 * i);
+        }
+        return out;
+    }
+
+    function forcesMessage(index, after) {
+        const all = forces[index];
+        const count = Math.min(all.length, Math.max(0, state.tick - after));
+        const out = new ArrayBuffer(32 + 12 * count);
+        const view = new DataView(out);
+        view.setUint32(0, 3, true);
+        view.setUint32(4, index, true);
+        view.setUint32(8, count, true);
+        view.setBigUint64(16, BigInt(state.tick), true);
+        view.setFloat64(24, 0.001, true);
+        new Float32Array(out, 32).set(all.slice(all.length - count).flat());
+        return out;
+    }
+
+    function nearest(point) {
+        let best = Infinity, found = -1;
+        for (let i = 0; i < n; i++) {
+            const d = Math.hypot(now[3 * i] - point[0], now[3 * i + 1] - point[1], now[3 * i + 2] - point[2]);
+            if (d < best) [best, found] = [d, i];
+        }
+        return best < 0.008 ? found : -1;
+    }
+
+    const server = createServer((request, response) => {
+        const path = normalize(request.url.split('?')[0]);
+        const file = join(dist, path === '/' ? 'index.html' : path);
+        if (!existsSync(file)) return response.writeHead(404).end();
+        response.writeHead(200, { 'Content-Type': TYPES[extname(file)] ?? 'application/octet-stream', 'Content-Security-Policy': POLICY });
+        response.end(readFileSync(file));
+    });
+    const sockets = new WebSocketServer({ server, path: '/socket', handleProtocols: (p) => (p.has('lariat.1') ? 'lariat.1' : false) });
+    const faults = []; // what a real server would have cut the viewer off for
+    sockets.on('connection', (socket) => {
+        const say = (message) => socket.send(JSON.stringify(message));
+        say(hello());
+        socket.send(surfaceMessage());
+        say(status());
+        const beat = setInterval(() => say(status()), 100);
+        let messages = 0;
+        const count = setInterval(() => {
+            if (messages > 300) faults.push(`${messages} messages in a second`);
+            messages = 0;
+        }, 1000);
+        socket.on('close', () => {
+            clearInterval(beat);
+            clearInterval(count);
+            if (held?.socket === socket) held = null;
+        });
+        socket.on('message', (data) => {
+            messages++;
+            const m = JSON.parse(data);
+            const acts = {
+                frame: () => socket.send(frameMessage(m.field)),
+                forces: () => socket.send(forcesMessage(m.tool, m.after)),
+                grab() {
+                    const node = nearest(m.point);
+                    if (state.refuse) return say({ kind: 'hand', hand: m.hand, tool: null, state: 'refused' });
+                    if (node < 0) return say({ kind: 'hand', hand: m.hand, tool: 1, state: 'missed' });
+                    held = { socket, node, target: m.point };
+                    say({ kind: 'hand', hand: m.hand, tool: 1, state: 'holding' });
+                },
+                pull: () => held && (held.target = m.to),
+                release: () => (held = null),
+                tool() {
+                    poses[m.tool].position = m.position;
+                    if (m.opening !== undefined) poses[m.tool].opening = m.opening;
+                },
+                play: () => (state.state = 'playing'),
+                pause: () => (state.state = 'paused'),
+                step() {
+                    for (let i = 0; i < m.steps / 10; i++) tick();
+                    state.state = 'paused';
+                },
+                reset() {
+                    now.set(rest);
+                    speed.fill(0);
+                    held = null;
+                    state.step = 0;
+                    state.message = '';
+                    if (state.state === 'stopped') state.state = 'paused';
+                    say({ kind: 'hand', hand: 0, tool: 1, state: 'lost' });
+                },
+                pace: () => (state.pace = m.value),
+                record() {
+                    state.recording = m.on;
+                    if (!m.on) say({ kind: 'saved', what: 'recording', name: 'pear-1.recording' });
+                },
+                save() {
+                    state.saved.push(`pear-${state.saved.length + 1}.checkpoint`);
+                    say({ kind: 'saved', what: 'checkpoint', name: state.saved.at(-1) });
+                },
+                load: () => now.set(rest),
+            };
+            if (!acts[m.do]) return faults.push(`unknown: ${data}`);
+            acts[m.do]();
+        });
+    });
+    return new Promise((resolve) => {
+        server.listen(port, '127.0.0.1', () =>
+            resolve({
+                url: `http://127.0.0.1:${server.address().port}/`,
+                port: server.address().port,
+                state,
+                faults,
+                close() {
+                    clearInterval(engine);
+                    for (const socket of sockets.clients) socket.terminate();
+                    return new Promise((done) => server.close(done));
+                },
+            }),
+        );
+    });
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+    const option = (name) => {
+        const at = process.argv.indexOf(`--${name}`);
+        return at < 0 ? undefined : process.argv[at + 1];
+    };
+    const server = await mock({ port: Number(option('port') ?? 8123), surface: option('surface') ?? null, ...(option('dist') ? { dist: option('dist') } : {}) });
+    console.log(server.url);
+}
