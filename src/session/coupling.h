@@ -5,16 +5,28 @@
  *                                     ^---------- engine: mean force f of the tick before
  *
  * The tool has a small mass of its own and hangs on the hand by spring and damper; the tissue
- * pushes it, and the hand feels spring and damper, never the tissue itself. So what the hand feels
- * is bounded, whatever the tissue does; a tool that the tissue stops stays behind its hand; and
- * nothing that the hand does can move the tool faster than the speed limit. For tools of shape
- * hand the spring's pull is limited instead of the feeling: the tool stays so far behind that the
- * held tissue is pulled no harder.
+ * pushes it, and the hand feels spring and damper, never the tissue itself:
+ *
+ *     m dv/dt = s + f,    s = k (x - y) + b (dx/dt - v),   |s| <= pull
+ *     the hand feels -s, but no more than `feel`, and no more than was paid for
+ *
+ * So the force on the hand is bounded whatever the tissue does, a tool that tissue stops stays
+ * behind its hand, and no hand moves a tool faster than the speed limit. For tools of shape hand
+ * the spring's limit is the force that tissue may be pulled with: the hold cannot pull harder for
+ * long than the spring does.
+ *
+ * One backward Euler step a tick, spring, damper and the tissue's stiffness taken at its end: the
+ * tissue's force comes a tick late, and an explicit step would swing on stiff tissue. How stiff it
+ * is, is seen from the last forces. While the spring is at its limit, the damper works against the
+ * world, so that it still damps; it then lets the tool go just at the speed limit.
  *
  * Passivity. A force that is held for a tick works on a hand that meanwhile moves on: a sampled
- * spring gives back more than it got, k (v T)^2 / 2 a tick. The energy that went in at both ends is
- * counted, and the hand gets only as much force as that pays for in the next tick (Hannaford and
- * Ryu 2002; Franken and others 2011).
+ * spring gives back more than it got, k (v T)^2 / 2 a tick. So the energy that went in at both ends
+ * is counted (Hannaford and Ryu 2002), what the damper ate is struck off, and the hand gets only as
+ * much force as the rest pays for in the next tick, for a hand that changes its speed by no more
+ * than ACCELERATION (Franken and others 2011). At the beginning there is credit for just the force
+ * that a hand at rest would get anyway, k (a T^2)^2 / 2 = 5 uJ; debts are forgotten at ten
+ * microwatts. No hand feels that.
  */
 #ifndef LAR_SESSION_COUPLING_H
 #define LAR_SESSION_COUPLING_H
@@ -27,6 +39,7 @@ typedef struct lar_coupling_limits {
     double tool_speed; /* [m/s] */
     double hand_force; /* hands pull no harder [N] */
     double seconds;    /* of a tick */
+    double time_step;  /* of the engine [s]: no tool goes farther in a step than it may */
 } lar_coupling_limits;
 
 typedef struct lar_coupling {
@@ -34,14 +47,20 @@ typedef struct lar_coupling {
     double mass, stiffness, damping; /* [kg] [N/m] [N s/m] */
     double speed, turn;              /* limits [m/s] [rad/s] */
     double pull, feel;               /* limits of the spring and of what the hand feels [N] */
+    double drag;                     /* of a tool whose spring is at its limit [N s/m] */
     double feel_torque;              /* [N m] */
     double seconds;
     lar_tool_pose hand, tool; /* where they are: the hand now, the tool at the tick's end */
     double hand_velocity[3], tool_velocity[3]; /* [m/s] */
     double tissue[3];                          /* mean force of the last tick [N] */
-    double felt[3];                            /* what the hand feels now [N] */
-    double energy;                             /* that went in and was not given back [J] */
-    bool begun;                                /* the hand has been seen since the reset */
+    double tissue_stiffness;                   /* as seen lately [N/m] */
+    double way[3];                             /* of the tool in the last tick [m] */
+    double spring[3];                          /* what pulls the tool to the hand [N] */
+    double step[3];                            /* of the hand in the last tick [m] */
+    int32_t held;
+    double felt[3];        /* what the hand feels now [N] */
+    double credit, energy; /* at the beginning; that went in and was not given back [J] */
+    bool begun;            /* the hand has been seen since the reset */
 } lar_coupling;
 
 /* At rest with the tool. */
@@ -52,7 +71,8 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
 void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);
 
 /* The hand is at `hand` now: where the tool must be at the end of this tick. Call it in every tick,
- * also when the hand has not moved. */
+ * also when the hand has not moved. A hand that holds nothing is put where it is wanted at once;
+ * when it closes in the same tick in which it is put somewhere, it closes in the next. */
 void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_tool_pose *tool);
 
 /* The tick is done and the tissue pushed the tool with `force`: what the hand feels. Counts are

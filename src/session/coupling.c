@@ -1,0 +1,200 @@
+#include "session/coupling.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "session/quaternion.h"
+
+/* A device like a PHANToM (Massie and Salisbury 1994) gives 8.5 N at most and weighs 75 g. */
+static const double STIFFNESS = 1000, MASS = 0.02;   /* [N/m] [kg] */
+static const double FEEL_MOST = 8;                   /* [N] */
+static const double TORQUE_MOST = 0.2;               /* [N m] */
+static const double TURN_MOST = 20;                  /* [rad/s] */
+static const double LEVER_LEAST = 0.05;              /* [m] */
+static const double ACCELERATION = 100;              /* of a hand, at most [m/s^2] */
+static const double SMOOTH = 0.003;                  /* of the hand's velocity [s] */
+static const double JUMP = 0.005;                    /* no hand goes so far in a tick [m] */
+static const double FORGET = 0.05;                   /* how stiff the tissue was [s] */
+static const double DEBT_MOST = 0.02, FORGIVE = 0.5; /* [J] [s] */
+static const double STIFFEST = 1e5;                  /* [N/m] */
+static const double REACH = 0.5; /* of its radius, a tool's way in a step (lariat.h) */
+static const double CLOSES = 0.25;
+
+static double length_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Shortens a vector to `most`. True when it was longer. */
+static bool shorten(double v[3], double most) {
+    double length = length_of(v);
+    if (length <= most) return false;
+    for (int i = 0; i < 3; i++) v[i] *= most / length;
+    return true;
+}
+
+void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
+                         const lar_coupling_limits *limits) {
+    /* Some room below what the engine refuses: the turn takes its part too. */
+    double engine = REACH * tool->radius / limits->time_step;
+    double speed = fmin(limits->tool_speed, 0.4 * engine), lever = fmax(tool->length, LEVER_LEAST);
+    double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
+    double leak = ACCELERATION * limits->seconds * limits->seconds;
+    *coupling = (lar_coupling){.shape = tool->shape,
+                               .mass = MASS,
+                               .stiffness = STIFFNESS,
+                               .damping = 2 * sqrt(STIFFNESS * MASS),
+                               .speed = speed,
+                               .turn = fmin(TURN_MOST, speed / lever),
+                               .pull = pull,
+                               .feel = fmin(pull, FEEL_MOST),
+                               .drag = pull / speed,
+                               .feel_torque = TORQUE_MOST,
+                               .seconds = limits->seconds,
+                               .credit = 0.5 * STIFFNESS * leak * leak};
+    lar_coupling_reset(coupling, &tool->rest);
+}
+
+void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
+    c->hand = c->tool = *pose;
+    c->begun = false;
+    c->held = 0;
+    c->energy = c->credit;
+    c->tissue_stiffness = 0;
+    for (int i = 0; i < 3; i++)
+        c->hand_velocity[i] = c->tool_velocity[i] = c->tissue[i] = c->way[i] = c->spring[i] =
+            c->felt[i] = c->step[i] = 0;
+}
+
+/* ---- where the tool goes ----------------------------------------------------------------------
+ */
+
+/* The hand has moved: what it has put in, and how fast it is. */
+static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
+    double share = c->seconds / (SMOOTH + c->seconds);
+    for (int i = 0; i < 3; i++) {
+        c->step[i] = c->begun ? hand->position[i] - c->hand.position[i] : 0;
+        c->hand_velocity[i] += share * (c->step[i] / c->seconds - c->hand_velocity[i]);
+    }
+    if (length_of(c->step) > JUMP)
+        for (int i = 0; i < 3; i++) c->step[i] = 0;
+    c->energy -= dot(c->felt, c->step);
+    c->hand = *hand;
+    c->begun = true;
+}
+
+/* The velocity at the end of the tick, when a spring of force `s0 + ds v` acts: ds < 0. */
+static void solve(const lar_coupling *c, const double s0[3], double ds, double v[3]) {
+    double inertia = c->mass / c->seconds;
+    /* The force came with the last tick's motion: half of it is older still. */
+    double tissue = 1.5 * c->tissue_stiffness * c->seconds;
+    for (int i = 0; i < 3; i++)
+        v[i] = (inertia * c->tool_velocity[i] + s0[i] + c->tissue[i]) / (inertia - ds + tissue);
+}
+
+static void pull_tool(lar_coupling *c) {
+    double apart[3], s0[3], v[3];
+    double k = c->stiffness, b = c->damping, t = c->seconds;
+    for (int i = 0; i < 3; i++) {
+        apart[i] = c->hand.position[i] - c->tool.position[i];
+        s0[i] = k * apart[i] + b * c->hand_velocity[i];
+    }
+    solve(c, s0, -(k * t + b), v);
+    for (int i = 0; i < 3; i++) c->spring[i] = s0[i] - (k * t + b) * v[i];
+    if (shorten(c->spring, c->pull)) solve(c, c->spring, -c->drag, v);
+    shorten(v, c->speed);
+    for (int i = 0; i < 3; i++) {
+        c->tool_velocity[i] = v[i];
+        c->way[i] = t * v[i];
+        c->tool.position[i] += c->way[i];
+    }
+}
+
+static void turn_tool(lar_coupling *c) {
+    double angle = lar_quaternion_angle(c->tool.orientation, c->hand.orientation);
+    double most = c->turn * c->seconds;
+    lar_quaternion_blend(c->tool.orientation, c->hand.orientation, angle > most ? most / angle : 1,
+                         c->tool.orientation);
+}
+
+/* A hand that holds nothing has nothing to feel: it is where it is wanted. */
+static void put_hand(lar_coupling *c) {
+    double jump[3];
+    for (int i = 0; i < 3; i++) jump[i] = c->hand.position[i] - c->tool.position[i];
+    bool closes = c->tool.opening >= CLOSES && c->hand.opening < CLOSES;
+    double opening = closes && length_of(jump) > 0 ? c->tool.opening : c->hand.opening;
+    c->tool = c->hand;
+    c->tool.opening = opening;
+    for (int i = 0; i < 3; i++) c->tool_velocity[i] = c->way[i] = c->spring[i] = c->tissue[i] = 0;
+}
+
+void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_tool_pose *tool) {
+    move_hand(coupling, hand);
+    if (coupling->shape == LAR_TOOL_HAND && coupling->held == 0) {
+        put_hand(coupling);
+    } else {
+        pull_tool(coupling);
+        turn_tool(coupling);
+        coupling->tool.opening = hand->opening;
+    }
+    *tool = coupling->tool;
+}
+
+/* ---- what the hand feels ----------------------------------------------------------------------
+ */
+
+/* From two forces and the way between them; forgotten slowly, for a touch comes and goes. */
+static void see_stiffness(lar_coupling *c, const double force[3]) {
+    enum { LEAST_WAY_NM = 1000 };
+    double change[3], way = length_of(c->way);
+    for (int i = 0; i < 3; i++) change[i] = force[i] - c->tissue[i];
+    c->tissue_stiffness *= 1 - c->seconds / (FORGET + c->seconds);
+    if (way > 1e-9 * LEAST_WAY_NM)
+        c->tissue_stiffness = fmax(c->tissue_stiffness, length_of(change) / way);
+    c->tissue_stiffness = fmin(c->tissue_stiffness, STIFFEST);
+}
+
+/* What the hand puts in at least in the next tick, if it feels this force: it goes on as in the
+ * last one, but for what a hand's strength may change. */
+static double income(const lar_coupling *c, const double felt[3]) {
+    return -dot(felt, c->step) - length_of(felt) * ACCELERATION * c->seconds * c->seconds;
+}
+
+/* No more than what the hand and the tissue have put in: see the head of coupling.h. */
+static void pay(lar_coupling *c) {
+    double stored = 0.5 * dot(c->spring, c->spring) / c->stiffness +
+                    0.5 * c->mass * dot(c->tool_velocity, c->tool_velocity);
+    c->energy = fmin(c->energy, stored + c->credit);
+    double earned = income(c, c->felt);
+    if (c->energy > 0) {
+        double share = c->energy + earned >= 0 ? 1 : c->energy / -earned;
+        for (int i = 0; i < 3; i++) c->felt[i] *= share;
+        return;
+    }
+    /* In debt, for a hard blow or a hand that trembles: it pays by moving against a damper. What
+     * it owes is forgotten in time, or a hand at rest would feel nothing for ever. */
+    c->energy = fmax(c->energy, -DEBT_MOST);
+    c->energy += (c->credit - c->energy) * c->seconds / FORGIVE;
+    double strength = fmin(c->feel, length_of(c->spring));
+    for (int i = 0; i < 3; i++) c->felt[i] = -c->damping * c->step[i] / c->seconds;
+    shorten(c->felt, strength);
+    if (income(c, c->felt) < 0)
+        for (int i = 0; i < 3; i++) c->felt[i] = 0;
+}
+
+void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_tool_force *felt) {
+    lar_coupling *c = coupling;
+    c->energy += dot(force->force, c->way);
+    see_stiffness(c, force->force);
+    memcpy(c->tissue, force->force, sizeof c->tissue);
+    c->held = force->held;
+    for (int i = 0; i < 3; i++) c->felt[i] = -c->spring[i];
+    shorten(c->felt, c->feel);
+    pay(c);
+    *felt = *force;
+    memcpy(felt->force, c->felt, sizeof felt->force);
+    shorten(felt->torque, c->feel_torque);
+}

@@ -1,0 +1,264 @@
+/* The coupling between a hand and a tool: bounded, passive at 1 kHz, and where it should be. */
+#include "testing.h"
+
+#include "session/coupling.h"
+
+static const double TICK = 0.001, STEP = 0.0001;
+
+static const lar_tool_info PROBE = {
+    .name = "probe", .shape = LAR_TOOL_SPHERE, .radius = 0.005, .rest = {.orientation = {1}}};
+static const lar_tool_info HAND = {.name = "hand",
+                                   .shape = LAR_TOOL_HAND,
+                                   .radius = 0.008,
+                                   .rest = {.orientation = {1}, .opening = 1}};
+
+static lar_coupling couple(const lar_tool_info *tool, double tool_speed, double hand_force) {
+    lar_coupling coupling;
+    lar_coupling_create(&coupling, tool,
+                        &(lar_coupling_limits){tool_speed, hand_force, TICK, STEP});
+    return coupling;
+}
+
+/* ---- tissue: a wall at z = 0, elastic, felt as the mean over a tick's even way ----------------
+ */
+
+typedef struct wall {
+    double stiffness; /* [N/m] */
+    bool held;        /* pulls as well as pushes */
+} wall;
+
+/* The mean of -k min(z, 0) from a to b: the integral is exact, so its work is the energy's change.
+ */
+static double wall_force(const wall *w, double a, double b) {
+    double low = w->held ? a : fmin(a, 0), high = w->held ? b : fmin(b, 0);
+    if (a == b) return -w->stiffness * low;
+    return -0.5 * w->stiffness * (high * high - low * low) / (b - a);
+}
+
+typedef struct world {
+    lar_coupling coupling;
+    wall wall;
+    lar_tool_pose hand, tool;
+    lar_tool_force felt;
+    double hand_work; /* put in [J] */
+    double fastest;   /* of the tool [m/s] */
+} world;
+
+static void tick(world *w, double x, double z) {
+    double before[3] = {w->hand.position[0], 0, w->hand.position[2]}, from = w->tool.position[2];
+    double from_x = w->tool.position[0];
+    w->hand.position[0] = x;
+    w->hand.position[2] = z;
+    w->hand_work -= w->felt.force[0] * (x - before[0]) + w->felt.force[2] * (z - before[2]);
+    lar_coupling_follow(&w->coupling, &w->hand, &w->tool);
+    double to = w->tool.position[2];
+    double speed = hypot(to - from, w->tool.position[0] - from_x) / TICK;
+    w->fastest = fmax(w->fastest, speed);
+    lar_tool_force tissue = {.force = {0, 0, wall_force(&w->wall, from, to)}, .held = w->wall.held};
+    lar_coupling_feel(&w->coupling, &tissue, &w->felt);
+}
+
+static world start(const lar_tool_info *tool, double stiffness, double z) {
+    world w = {.coupling = couple(tool, 1, 5), .wall = {.stiffness = stiffness}};
+    w.hand = w.tool = tool->rest;
+    w.hand.position[2] = w.tool.position[2] = z;
+    lar_coupling_reset(&w.coupling, &w.tool);
+    tick(&w, 0, z);
+    return w;
+}
+
+/* A hand whose speed changes by at most `acceleration`: towards targets that change. */
+static uint64_t seed;
+static double any(void) {
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(seed >> 11) * 0x1p-53;
+}
+
+static double move(double at, double *velocity, double target, double acceleration, double most) {
+    double wanted = fmax(-most, fmin(most, 30 * (target - at)));
+    double change = wanted - *velocity, limit = acceleration * TICK;
+    *velocity += fmax(-limit, fmin(limit, change));
+    return at + *velocity * TICK;
+}
+
+/* ---- energy -----------------------------------------------------------------------------------
+ */
+
+/* Whatever a hand does to a stiff wall: it never gets back more than it put in. */
+static void test_hand_never_gets_more_than_it_gave(void **state) {
+    (void)state;
+    double least = 0, credit = couple(&PROBE, 1, 5).credit;
+    for (int run = 0; run < 300; run++) {
+        seed = (uint64_t)run + 1;
+        world w = start(&PROBE, pow(10, 2 + 3 * any()), 0.01);
+        double vx = 0, vz = 0, tx = 0, tz = 0, most = pow(10, -2 + 2 * any());
+        for (int i = 0; i < 3000; i++) {
+            if (any() < 0.02) tx = 0.04 * (any() - 0.5), tz = 0.04 * (any() - 0.6);
+            double x = move(w.hand.position[0], &vx, tx, 70, most);
+            tick(&w, x, move(w.hand.position[2], &vz, tz, 70, most));
+            least = fmin(least, w.hand_work);
+        }
+    }
+    printf("least energy of the hand %.3g J, credit %.3g J\n", least, credit);
+    assert_true(least >= -credit);
+}
+
+/* A hand that trembles as fast as it is looked at, against a wall or in the air: what a damper of
+ * samples would feed, the account stops. */
+static void test_trembling_is_not_fed(void **state) {
+    (void)state;
+    double credit = couple(&PROBE, 1, 5).credit;
+    for (int run = 0; run < 4; run++) {
+        world w = start(&PROBE, run & 1 ? 3000 : 0, 0.0);
+        double v = 0, z = run & 2 ? -0.004 : 0, least = 0;
+        for (int i = 0; i < 200; i++) tick(&w, 0, z * fmin(1, i / 100.0));
+        double given = w.hand_work;
+        for (int i = 0; i < 2000; i++) {
+            v += (i & 1 ? 90 : -90) * TICK * (i == 0 ? 0.5 : 1);
+            z += v * TICK;
+            tick(&w, 0, z);
+            least = fmin(least, w.hand_work);
+        }
+        printf("trembling: %.3g J given before, %.3g J after, least %.3g J\n", given, w.hand_work,
+               least);
+        assert_true(least >= -credit * (1 + 2.2 / 0.5)); /* what is forgotten in 2.2 s */
+    }
+}
+
+/* A device of 100 g in a soft grip, its force a tick late, pressed on a wall as stiff as bone: it
+ * comes to rest. */
+static void test_device_rests_on_stiff_wall(void **state) {
+    (void)state;
+    const double stiffness[] = {300, 3000, 30000};
+    for (int i = 0; i < 3; i++) {
+        world w = start(&PROBE, stiffness[i], 0.005);
+        double z = 0.005, v = 0, late = 0, swing = 0;
+        const double mass = 0.1, grip = 200, loss = 1, fine = TICK / 20;
+        for (int t = 0; t < 4000; t++) {
+            double force = late;
+            late = w.felt.force[2];
+            double lowest = z, highest = z;
+            for (int k = 0; k < 20; k++) {
+                v += fine / mass * (force + grip * (-0.02 - z) - loss * v);
+                z += fine * v;
+                lowest = fmin(lowest, z), highest = fmax(highest, z);
+            }
+            if (t > 3000) swing = fmax(swing, highest - lowest);
+            tick(&w, 0, z);
+        }
+        printf("wall %g N/m: force %.3f N, swing %.2g m in a tick\n", stiffness[i], w.felt.force[2],
+               swing);
+        assert_true(w.felt.force[2] > 1);
+        assert_true(swing < 1e-6);
+    }
+}
+
+/* ---- bounds -----------------------------------------------------------------------------------
+ */
+
+static void test_force_and_speed_are_bounded(void **state) {
+    (void)state;
+    world w = start(&PROBE, 1e5, 0.01);
+    double most = 0, x = 0, z = 0;
+    for (int i = 0; i < 4000; i++) { /* a hand out of its mind */
+        if (i < 1000 || i % 100 == 0) x = 0.5 * (any() - 0.5), z = 0.5 * (any() - 0.5);
+        tick(&w, x, z);
+        most = fmax(most, hypot(w.felt.force[0], w.felt.force[2]));
+        assert_true(isfinite(w.felt.force[0]) && isfinite(w.tool.position[2]));
+    }
+    printf("a wild hand: %.4f N at most, %.4f m/s\n", most, w.fastest);
+    assert_true(most <= 8.0001 && most > 1);
+    assert_true(w.fastest <= 1.0001 && w.fastest > 0.9);
+}
+
+/* Held tissue is pulled with the limit, and not harder for long, however far the hand goes. */
+static void test_hand_pulls_no_harder(void **state) {
+    (void)state;
+    const double stiffness[] = {50, 500, 5000};
+    for (int i = 0; i < 3; i++) {
+        world w = start(&HAND, stiffness[i], 0);
+        w.wall.held = true;
+        double z = 0, v = 0, most = 0, force = 0;
+        for (int t = 0; t < 3000; t++) {
+            double from = w.tool.position[2];
+            z = move(z, &v, 0.3, 20, 1);
+            tick(&w, 0, z);
+            force = fabs(wall_force(&w.wall, from, w.tool.position[2]));
+            most = fmax(most, force);
+        }
+        printf("tissue %g N/m: pulled with %.3f N, at most %.3f N\n", stiffness[i], force, most);
+        assert_true(fabs(force - 5) < 0.01);
+        assert_true(most < 5.5);
+        assert_true(fabs(w.felt.force[2]) <= 5.0001);
+    }
+}
+
+/* ---- following --------------------------------------------------------------------------------
+ */
+
+static void test_tool_arrives_without_swinging(void **state) {
+    (void)state;
+    world w = start(&PROBE, 0, 0.1);
+    double beyond = 0;
+    for (int t = 0; t < 300; t++) {
+        tick(&w, 0, 0.12);
+        beyond = fmax(beyond, w.tool.position[2] - 0.12);
+    }
+    assert_true(fabs(w.tool.position[2] - 0.12) < 1e-6);
+    assert_true(beyond < 0.002);
+    assert_true(fabs(w.felt.force[2]) < 1e-3);
+}
+
+static void test_free_hand_is_put(void **state) {
+    (void)state;
+    world w = start(&HAND, 0, 0);
+    tick(&w, 0.2, 0.3);
+    assert_true(w.tool.position[0] == 0.2 && w.tool.position[2] == 0.3);
+    assert_true(w.tool.opening == 1);
+    w.hand.opening = 0; /* closes elsewhere: it is put there first, and closes then */
+    tick(&w, 0.1, 0.1);
+    assert_true(w.tool.position[0] == 0.1 && w.tool.opening == 1);
+    tick(&w, 0.1, 0.1);
+    assert_true(w.tool.opening == 0);
+}
+
+static void test_turns_no_faster(void **state) {
+    (void)state;
+    lar_tool_info shaft = PROBE;
+    shaft.length = 0.2;
+    world w = start(&shaft, 0, 0);
+    w.hand.orientation[0] = cos(0.5), w.hand.orientation[2] = sin(0.5); /* 1 rad about y */
+    tick(&w, 0, 0);
+    double angle = 2 * atan2(w.tool.orientation[2], w.tool.orientation[0]);
+    assert_true(angle > 0.9 * 0.005 && angle < 1.1 * 0.005); /* 5 rad/s: its end goes 1 m/s */
+    for (int t = 0; t < 300; t++) tick(&w, 0, 0);
+    assert_true(fabs(2 * atan2(w.tool.orientation[2], w.tool.orientation[0]) - 1) < 1e-9);
+}
+
+static void test_reset_forgets(void **state) {
+    (void)state;
+    world w = start(&PROBE, 1000, 0.001);
+    for (int t = 0; t < 100; t++) tick(&w, 0, 0.001 - 1e-4 * t);
+    assert_true(w.felt.force[2] > 1);
+    lar_tool_pose pose = {.position = {0, 0, 0.05}, .orientation = {1}};
+    lar_coupling_reset(&w.coupling, &pose);
+    lar_coupling_follow(&w.coupling, &pose, &w.tool);
+    lar_coupling_feel(&w.coupling, &(lar_tool_force){.held = 0}, &w.felt);
+    assert_true(w.felt.force[2] == 0);
+    assert_true(w.tool.position[2] == 0.05);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hand_never_gets_more_than_it_gave),
+        cmocka_unit_test(test_trembling_is_not_fed),
+        cmocka_unit_test(test_device_rests_on_stiff_wall),
+        cmocka_unit_test(test_force_and_speed_are_bounded),
+        cmocka_unit_test(test_hand_pulls_no_harder),
+        cmocka_unit_test(test_tool_arrives_without_swinging),
+        cmocka_unit_test(test_free_hand_is_put),
+        cmocka_unit_test(test_turns_no_faster),
+        cmocka_unit_test(test_reset_forgets),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
