@@ -39,11 +39,16 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
 }
 
 static lar_status make_tools(lar_session *session, lar_error *error) {
+    const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
+                                        .hand_force = session->options.hand_force,
+                                        .seconds =
+                                            (double)session->tick_steps * session->time_step};
     lar_status status = LAR_OK;
     session->tools = lar_simulation_tool_count(session->simulation);
     for (int32_t i = 0; i < session->tools && !status; i++) {
         lar_session_tool *tool = &session->tool[i];
         status = lar_simulation_tool(session->simulation, i, &tool->info, error);
+        lar_coupling_create(&tool->coupling, &tool->info, &limits);
         if (!status)
             status = lar_mailbox_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
     }
@@ -53,7 +58,10 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
 }
 
 static void destroy(lar_session *session) {
-    for (int32_t i = 0; i < session->tools; i++) lar_mailbox_destroy(&session->tool[i].hand);
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_device_close(session->tool[i].device);
+        lar_mailbox_destroy(&session->tool[i].hand);
+    }
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
     lar_mailbox_destroy(&session->view);

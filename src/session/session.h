@@ -20,9 +20,12 @@
 #define LAR_SESSION_SESSION_H
 
 #include "engine/simulation.h"
+#include "session/coupling.h"
+#include "session/device.h"
 #include "session/exchange.h"
 #include "session/history.h"
 #include "session/pace.h"
+#include "session/recording_file.h"
 #include "session/requests.h"
 #include "session/snapshot.h"
 
@@ -37,12 +40,15 @@ typedef struct lar_session_view {
 
 /* A tool and whoever moves it: the engine's. */
 typedef struct lar_session_tool {
-    lar_mailbox hand;     /* lar_tool_pose, from tool_move */
-    lar_tool_info info;   /* constant */
-    bool led;             /* somebody has moved it since the start or the last reset */
-    lar_tool_pose target; /* where its hand is */
-    lar_tool_pose pose;   /* where it is */
-    lar_tool_force force; /* of the last tick */
+    lar_mailbox hand;      /* lar_tool_pose, from tool_move */
+    lar_tool_info info;    /* constant */
+    lar_device *device;    /* NULL: it listens to tool_move */
+    bool led;              /* somebody has moved it since the start or the last reset or load */
+    lar_coupling coupling; /* between the hand and it */
+    lar_tool_pose target;  /* where its hand is */
+    lar_tool_pose pose;    /* where it is at the tick's end */
+    lar_tool_pose sent;    /* where the simulation was told to move it */
+    lar_tool_force force;  /* what the hand feels; the tissue's where nobody leads it */
 } lar_session_tool;
 
 struct lar_session {
@@ -68,11 +74,24 @@ struct lar_session {
     bool ended;
 };
 
-/* The engine's thread, or whoever holds requests.lock while there is none. */
+/* All that follows belongs to the engine's thread, or to whoever holds requests.lock while there is
+ * none. */
+
 void *lar_session_run(void *session);
 void lar_session_obey(lar_session *session, const lar_request *request);
+/* Tells everybody how it stands; with `quantiles` also what has to be summed up. */
 void lar_session_publish(lar_session *session, bool quantiles);
-/* The tools are where the simulation has them, and nobody has moved them. */
+/* Into the recording, when there is one. */
+void lar_session_note(lar_session *session, const lar_record *record);
+
+/* The tools are where the simulation has them, and nobody leads them. */
 void lar_session_take_tools(lar_session *session);
+/* Before a tick: hands, couplings, tools. */
+lar_status lar_session_move_tools(lar_session *session, lar_error *error);
+/* Behind it: forces, to the hands and into the history. */
+void lar_session_feel_tools(lar_session *session);
+/* Instead of both while nothing moves: forces shrink to `share` of what they are. True when there
+ * is a device, which wants to be looked after in every tick. */
+bool lar_session_idle_tools(lar_session *session, double share);
 
 #endif

@@ -5,77 +5,9 @@
 #include "base/clock.h"
 #include "session/session.h"
 
-/* Not in every build yet. */
-extern __typeof__(lar_simulation_reset) lar_simulation_reset __attribute__((weak));
-extern __typeof__(lar_simulation_save) lar_simulation_save __attribute__((weak));
-extern __typeof__(lar_simulation_load) lar_simulation_load __attribute__((weak));
-
 /* How long a force takes to fade when the engine pauses [s]. */
 static const double FADE = 0.05;
-static const int64_t LONG = 3600LL * 1000000000; /* [ns] */
-
-/* ---- tools --------------------------------------------------------------------------------- */
-
-void lar_session_take_tools(lar_session *session) {
-    for (int32_t i = 0; i < session->tools; i++) {
-        lar_session_tool *tool = &session->tool[i];
-        lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
-        lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
-        tool->target = tool->pose;
-        tool->force = (lar_tool_force){0};
-        tool->led = false;
-    }
-}
-
-static void follow(const lar_session *session, lar_session_tool *tool, uint64_t steps) {
-    double way[3], length = 0;
-    double most = session->options.tool_speed * (double)steps * session->time_step;
-    for (int i = 0; i < 3; i++) {
-        way[i] = tool->target.position[i] - tool->pose.position[i];
-        length += way[i] * way[i];
-    }
-    double share = length > most * most ? most / sqrt(length) : 1;
-    for (int i = 0; i < 3; i++) tool->pose.position[i] += share * way[i];
-    memcpy(tool->pose.orientation, tool->target.orientation, sizeof tool->pose.orientation);
-    tool->pose.opening = tool->target.opening;
-}
-
-static lar_status move_tools(lar_session *session, uint64_t steps, lar_error *error) {
-    lar_status status = LAR_OK;
-    for (int32_t i = 0; i < session->tools && !status; i++) {
-        lar_session_tool *tool = &session->tool[i];
-        bool fresh;
-        const lar_tool_pose *hand = lar_mailbox_newest(&tool->hand, &fresh);
-        if (fresh) {
-            tool->target = *hand;
-            tool->led = true;
-        }
-        if (!tool->led) continue;
-        follow(session, tool, steps);
-        status = lar_simulation_tool_move(session->simulation, i, &tool->pose, steps, error);
-    }
-    return status;
-}
-
-static void feel_tools(lar_session *session) {
-    lar_history_begin(&session->history);
-    for (int32_t i = 0; i < session->tools; i++) {
-        lar_session_tool *tool = &session->tool[i];
-        lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
-        lar_history_put(&session->history, i, tool->force.force);
-    }
-    lar_history_end(&session->history);
-}
-
-static void drop_forces(lar_session *session, double share) {
-    for (int32_t i = 0; i < session->tools; i++) {
-        lar_tool_force *force = &session->tool[i].force;
-        for (int k = 0; k < 3; k++) {
-            force->force[k] *= share;
-            force->torque[k] *= share;
-        }
-    }
-}
+static const int64_t LONG = 3600000000000; /* [ns] */
 
 /* ---- telling ------------------------------------------------------------------------------- */
 
@@ -99,13 +31,17 @@ static void serve_snapshots(lar_session *session) {
     if (served || session->requests.ring_the_bell) lar_requests_ring(&session->requests);
 }
 
+void lar_session_note(lar_session *session, const lar_record *record) {
+    (void)session, (void)record;
+}
+
 /* ---- playing ------------------------------------------------------------------------------- */
 
 static void stop(lar_session *session, const lar_error *error) {
     session->status.state = LAR_SESSION_STOPPED;
     memcpy(session->status.message, error->message, sizeof session->status.message);
     lar_pace_stop(&session->pace);
-    drop_forces(session, 0);
+    lar_session_idle_tools(session, 0);
     lar_session_publish(session, true);
 }
 
@@ -126,7 +62,7 @@ static void tick(lar_session *session) {
     uint64_t steps = session->tick_steps;
     if (session->stepping && session->steps_left < steps) steps = session->steps_left;
     lar_pace_begin(&session->pace, steps, (double)steps * session->time_step);
-    lar_status status = move_tools(session, steps, &error);
+    lar_status status = lar_session_move_tools(session, &error);
     int64_t begin = lar_clock_ns();
     if (!status) status = lar_simulation_advance(session->simulation, steps, &error);
     if (status) {
@@ -134,7 +70,7 @@ static void tick(lar_session *session) {
         return;
     }
     lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
-    feel_tools(session);
+    lar_session_feel_tools(session);
     session->pace.total.exchanges++;
     lar_pace_answered(&session->pace);
     lar_session_publish(session, lar_pace_look(&session->pace));
@@ -157,8 +93,6 @@ static void arrive(lar_session *session) {
 static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
     lar_simulation *simulation = session->simulation;
     lar_status status = LAR_OK;
-    if (!lar_simulation_reset || !lar_simulation_save || !lar_simulation_load)
-        return lar_fail(error, LAR_ERROR_UNSUPPORTED, "this build cannot go back, save or load");
     switch (request->kind) {
     case LAR_REQUEST_RESET:
         status = lar_simulation_reset(simulation, error);
@@ -230,17 +164,18 @@ static bool snapshot_is_wanted(void *context) {
     return lar_snapshots_wanted(&session->snapshots);
 }
 
-/* Not playing: the forces fade, and then nothing happens until somebody asks for something. */
+/* Not playing: the forces fade, and then nothing happens until somebody asks for something, or a
+ * device has to be looked after. */
 static void rest(lar_session *session, double *fade) {
-    int64_t wake = lar_clock_ns() + LONG;
-    if (*fade > 0) {
-        double seconds = (double)session->tick_steps * session->time_step;
-        double left = fmax(0, *fade - seconds);
-        drop_forces(session, left / *fade);
-        *fade = left;
-        lar_session_publish(session, false);
-        wake = lar_clock_ns() + (int64_t)(1e9 * fmin(seconds, FADE));
-    }
+    double seconds = (double)session->tick_steps * session->time_step;
+    double left = fmax(0, *fade - seconds);
+    int64_t wake = lar_clock_ns() + (int64_t)(1e9 * fmin(seconds, FADE));
+    bool device = lar_session_idle_tools(session, *fade > 0 ? left / *fade : 0);
+    if (device) session->pace.total.exchanges++;
+    bool look = lar_pace_look(&session->pace);
+    if (*fade > 0 || (device && look)) lar_session_publish(session, look);
+    if (*fade <= 0 && !device) wake += LONG;
+    *fade = left;
     serve_snapshots(session);
     lar_requests_sleep(&session->requests, snapshot_is_wanted, session, wake);
 }

@@ -1,0 +1,115 @@
+/* From hands to tools and back, once in a tick. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "session/session.h"
+
+static lar_device_tick tick_of(const lar_session *session) {
+    uint64_t step = lar_simulation_steps(session->simulation);
+    return (lar_device_tick){.step = step,
+                             .time = (double)step * session->time_step,
+                             .seconds = (double)session->tick_steps * session->time_step,
+                             .now = (uint64_t)lar_clock_ns(),
+                             .paused = session->status.state != LAR_SESSION_PLAYING};
+}
+
+void lar_session_take_tools(lar_session *session) {
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_session_tool *tool = &session->tool[i];
+        lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
+        lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
+        tool->sent = tool->target = tool->pose;
+        tool->force = (lar_tool_force){0};
+        tool->led = false;
+        lar_coupling_reset(&tool->coupling, &tool->pose);
+        if (tool->device) lar_device_reset(tool->device);
+    }
+}
+
+/* Where the hands are. */
+static void look_at_hands(lar_session *session) {
+    const lar_device_tick now = tick_of(session);
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_session_tool *tool = &session->tool[i];
+        bool fresh;
+        const lar_tool_pose *hand = lar_mailbox_newest(&tool->hand, &fresh);
+        if (tool->device)
+            fresh = lar_device_poll(tool->device, &now, &tool->target);
+        else if (fresh)
+            tool->target = *hand;
+        tool->led = tool->led || fresh;
+    }
+}
+
+/* A tool whose place did not change rests where it was sent. */
+static lar_status send_tool(lar_session *session, int32_t i, lar_error *error) {
+    lar_session_tool *tool = &session->tool[i];
+    if (memcmp(&tool->sent, &tool->pose, sizeof tool->pose) == 0) return LAR_OK;
+    lar_status status =
+        lar_simulation_tool_move(session->simulation, i, &tool->pose, session->tick_steps, error);
+    if (!status) {
+        tool->sent = tool->pose;
+        lar_session_note(session, &(lar_record){.kind = LAR_RECORD_MOVE,
+                                                .step = lar_simulation_steps(session->simulation),
+                                                .tool = i,
+                                                .steps = session->tick_steps,
+                                                .pose = tool->pose});
+    } else if (status == LAR_ERROR_ARGUMENT) {
+        /* Nowhere to go, or too far for one tick: it stays, and starts anew from there. */
+        lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
+        lar_coupling_reset(&tool->coupling, &tool->pose);
+        status = LAR_OK;
+    }
+    return status;
+}
+
+lar_status lar_session_move_tools(lar_session *session, lar_error *error) {
+    lar_status status = LAR_OK;
+    look_at_hands(session);
+    for (int32_t i = 0; i < session->tools && !status; i++) {
+        lar_session_tool *tool = &session->tool[i];
+        if (!tool->led) continue;
+        lar_coupling_follow(&tool->coupling, &tool->target, &tool->pose);
+        status = send_tool(session, i, error);
+    }
+    return status;
+}
+
+static void tell_devices(lar_session *session) {
+    const lar_device_tick now = tick_of(session);
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_session_tool *tool = &session->tool[i];
+        if (tool->device) lar_device_feel(tool->device, &now, &tool->force, &tool->pose);
+    }
+}
+
+void lar_session_feel_tools(lar_session *session) {
+    lar_history_begin(&session->history);
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_session_tool *tool = &session->tool[i];
+        lar_tool_force tissue = {0};
+        lar_simulation_tool_force(session->simulation, i, &tissue, NULL);
+        if (tool->led)
+            lar_coupling_feel(&tool->coupling, &tissue, &tool->force);
+        else
+            tool->force = tissue;
+        lar_history_put(&session->history, i, tool->force.force);
+    }
+    lar_history_end(&session->history);
+    tell_devices(session);
+}
+
+bool lar_session_idle_tools(lar_session *session, double share) {
+    bool device = false;
+    look_at_hands(session);
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_tool_force *force = &session->tool[i].force;
+        for (int k = 0; k < 3; k++) {
+            force->force[k] *= share;
+            force->torque[k] *= share;
+        }
+        device = device || session->tool[i].device;
+    }
+    tell_devices(session);
+    return device;
+}
