@@ -178,18 +178,21 @@ static lar_status write_file(const char *path, const unsigned char *data, size_t
                     path, strerror(cause ? cause : EIO));
 }
 
-lar_status lar_checkpoint_write(const char *path, const lar_domain *whole, const lar_state *state,
-                                const lar_tools *tools, lar_error *error) {
+lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const lar_state *state,
+                               const lar_tools *tools, lar_bytes *bytes, lar_error *error) {
     lar_status status = check_finite(path, whole, state, error);
-    if (!status) status = spare_others(path, error);
     if (status) return status;
-    size_t bytes = file_bytes((size_t)tools->count, (size_t)tools->hold_count,
-                              (size_t)whole->model->mesh.node_count);
-    unsigned char *data = fill(whole, state, tools, bytes);
-    if (!data) return lar_fail_memory(error, bytes, path);
-    status = write_file(path, data, bytes, error);
-    free(data);
-    return status;
+    lar_bytes made = {.size = file_bytes((size_t)tools->count, (size_t)tools->hold_count,
+                                         (size_t)whole->model->mesh.node_count)};
+    made.data = fill(whole, state, tools, made.size);
+    if (!made.data) return lar_fail_memory(error, made.size, path);
+    *bytes = made;
+    return LAR_OK;
+}
+
+lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
+    lar_status status = spare_others(path, error);
+    return status ? status : write_file(path, bytes->data, bytes->size, error);
 }
 
 /* ---- reading -------------------------------------------------------------------------------- */

@@ -22,10 +22,13 @@ typedef struct lar_checkpoint {
     const double (*u)[3], (*v)[3]; /* [nodes of the mesh] */
 } lar_checkpoint;
 
-/* Writes state and tools of the whole model: beside first, then renamed when all of it is on the
- * disk. A state that is not finite is refused, and so is a path where something else stands. */
-lar_status lar_checkpoint_write(const char *path, const lar_domain *whole, const lar_state *state,
-                                const lar_tools *tools, lar_error *error);
+/* State and tools of the whole model as the bytes of a file, which the caller frees. A state that
+ * is not finite is refused. `path` is for messages. */
+lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const lar_state *state,
+                               const lar_tools *tools, lar_bytes *bytes, lar_error *error);
+/* Writes them: beside first, then renamed when all of it is on the disk. A path where something
+ * else stands is refused. */
+lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error);
 
 /* Checks every byte. `path` is for messages; `bytes` must stay, at an address that is a multiple of
  * 8, as malloc gives it. */

@@ -48,4 +48,11 @@ uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state);
 /* Bytes of memory that a step can touch: domain and state, without the model. */
 size_t lar_simulation_bytes(const lar_simulation *simulation);
 
+/* lar_simulation_save and lar_simulation_load between advances, without the file: only copying.
+ * `path` is for messages; the caller frees the bytes. */
+lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,
+                               lar_error *error);
+lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
+                                 const lar_bytes *bytes, lar_error *error);
+
 #endif

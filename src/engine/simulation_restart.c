@@ -20,36 +20,49 @@ static lar_status check_path(const char *path, const char *call, lar_error *erro
     return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs the path of a checkpoint", call);
 }
 
-lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,
+lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,
                                lar_error *error) {
     /* Bringing the state together changes nothing that the caller sees. */
     lar_simulation *own = (lar_simulation *)simulation;
-    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_save", error);
-    if (!status) status = check_path(path, "lar_simulation_save", error);
-    if (status) return status;
     if (simulation->trip.kind)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "%s: is not written: the run has broken off, and would again from here; "
                         "load an earlier checkpoint or go back to the start",
                         path);
-    status = lar_simulation_gather(own, error);
+    lar_status status = lar_simulation_gather(own, error);
     if (status) return status;
-    return lar_checkpoint_write(path, &simulation->domain, &simulation->state, &simulation->tools,
-                                error);
+    return lar_checkpoint_pack(path, &simulation->domain, &simulation->state, &simulation->tools,
+                               bytes, error);
+}
+
+lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
+                                 const lar_bytes *bytes, lar_error *error) {
+    lar_checkpoint checkpoint;
+    lar_status status = check_whole(simulation, error);
+    if (!status)
+        status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
+    if (status) return status;
+    lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
+    return lar_simulation_take_up(simulation, error);
+}
+
+lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,
+                               lar_error *error) {
+    lar_bytes bytes = {0};
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_save", error);
+    if (!status) status = check_path(path, "lar_simulation_save", error);
+    if (!status) status = lar_simulation_pack(simulation, path, &bytes, error);
+    if (!status) status = lar_checkpoint_store(path, &bytes, error);
+    lar_bytes_free(&bytes);
+    return status;
 }
 
 lar_status lar_simulation_load(lar_simulation *simulation, const char *path, lar_error *error) {
     lar_bytes bytes = {0};
-    lar_checkpoint checkpoint;
     lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_load", error);
     if (!status) status = check_path(path, "lar_simulation_load", error);
-    if (!status) status = check_whole(simulation, error);
     if (!status) status = lar_bytes_read(path, &bytes, error);
-    if (!status)
-        status = lar_checkpoint_parse(path, &bytes, &simulation->domain, &checkpoint, error);
-    if (!status)
-        lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state,
-                            &simulation->tools);
+    if (!status) status = lar_simulation_unpack(simulation, path, &bytes, error);
     lar_bytes_free(&bytes);
-    return status ? status : lar_simulation_take_up(simulation, error);
+    return status;
 }
