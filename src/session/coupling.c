@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 /* A device like a PHANToM (Massie and Salisbury 1994) gives 8.5 N at most and weighs 75 g. */
 static const double STIFFNESS = 1000, MASS = 0.02;   /* [N/m] [kg] */

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "engine/tools.h"
 #include "session/device_backend.h"
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 static const lar_device_backend *const backends[] = {&lar_device_script, &lar_device_udp,
                                                      &lar_device_gamepad};

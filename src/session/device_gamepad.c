@@ -31,7 +31,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 enum { LOOKS_PER_SECOND = 250, RUMBLE_MS = 100 };
 static const double SPEED = 0.05, ROLL = 1.5;        /* at full stick [m/s] [rad/s] */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 static const uint64_t MILLISECOND = 1000000;
 enum { SILENCE = 20, FADE = 50, APPROACH = 300, LEAVE = 1000 }; /* [ms] */

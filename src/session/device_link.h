@@ -17,7 +17,7 @@
 #ifndef LAR_SESSION_DEVICE_LINK_H
 #define LAR_SESSION_DEVICE_LINK_H
 
-#include "session/device_packet.h"
+#include "base/device_packet.h"
 
 typedef enum lar_link_verdict {
     LAR_LINK_TAKEN = 0, /* the newest */

@@ -1,182 +1,32 @@
 /* A device that is played from a file: the thesis's pre-programmed inputs (T 6.1).
  *
- *     time,x,y,z,qw,qx,qy,qz,opening       seconds and metres, of the scene
- *     0.0,0,0,0.10,1,0,0,0,1
- *     0.5,0,0,0.05,1,0,0,0,0               straight lines between, rest before and after
- *
- * Orientation and opening may be left out, columns stand in any order, lines that begin with # are
- * passed over. Time is simulated time, so a run with a script is the same run every time, at
- * whatever pace, and begins anew with the simulation.
+ * Time is simulated time, so a run with a script is the same run every time, at whatever pace, and
+ * begins anew with the simulation.
  */
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
-#include "base/text.h"
+#include "model/tool_script.h"
 #include "session/device_backend.h"
-#include "session/quaternion.h"
-
-enum { TIME, X, Y, Z, QW, QX, QY, QZ, OPENING, COLUMNS };
-static const char *const column_name[COLUMNS] = {"time", "x",  "y",  "z",      "qw",
-                                                 "qx",   "qy", "qz", "opening"};
-
-typedef struct script_row {
-    double time;
-    lar_tool_pose pose;
-} script_row;
-
-typedef struct script_state {
-    script_row *row;
-    size_t count, capacity;
-    size_t at; /* the row at or before the last time asked for */
-} script_state;
-
-typedef struct script_reader {
-    const char *path;
-    lar_text text;
-    int line; /* of the row that is read */
-    int column[COLUMNS], columns;
-    bool has[COLUMNS];
-} script_reader;
-
-/* The next line that is neither empty nor a comment. */
-static bool next_line(script_reader *reader, lar_span *line) {
-    do {
-        reader->line = reader->text.line;
-        if (!lar_text_line(&reader->text, line)) return false;
-        *line = lar_span_trim(*line);
-    } while (line->length == 0 || line->at[0] == '#');
-    return true;
-}
-
-static lar_status read_header(script_reader *reader, lar_error *error) {
-    lar_span rest, name;
-    if (!next_line(reader, &rest))
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s: nothing in it; a script begins with a line of names, as time,x,y,z",
-                        reader->path);
-    bool more = true;
-    while (more) {
-        more = lar_span_split(rest, ',', &name, &rest);
-        name = lar_span_trim(name);
-        int i = 0;
-        while (i < COLUMNS && !lar_span_equal(name, column_name[i])) i++;
-        if (i == COLUMNS || reader->has[i])
-            return lar_fail(error, LAR_ERROR_FORMAT,
-                            "%s:%d: '%.*s' %s; a script begins with a line of names: time, x, y, z "
-                            "and, if wanted, qw, qx, qy, qz and opening",
-                            reader->path, reader->line, (int)(name.length < 40 ? name.length : 40),
-                            name.at, i == COLUMNS ? "is no column of a script" : "stands twice");
-        reader->has[i] = true;
-        reader->column[reader->columns++] = i;
-    }
-    bool some = false, all = true;
-    for (int i = QW; i <= QZ; i++) {
-        some = some || reader->has[i];
-        all = all && reader->has[i];
-    }
-    for (int i = TIME; i <= QZ; i++)
-        if (!reader->has[i] && (i <= Z || some != all))
-            return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: the column %s is missing",
-                            reader->path, reader->line, column_name[i]);
-    return LAR_OK;
-}
-
-static lar_status read_values(const script_reader *reader, lar_span line, double value[COLUMNS],
-                              lar_error *error) {
-    lar_span rest = line, part;
-    bool more = true;
-    int i = 0;
-    for (; i < reader->columns && more; i++) {
-        more = lar_span_split(rest, ',', &part, &rest);
-        part = lar_span_trim(part);
-        int c = reader->column[i];
-        if (!lar_span_double(part, &value[c]) || !isfinite(value[c]))
-            return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: '%.*s' is no number for %s",
-                            reader->path, reader->line, (int)(part.length < 40 ? part.length : 40),
-                            part.at, column_name[c]);
-    }
-    if (more || i < reader->columns)
-        return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: %s values than the %d columns named above",
-                        reader->path, reader->line, more ? "more" : "fewer", reader->columns);
-    return LAR_OK;
-}
-
-static lar_status add_row(script_reader *reader, script_state *state, lar_span line,
-                          lar_error *error) {
-    double value[COLUMNS] = {[QW] = 1, [OPENING] = 1};
-    lar_status status = read_values(reader, line, value, error);
-    if (status) return status;
-    const char *path = reader->path;
-    if (state->count && !(value[TIME] > state->row[state->count - 1].time))
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s:%d: time %g does not come after %g; times must grow from row to row",
-                        path, reader->line, value[TIME], state->row[state->count - 1].time);
-    for (int i = X; i <= Z; i++)
-        if (fabs(value[i]) > 100)
-            return lar_fail(error, LAR_ERROR_FORMAT,
-                            "%s:%d: %s is %g m; positions are in metres, within 100", path,
-                            reader->line, column_name[i], value[i]);
-    if (value[OPENING] < 0 || value[OPENING] > 1)
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s:%d: opening is %g; it goes from 0, closed, to 1, open", path,
-                        reader->line, value[OPENING]);
-    if (!lar_quaternion_normalise(&value[QW]))
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s:%d: qw to qz are no orientation; a quaternion of length 1 is wanted",
-                        path, reader->line);
-    if (!LAR_GROW(state->row, state->capacity, state->count))
-        return lar_fail_memory(error, state->capacity * sizeof *state->row, "a script");
-    script_row *row = &state->row[state->count++];
-    row->time = value[TIME];
-    memcpy(row->pose.position, &value[X], sizeof row->pose.position);
-    memcpy(row->pose.orientation, &value[QW], sizeof row->pose.orientation);
-    row->pose.opening = value[OPENING];
-    return LAR_OK;
-}
 
 static void script_close(void *state) {
-    script_state *script = state;
-    free(script->row);
-    free(script);
+    lar_tool_script_destroy(state);
+    free(state);
 }
 
 static lar_status script_open(lar_device_spec *spec, void **state, lar_error *error) {
-    lar_bytes bytes;
-    script_state *script = lar_calloc(1, sizeof *script);
+    lar_tool_script *script = lar_calloc(1, sizeof *script);
     if (!script) return lar_fail_memory(error, sizeof *script, "a script");
     *state = script;
-    lar_status status = lar_bytes_read(spec->argument, &bytes, error);
-    if (status) return status;
-    script_reader reader = {.path = spec->argument, .text = lar_text_from(&bytes)};
-    status = read_header(&reader, error);
-    lar_span line;
-    while (!status && next_line(&reader, &line)) status = add_row(&reader, script, line, error);
-    if (!status && script->count == 0)
-        status = lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: no row follows the names of the columns",
-                          spec->argument, reader.line);
-    spec->turns_absolute = reader.has[QW];
-    lar_bytes_free(&bytes);
+    lar_status status = lar_tool_script_read(spec->argument, script, error);
+    spec->turns_absolute = script->turns;
     return status;
 }
 
 /* The tool is to be there at the end of the tick. */
 static bool script_poll(void *state, const lar_device_tick *tick, lar_tool_pose *pose) {
-    script_state *script = state;
-    const script_row *row = script->row;
-    double time = tick->time + tick->seconds;
     if (tick->paused) return false;
-    if (time < row[script->at].time) script->at = 0; /* gone back */
-    while (script->at + 1 < script->count && row[script->at + 1].time <= time) script->at++;
-    row += script->at;
-    *pose = row->pose;
-    if (time <= row->time || script->at + 1 == script->count) return true;
-    double share = (time - row->time) / (row[1].time - row->time);
-    for (int i = 0; i < 3; i++)
-        pose->position[i] = (1 - share) * row->pose.position[i] + share * row[1].pose.position[i];
-    lar_quaternion_blend(row->pose.orientation, row[1].pose.orientation, share, pose->orientation);
-    pose->opening = (1 - share) * row->pose.opening + share * row[1].pose.opening;
+    lar_tool_script_at(state, tick->time + tick->seconds, pose);
     return true;
 }
 

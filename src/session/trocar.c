@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "engine/tools.h"
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 static const double TILT_MOST = 80 * 3.14159265358979323846 / 180;
 static const double DEPTH_LEAST = 0.001, DEPTH_MOST = 0.5;

@@ -1,9 +1,9 @@
-#include "session/device_packet.h"
+#include "base/device_packet.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "session/quaternion.h"
+#include "base/quaternion.h"
 
 enum { KIND_POSITION = 1, KIND_FORCE = 2 };
 static const unsigned char MAGIC[4] = {'L', 'A', 'R', 'D'};

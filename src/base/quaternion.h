@@ -1,6 +1,6 @@
 /* Turns as unit quaternions w, x, y, z (lar_tool_pose). */
-#ifndef LAR_SESSION_QUATERNION_H
-#define LAR_SESSION_QUATERNION_H
+#ifndef LAR_BASE_QUATERNION_H
+#define LAR_BASE_QUATERNION_H
 
 #include <math.h>
 #include <stdbool.h>

@@ -16,8 +16,8 @@
  * Little endian, IEEE doubles. Both have one size, so that nobody can use the engine to make a
  * small packet into a large one. Only bytes in, numbers out: no sockets, no state.
  */
-#ifndef LAR_SESSION_DEVICE_PACKET_H
-#define LAR_SESSION_DEVICE_PACKET_H
+#ifndef LAR_BASE_DEVICE_PACKET_H
+#define LAR_BASE_DEVICE_PACKET_H
 
 #include <stdbool.h>
 #include <stddef.h>
