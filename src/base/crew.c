@@ -5,12 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/pin.h"
 
-/* Polls before a waiting thread yields, and yields before it sleeps: some tenths of a millisecond
- * on an idle machine. */
-enum { POLLS = 50, YIELDS = 500 };
+/* Polls before a waiting thread yields. */
+enum { POLLS = 50 };
+
+/* How long it polls and yields before it sleeps [s]: longer than from one tick of a session to the
+ * next (1 ms), because being woken takes some 50 us, a tenth of a tick's work. */
+static const double AWAKE = 2.5e-3;
 
 typedef struct seat {
     lar_crew *crew;
@@ -44,11 +48,12 @@ static void sleep_until_order(lar_crew *crew, uint64_t known) {
 }
 
 static void wait_for_order(lar_crew *crew, uint64_t known) {
-    for (int yields = 0; yields < YIELDS; yields++) {
+    double until = lar_clock_seconds() + AWAKE;
+    do {
         for (int i = 0; i < POLLS; i++)
             if (__atomic_load_n(&crew->orders, __ATOMIC_ACQUIRE) != known) return;
         sched_yield();
-    }
+    } while (lar_clock_seconds() < until);
     sleep_until_order(crew, known);
 }
 

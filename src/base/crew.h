@@ -5,7 +5,8 @@
  *     thread 2 ... -- seat 2 --'   | ... - seat 2 -'      |
  *
  * The caller is one of them: two processors of a computer on two cores are two threads. Between
- * jobs a thread polls for a moment, because the next job usually comes at once, and then sleeps.
+ * jobs a thread polls for some milliseconds, because the next job usually comes at once or at the
+ * next tick of a session, and then sleeps.
  */
 #ifndef LAR_BASE_CREW_H
 #define LAR_BASE_CREW_H

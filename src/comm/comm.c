@@ -310,7 +310,9 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
 /* Without a limit: who lives may take its time. */
 static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
                                  lar_error *error) {
-    static const double POLLING = 100e-6; /* [s]; commands often follow each other */
+    /* [s] Longer than from one tick of a session to the next (1 ms): commands follow each other,
+     * and who sleeps hears them late. */
+    static const double POLLING = 2.5e-3;
     enum { SLEEP_LEAST = 50000, SLEEP_MOST = 1000000 /* [ns] */ };
     struct timespec sleep = {.tv_nsec = SLEEP_LEAST};
     const lar_comm_backend *backend = comm->backend;

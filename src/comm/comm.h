@@ -130,10 +130,10 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
                          const void **payload, lar_error *error);
 
 /* The same for the quiet time between commands: no limit while everyone lives (a loss ends it as
- * above; who closed without an abort is no loss), and after a short while of polling it sleeps, 50
- * us at first, 1 ms at last, so that waiting costs no processor time and an answer may come up to 1
- * ms late. `step` counts the packets at this offset, which need not be steps of a simulation: the
- * message of a loss names no step. */
+ * above; who closed without an abort is no loss), and after 2.5 ms of polling it sleeps, 50 us at
+ * first, 1 ms at last, so that waiting costs no processor time and an answer may then come up to 1
+ * ms late; what follows within a session's tick is heard at once. `step` counts the packets at this
+ * offset, which need not be steps of a simulation: the message of a loss names no step. */
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error);
 

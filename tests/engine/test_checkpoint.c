@@ -186,9 +186,9 @@ static void processes_go_back_together(void **unused) {
     (void)unused;
     static const char *const backends[] = {"shm", "tcp", "shm"};
     static const char *const grid[] = {"2x1x1", "2x1x1", "2x2x1"};
-    lar_model *model = tool_model();
-    course c = straight_course(model);
     for (int i = 0; i < 3; i++) {
+        lar_model *model = tool_model_of(i == 0 ? &fine_tool_brick : &tool_brick);
+        course c = straight_course(model);
         lar_error error;
         char master[LAR_COMM_ADDRESS_TEXT];
         int listener, count = i == 2 ? 4 : 2;
@@ -216,8 +216,8 @@ static void processes_go_back_together(void **unused) {
             pthread_join(thread[p], NULL);
             if (other[p].status) fail_msg("processor %d: %s", p, other[p].error.message);
         }
+        lar_model_destroy(model);
     }
-    lar_model_destroy(model);
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
@@ -370,7 +370,7 @@ static void other_models_are_refused(void **unused) {
     refuse_with(other, options, "tools");
     lar_model_destroy(other);
     other = everything_model(&soft_brick);
-    refuse_with(other, setting(0), "48 elements");
+    refuse_with(other, setting(0), "12 elements");
     lar_model_destroy(other);
     lar_model_destroy(model);
 }

@@ -21,9 +21,12 @@ TEST_UNUSED static void add_tool(lar_model *model, const char *name, lar_tool_sh
                    .rest = {.position = {x, y, z}, .orientation = {1, 0, 0, 0}, .opening = 1}};
 }
 
+/* The same body, so fine that its state is more than one packet between processes. */
+static const brick fine_tool_brick = {{12, 10, 8}, 0.005, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+
 /* everything_model with a ball and a rod above its top and a grasper beside it, all open. */
-TEST_UNUSED static lar_model *tool_model(void) {
-    lar_model *model = everything_model(&tool_brick);
+TEST_UNUSED static lar_model *tool_model_of(const brick *b) {
+    lar_model *model = everything_model(b);
     add_tool(model, "ball", LAR_TOOL_SPHERE, 0.03, 0.025, 0.052);
     add_tool(model, "rod", LAR_TOOL_CAPSULE, 0.045, 0.01, 0.052);
     add_tool(model, "grasper", LAR_TOOL_GRASPER, 0.03, 0.015, 0.095);
@@ -37,6 +40,10 @@ TEST_UNUSED static void place_tool(lar_simulation *simulation, int32_t tool, dou
     lar_error error;
     if (lar_simulation_tool_move(simulation, tool, &pose, TICK_STEPS, &error))
         fail_msg("%s", error.message);
+}
+
+TEST_UNUSED static lar_model *tool_model(void) {
+    return tool_model_of(&tool_brick);
 }
 
 /* What happens at the beginning of a tick: the ball is pressed into the top and drawn along it, the
