@@ -65,6 +65,31 @@ static double supported_velocity(const lar_domain *domain, const lar_state *stat
            dt;
 }
 
+/* Nodes that planes stop in this step: what add_kinetic has counted for them as free nodes, and
+ * half of what the stop takes. */
+static void add_stops(const lar_domain *domain, const lar_state *state, const double gravity[3],
+                      lar_energy *energy) {
+    const lar_planes *planes = &domain->acting.touch.planes;
+    lar_condition_context context = lar_domain_context(domain);
+    double half = 0.5 * domain->model->damping * domain->time_step;
+    for (int32_t entry = 0; entry < planes->count;) {
+        int32_t value = planes->node[entry].value;
+        double free[3], ahead[3], mass = domain->mass[value / 4];
+        for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
+            bool held = planes->node[entry].slide[i] == 0 && planes->node[entry].normal[i] != 0;
+            free[i] = held ? state->v[value + i] : next_velocity(domain, state, value + i, gravity);
+            ahead[i] = free[i];
+        }
+        entry = lar_planes_ahead(planes, &context, state, entry, ahead);
+        for (int i = 0; i < 3; i++) {
+            double change = ahead[i] - free[i], behind = state->v[value + i];
+            energy->kinetic += 0.5 * mass * behind * change;
+            energy->damping += 0.5 * half * mass * behind * change;
+            energy->contact -= 0.5 * mass * (1 + half) * change * behind;
+        }
+    }
+}
+
 /* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
 static void add_motion(const lar_domain *domain, const lar_state *state, const double gravity[3],
                        lar_energy *energy) {
@@ -75,6 +100,7 @@ static void add_motion(const lar_domain *domain, const lar_state *state, const d
             if (conditions->held[g] >> i & 1) continue;
             add_kinetic(domain, state, value, next_velocity(domain, state, value, gravity), energy);
         }
+    add_stops(domain, state, gravity, energy);
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double ahead = supported_velocity(domain, state, c);
@@ -83,6 +109,18 @@ static void add_motion(const lar_domain *domain, const lar_state *state, const d
             energy->external += 0.5 * domain->time_step * state->v[c->value] *
                                 support_force(domain, state, c, ahead, gravity);
     }
+}
+
+/* The first half of the present step's work of tools and bodies, as the loads'. */
+static void add_contact(const lar_domain *domain, const lar_condition_context *context,
+                        lar_state *state, lar_energy *energy) {
+    double external = state->external, contact = state->contact;
+    lar_touch_half_work(&domain->acting.touch, context, state);
+    lar_collide_half_work(&domain->acting.collide, context, state);
+    energy->external += state->external - external;
+    energy->contact += state->contact - contact;
+    state->external = external;
+    state->contact = contact;
 }
 
 static void clear_forces(const lar_domain *domain, lar_state *state) {
@@ -98,8 +136,10 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
 
     *energy =
         (lar_energy){.external = state->external,
+                     .contact = state->contact,
                      .damping = 0.25 * domain->model->damping * domain->time_step * state->damped};
     energy->external += lar_conditions_half_work(&domain->acting.conditions, &context, time, state);
+    add_contact(domain, &context, state, energy);
     if (!domain->acting.conditions.gravity_varies)
         energy->external += gravity_potential(domain, state);
     add_motion(domain, state, gravity, energy);

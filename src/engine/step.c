@@ -117,7 +117,10 @@ static void add_half_work(const lar_domain *domain, const lar_acting *acting,
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
+    lar_touch_note note;
+    lar_touch_remember(&domain->acting.touch, &note);
     act(domain, &domain->acting, &context, state, trip);
+    lar_touch_restore(&domain->acting.touch, &note);
     lar_step_recover(domain, 0, domain->run_count, state, trip);
 }
 
@@ -132,8 +135,10 @@ void lar_step_move(const lar_domain *domain, lar_acting *acting,
     lar_conditions *conditions = &acting->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
+    lar_touch_observe(&acting->touch, context, state);
     move_nodes(domain, context, conditions->gravity_varies, time, state, trip);
     state->external += lar_conditions_impose(conditions, context, time, state);
+    lar_touch_stop(&acting->touch, context, state);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,

@@ -1,22 +1,456 @@
 #include "engine/touch.h"
 
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- set-up -------------------------------------------------------------------------------- */
+
+static bool mine(const lar_model *model, const lar_condition_share *share, int32_t face) {
+    return !share || share->presses[model->surface.element[face]] == share->thread;
+}
+
+static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
+                     int32_t face, lar_touch *touch) {
+    lar_touch_face *f = &touch->face[touch->face_count++];
+    *f = (lar_touch_face){.of = face, .acting = -1};
+    for (int a = 0; a < 4; a++) {
+        int32_t node = model->surface.corner[face][a];
+        f->value[a] = 4 * local[node];
+        f->share[a] = 1.0 / faces_at[node];
+        memcpy(f->rest[a], model->mesh.position[node], sizeof f->rest[a]);
+    }
+    for (int a = 0; a < 4; a++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) {
+            double d = f->rest[(a + 1) % 4][i] - f->rest[a][i];
+            square += d * d;
+        }
+        f->edge = fmax(f->edge, sqrt(square));
+    }
+}
+
+/* Corners of own faces that other threads move. */
+static void list_foreign(const lar_model *model, const int32_t *local,
+                         const lar_condition_share *share, uint8_t *marked, lar_touch *touch) {
+    memset(marked, 0, (size_t)model->mesh.node_count);
+    for (int32_t f = 0; f < touch->face_count; f++)
+        for (int a = 0; a < 4; a++) {
+            int32_t node = model->surface.corner[touch->face[f].of][a];
+            if (share->holds[node] == share->thread || marked[node]) continue;
+            marked[node] = 1;
+            touch->foreign[touch->foreign_count++] = 4 * local[node];
+        }
+}
+
+static lar_status allocate(const lar_model *model, int32_t faces, int tools, lar_touch *touch,
+                           lar_error *error) {
+    size_t count = (size_t)faces, nodes = (size_t)model->surface.node_count;
+    touch->face = lar_calloc(count, sizeof *touch->face);
+    touch->acting = lar_calloc(count, sizeof *touch->acting);
+    touch->foreign = lar_calloc(nodes, sizeof *touch->foreign);
+    touch->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *touch->face_of);
+    bool fits = touch->face && touch->acting && touch->foreign && touch->face_of;
+    for (int t = 0; t < tools && fits; t++) {
+        lar_tool_watch *watch = &touch->watch[t];
+        watch->near = lar_calloc(count, sizeof *watch->near);
+        watch->look = lar_calloc(count, sizeof *watch->look);
+        fits = watch->near && watch->look;
+    }
+    return fits ? LAR_OK
+                : lar_fail_memory(error, count * sizeof *touch->face, "the faces before tools");
+}
+
+static lar_status create_faces(const lar_model *model, const int32_t *local,
+                               const lar_condition_share *share, lar_touch *touch,
+                               lar_error *error) {
+    const lar_surface *surface = &model->surface;
+    int32_t faces = 0;
+    for (int32_t f = 0; f < surface->face_count; f++) faces += mine(model, share, f);
+    uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
+    if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
+    lar_status status = allocate(model, faces, touch->list->count, touch, error);
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++)
+            for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
+        for (int32_t f = 0; f < surface->face_count; f++)
+            if (mine(model, share, f)) add_face(model, local, marked, f, touch);
+        status = lar_touch_group_faces(touch, error);
+    }
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++) touch->face_of[f] = -1;
+        for (int32_t f = 0; f < faces; f++) touch->face_of[touch->face[f].of] = f;
+        if (share) list_foreign(model, local, share, marked, touch);
+    }
+    free(marked);
+    return status;
+}
+
 lar_status lar_touch_create(const lar_model *model, const int32_t *local,
                             const lar_condition_share *share, const lar_tool_list *list,
                             const lar_tools *tools, lar_touch *touch, lar_error *error) {
-    (void)model, (void)local, (void)share, (void)error;
     *touch = (lar_touch){.list = list, .tools = tools};
-    return LAR_OK;
+    lar_status status = lar_planes_create(model, local, share, &touch->planes, error);
+    if (!status && list && list->count > 0)
+        status = create_faces(model, local, share, touch, error);
+    if (status) lar_touch_destroy(touch);
+    return status;
 }
 
 void lar_touch_destroy(lar_touch *touch) {
+    lar_planes_destroy(&touch->planes);
+    for (int t = 0; t < LAR_TOOLS_MOST; t++) {
+        free(touch->watch[t].near);
+        free(touch->watch[t].look);
+    }
+    free(touch->face);
+    free(touch->group);
+    free(touch->acting);
+    free(touch->foreign);
+    free(touch->face_of);
     *touch = (lar_touch){0};
 }
 
+void lar_touch_forget(lar_touch *touch) {
+    touch->planes.known = false;
+    touch->moved = UINT64_MAX;
+    for (int32_t g = 0; g < touch->group_count; g++) touch->group[g].travel = -INFINITY;
+    for (int t = 0; t < LAR_TOOLS_MOST; t++) touch->watch[t].known = touch->watch[t].rests = false;
+}
+
+/* ---- where tools are ----------------------------------------------------------------------- */
+
+/* Jaws hang on the tip and open in the plane y = 0. */
+static void place_segments(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
+                           lar_segment segment[2]) {
+    double end[2][3] = {{0, 0, tool->shape == LAR_TOOL_CAPSULE ? tool->length : 0}};
+    body->count = 1;
+    if (tool->shape == LAR_TOOL_GRASPER) {
+        double sine, cosine;
+        lar_sine_cosine(0.5 * tool->spread * pose->opening, &sine, &cosine);
+        for (int s = 0; s < 2; s++) {
+            end[s][0] = (s ? -1 : 1) * tool->length * sine;
+            end[s][2] = -tool->length * cosine;
+        }
+        body->count = 2;
+    }
+    for (int32_t s = 0; s < body->count; s++) {
+        lar_turn(pose->orientation, end[s], segment[s].end[1]);
+        for (int i = 0; i < 3; i++) {
+            segment[s].end[0][i] = pose->position[i];
+            segment[s].end[1][i] += pose->position[i];
+        }
+    }
+}
+
+/* How far a tool goes between two places: no point of a segment goes farther than one of its ends.
+ */
+static double way_between(const lar_segment *from, const lar_segment *to, int32_t count) {
+    double farthest = 0;
+    for (int32_t s = 0; s < count; s++)
+        for (int e = 0; e < 2; e++) {
+            double square = 0;
+            for (int i = 0; i < 3; i++) {
+                double way = to[s].end[e][i] - from[s].end[e][i];
+                square += way * way;
+            }
+            farthest = fmax(farthest, square);
+        }
+    return sqrt(farthest);
+}
+
+/* Brings the tool to the step. Returns how far it has come since the last one. */
+static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool_motion *motion,
+                     uint64_t step, double time_step) {
+    if (watch->rests && step >= motion->end) return 0;
+    lar_tool_body *body = &watch->body, old = *body;
+    lar_tool_pose pose;
+    lar_tool_at(motion, step, time_step, &pose, NULL);
+    place_segments(tool, &pose, body, body->now);
+    lar_tool_at(motion, step + 1, time_step, &pose, NULL);
+    place_segments(tool, &pose, body, body->next);
+    watch->rests = step >= motion->end;
+    return watch->known ? way_between(old.now, body->now, body->count) : 0;
+}
+
+/* ---- contact of one face ------------------------------------------------------------------- */
+
+/* Points along an edge of a face: no farther apart than half the tool's radius, so that a sphere
+ * that touches has several inside. */
+static int points_along(const lar_touch_face *face, double radius) {
+    double wanted = ceil(2 * face->edge / radius);
+    return wanted < 2 ? 2 : wanted > 6 ? 6 : (int)wanted;
+}
+
+/* The mass behind each of n x n points: with weights w_a of all points their sum over a node's
+ * faces is at most the node's mass (mechanics/contact.h, row sums). */
+static double point_mass(const lar_touch_face *face, const double *mass, int n) {
+    double least = INFINITY;
+    for (int a = 0; a < 4; a++) least = fmin(least, mass[face->value[a] / 4] * face->share[a]);
+    return 4 * least / (n * n);
+}
+
+typedef struct lar_patch { /* one face before one tool */
+    const lar_touch_face *face;
+    const lar_tool_body *body;
+    double radius, mass, rate_of; /* of a point; 1 / time step */
+    double x[4][3], v[4][3], out[3];
+    double force[4][3];
+    double closest; /* distance of the closest point [m] */
+    int32_t touching;
+} lar_patch;
+
+/* A point that has been passed by the middle of the tool sees a normal that would push it on, out
+ * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
+ * goes along the face. */
+static double facing(const lar_patch *patch, const double normal[3]) {
+    double against =
+        -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
+    return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
+}
+
+static void touch_point(lar_patch *patch, const lar_contact_law *law, const double weight[4]) {
+    double x[3], v[3], normal[3], along;
+    lar_face_mean((const double(*)[3])patch->x, weight, x);
+    for (int32_t s = 0; s < patch->body->count; s++) {
+        const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
+        double depth = lar_segment_depth(now, patch->radius, x, normal, &along), rate = 0;
+        patch->closest = fmin(patch->closest, -depth);
+        if (!(depth > 0)) continue;
+        double share = facing(patch, normal);
+        if (share == 0) continue;
+        lar_face_mean((const double(*)[3])patch->v, weight, v);
+        for (int i = 0; i < 3; i++) {
+            double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
+            rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
+        }
+        double force = lar_contact_force(law, share * patch->mass, depth, rate);
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
+        patch->touching++;
+    }
+}
+
+static void touch_face(lar_patch *patch, const lar_contact_law *law, const double *v,
+                       const double *mass) {
+    const lar_touch_face *face = patch->face;
+    int n = points_along(face, patch->radius);
+    patch->mass = point_mass(face, mass, n);
+    for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
+    lar_face_normal((const double(*)[3])patch->x, patch->out);
+    double size = sqrt(patch->out[0] * patch->out[0] + patch->out[1] * patch->out[1] +
+                       patch->out[2] * patch->out[2]);
+    for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double weight[4];
+            lar_face_weights((2 * i + 1.0) / n - 1, (2 * j + 1.0) / n - 1, weight);
+            touch_point(patch, law, weight);
+        }
+}
+
+/* ---- forces -------------------------------------------------------------------------------- */
+
+/* Gives the corners their forces in whole units, and the tool exactly the opposite: nothing is lost
+ * between them. */
+static void give(lar_touch *touch, const lar_condition_context *context, int32_t f, int32_t tool,
+                 const double tip[3], const double x[4][3], const double force[4][3]) {
+    lar_touch_face *face = &touch->face[f];
+    lar_tool_sum *sum = &touch->sum[tool];
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
+            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) return;
+    if (face->acting < 0) {
+        face->acting = touch->acting_count++;
+        touch->acting[face->acting] = (lar_touch_force){.face = f};
+    }
+    lar_touch_force *acting = &touch->acting[face->acting];
+    for (int a = 0; a < 4; a++) {
+        double units[3], arm[3];
+        for (int i = 0; i < 3; i++) {
+            int64_t whole = llrint(force[a][i] * context->scale);
+            acting->force[a][i] += whole;
+            sum->force[i] -= whole;
+            units[i] = (double)whole;
+            arm[i] = x[a][i] - tip[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum->torque[i] -= llrint(arm[j] * units[k] - arm[k] * units[j]);
+        }
+    }
+}
+
+static void touch_near(lar_touch *touch, const lar_condition_context *context,
+                       const lar_state *state, int32_t tool, const lar_contact_law *law) {
+    lar_tool_watch *watch = &touch->watch[tool];
+    for (int32_t i = 0; i < watch->near_count; i++) {
+        if (watch->path < watch->look[i] && !touch->always) continue;
+        lar_patch patch = {.face = &touch->face[watch->near[i]],
+                           .body = &watch->body,
+                           .radius = touch->list->tool[tool].radius,
+                           .rate_of = 1 / context->time_step,
+                           .closest = INFINITY};
+        double center[3];
+        lar_touch_corners(patch.face, state->u, patch.x);
+        double size = lar_touch_ball((const double(*)[3])patch.x, center);
+        double gap = lar_touch_distance(&watch->body, patch.radius, center) - size;
+        touch->seen.tested++;
+        watch->look[i] = watch->path + fmax(gap, 0);
+        if (gap > 0) continue;
+        touch_face(&patch, law, state->v, context->mass);
+        watch->look[i] = watch->path + fmax(patch.closest, 0);
+        if (patch.touching == 0) continue;
+        touch->sum[tool].touching += patch.touching;
+        give(touch, context, watch->near[i], tool, watch->body.now[0].end[0],
+             (const double(*)[3])patch.x, (const double(*)[3])patch.force);
+    }
+}
+
+/* ---- holds --------------------------------------------------------------------------------- */
+
+/* Where a point of the tool's own axes is. */
+static void place_anchor(const lar_tool_pose *pose, const double anchor[3], double out[3]) {
+    lar_turn(pose->orientation, anchor, out);
+    for (int i = 0; i < 3; i++) out[i] += pose->position[i];
+}
+
+/* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
+ * radius, so that what is torn away from a tool slips instead of being torn apart. */
+static void hold_point(lar_touch *touch, const lar_condition_context *context,
+                       const lar_state *state, const lar_hold *hold, const lar_contact_law *law) {
+    const lar_touch_face *face = &touch->face[touch->face_of[hold->face]];
+    const lar_tool *tool = &touch->list->tool[hold->tool];
+    double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
+    double pull[3], length = 0, force[4][3];
+    lar_tool_pose pose;
+    lar_tool_at(&touch->tools->motion[hold->tool], state->step + 1, dt, &pose, NULL);
+    place_anchor(&pose, hold->anchor, next);
+    lar_tool_at(&touch->tools->motion[hold->tool], state->step, dt, &pose, NULL);
+    place_anchor(&pose, hold->anchor, now);
+    lar_touch_corners(face, state->u, x);
+    for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
+    lar_face_mean((const double(*)[3])x, hold->weight, point);
+    lar_face_mean((const double(*)[3])v, hold->weight, speed);
+    int n = points_along(face, tool->radius);
+    double most = law->stiffness * point_mass(face, context->mass, n);
+    double stiffness = fmin(hold->stiffness, most);
+    double damping = sqrt(stiffness * most) * dt;
+    for (int i = 0; i < 3; i++) {
+        pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
+        length += pull[i] * pull[i];
+    }
+    length = sqrt(length);
+    double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) force[a][i] = hold->weight[a] * share * pull[i];
+    give(touch, context, touch->face_of[hold->face], hold->tool, pose.position,
+         (const double(*)[3])x, (const double(*)[3])force);
+    touch->sum[hold->tool].held++;
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
+/* How far any corner can have gone since the last step; infinitely far when that is not known. */
+static double step_travel(const lar_touch *touch, const lar_condition_context *context,
+                          const lar_state *state) {
+    if (touch->moved != state->step) return INFINITY;
+    double fastest = state->fastest;
+    for (int32_t i = 0; i < touch->foreign_count; i++)
+        for (int k = 0; k < 3; k++) fastest = fmax(fastest, fabs(state->v[touch->foreign[i] + k]));
+    return 1.7320508075688774 * context->time_step * fastest;
+}
+
+static bool holds_anything(const lar_touch *touch, int32_t tool) {
+    for (int32_t i = 0; i < touch->tools->hold_count; i++)
+        if (touch->tools->hold[i].tool == tool) return true;
+    return false;
+}
+
+static void apply_tool(lar_touch *touch, const lar_condition_context *context,
+                       const lar_state *state, int32_t t, double travel,
+                       const lar_contact_law *law) {
+    const lar_tool *tool = &touch->list->tool[t];
+    lar_tool_watch *watch = &touch->watch[t];
+    double came = follow(watch, tool, &touch->tools->motion[t], state->step, context->time_step);
+    watch->path += travel + came;
+    if (touch->always || !watch->known || !(watch->path < watch->limit))
+        lar_touch_search(touch, t, state,
+                         travel +
+                             way_between(watch->body.now, watch->body.next, watch->body.count));
+    /* What jaws have closed upon is theirs: the holds keep it, and to press it as well would crush
+     * it between them. */
+    if (tool->shape == LAR_TOOL_GRASPER && holds_anything(touch, t)) return;
+    touch_near(touch, context, state, t, law);
+    touch->seen.possible += (uint64_t)touch->face_count;
+}
+
+static void clear_acting(lar_touch *touch) {
+    for (int32_t i = 0; i < touch->acting_count; i++)
+        touch->face[touch->acting[i].face].acting = -1;
+    touch->acting_count = 0;
+    touch->seen.touching = 0;
+    touch->seen.deepest = 0;
+}
+
+static void add_forces(const lar_touch *touch, int64_t *force) {
+    for (int32_t i = 0; i < touch->acting_count; i++) {
+        const lar_touch_force *acting = &touch->acting[i];
+        for (int a = 0; a < 4; a++)
+            for (int k = 0; k < 3; k++)
+                force[touch->face[acting->face].value[a] + k] -= acting->force[a][k];
+    }
+}
+
 void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
-    (void)touch, (void)context, (void)state;
+    clear_acting(touch);
+    if (touch->face_count == 0) return;
+    lar_contact_law law = lar_contact_law_for(context->time_step, context->stable_step);
+    double travel = step_travel(touch, context, state);
+    bool known = isfinite(travel);
+    if (!known) lar_touch_forget(touch);
+    touch->travel += known ? travel : 0;
+    for (int32_t t = 0; t < touch->list->count; t++) {
+        touch->sum[t].touching = touch->sum[t].held = 0;
+        if (touch->list->tool[t].shape != LAR_TOOL_HAND)
+            apply_tool(touch, context, state, t, known ? travel : 0, &law);
+    }
+    for (int32_t i = 0; i < touch->tools->hold_count; i++)
+        if (touch->face_of[touch->tools->hold[i].face] >= 0)
+            hold_point(touch, context, state, &touch->tools->hold[i], &law);
+    add_forces(touch, state->force);
 }
 
 void lar_touch_half_work(const lar_touch *touch, const lar_condition_context *context,
                          lar_state *state) {
-    (void)touch, (void)context, (void)state;
+    double work = 0;
+    for (int32_t i = 0; i < touch->acting_count; i++) {
+        const lar_touch_force *acting = &touch->acting[i];
+        for (int a = 0; a < 4; a++)
+            for (int k = 0; k < 3; k++)
+                work +=
+                    (double)acting->force[a][k] * state->v[touch->face[acting->face].value[a] + k];
+    }
+    state->external += 0.5 * context->time_step * work / context->scale;
+}
+
+void lar_touch_observe(lar_touch *touch, const lar_condition_context *context,
+                       const lar_state *state) {
+    lar_planes_observe(&touch->planes, context, state, touch->always, &touch->seen);
+}
+
+void lar_touch_stop(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
+    lar_planes_stop(&touch->planes, context, state, touch->always, &touch->seen);
+    touch->moved = state->step + 1;
+    if (touch->planes.count > 0 || touch->face_count > 0) touch->seen.steps++;
+}
+
+void lar_touch_remember(const lar_touch *touch, lar_touch_note *note) {
+    memcpy(note->sum, touch->sum, sizeof note->sum);
+    note->seen = touch->seen;
+}
+
+void lar_touch_restore(lar_touch *touch, const lar_touch_note *note) {
+    memcpy(touch->sum, note->sum, sizeof note->sum);
+    touch->seen = note->seen;
 }

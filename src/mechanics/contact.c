@@ -36,3 +36,41 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
             (x[2][j] - x[0][j]) * (x[3][k] - x[1][k]) - (x[2][k] - x[0][k]) * (x[3][j] - x[1][j]);
     }
 }
+
+double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
+                         double normal[3], double *along) {
+    const double *a = segment->end[0], *b = segment->end[1];
+    double ab[3], ap[3], square = 0, dot = 0, distance = 0;
+    for (int i = 0; i < 3; i++) {
+        ab[i] = b[i] - a[i];
+        ap[i] = point[i] - a[i];
+        square += ab[i] * ab[i];
+        dot += ab[i] * ap[i];
+    }
+    double t = dot > 0 ? dot < square ? dot / square : 1 : 0;
+    if (!(square > 0)) t = 0;
+    for (int i = 0; i < 3; i++) {
+        normal[i] = ap[i] - t * ab[i];
+        distance += normal[i] * normal[i];
+    }
+    distance = sqrt(distance);
+    *along = t;
+    if (!(distance > 0)) return -radius;
+    for (int i = 0; i < 3; i++) normal[i] /= distance;
+    return radius - distance;
+}
+
+/* Series for an eighth of the angle, then doubled three times: 1 - cos is carried along, so that
+ * nothing cancels. */
+void lar_sine_cosine(double angle, double *sine, double *cosine) {
+    double x = angle / 8, y = x * x;
+    double s = x * (1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72))));
+    double versine = y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90))));
+    for (int i = 0; i < 3; i++) {
+        double c = 1 - versine;
+        versine = 2 * s * s;
+        s = 2 * s * c;
+    }
+    *sine = s;
+    *cosine = 1 - versine;
+}

@@ -60,4 +60,21 @@ static inline void lar_face_mean(const double x[4][3], const double weight[4], d
  * is flat, not of unit length. */
 void lar_face_normal(const double x[4][3], double normal[3]);
 
+/* ---- tools -----------------------------------------------------------------------------------
+ * A tool is made of segments with a radius; a sphere's ends are one point. */
+
+typedef struct lar_segment {
+    double end[2][3];
+} lar_segment;
+
+/* How deep a point is inside the tool around a segment [m] (negative: how far outside), the unit
+ * normal from the segment to the point, and where on the segment (0 to 1) it starts. A point on the
+ * segment itself has no normal, and counts as outside. */
+double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
+                         double normal[3], double *along);
+
+/* sin and cos of an angle of at most 2 in size, by operations whose last bit is the same
+ * everywhere. */
+void lar_sine_cosine(double angle, double *sine, double *cosine);
+
 #endif

@@ -1,0 +1,45 @@
+/* What the tests of planes, tools and holds share: bodies with planes and tools, and energies.
+ * Include engine_test.h first. */
+#ifndef LAR_TESTS_TOUCH_TEST_H
+#define LAR_TESTS_TOUCH_TEST_H
+
+/* All outer faces of the model against the half-space behind a plane. */
+TEST_UNUSED static void add_plane(lar_model *model, const double through[3],
+                                  const double direction[3]) {
+    lar_error error;
+    if (lar_surface_build(&model->mesh, &model->surface, &error)) fail_msg("%s", error.message);
+    lar_contact *contact = LAR_MODEL_APPEND(model, contact);
+    double length = 0;
+    *contact = (lar_contact){.kind = LAR_CONTACT_PLANE, .face_count = model->surface.face_count};
+    contact->face = lar_calloc((size_t)contact->face_count, sizeof *contact->face);
+    memcpy(contact->face, model->surface.face, (size_t)contact->face_count * sizeof(int32_t));
+    for (int i = 0; i < 3; i++) length += direction[i] * direction[i];
+    for (int i = 0; i < 3; i++) {
+        contact->through[i] = through[i];
+        contact->normal[i] = direction[i] / sqrt(length);
+    }
+}
+
+TEST_UNUSED static void fall(lar_model *model, const double velocity[3]) {
+    lar_initial_velocity *initial = LAR_MODEL_APPEND(model, initial);
+    int32_t count = model->mesh.node_count;
+    initial->nodes = (lar_node_list){count, lar_calloc((size_t)count, sizeof(int32_t))};
+    for (int32_t n = 0; n < count; n++) initial->nodes.node[n] = n;
+    memcpy(initial->velocity, velocity, sizeof initial->velocity);
+}
+
+/* What the body has. */
+TEST_UNUSED static double body_energy(lar_simulation *simulation, lar_energy *e) {
+    lar_simulation_energy(simulation, e);
+    return e->kinetic + e->strain + e->hourglass;
+}
+
+TEST_UNUSED static double stable_step_of(lar_model *model) {
+    lar_model_info info;
+    lar_error error;
+    if (lar_model_check(model, &error) || lar_model_inspect(model, &info, &error))
+        fail_msg("%s", error.message);
+    return info.stable_step;
+}
+
+#endif
