@@ -176,7 +176,7 @@ static void stop_node(const lar_plane_node *n, const lar_condition_context *cont
         account(n, context, before, free, state);
         height += dt * (least - speed);
     }
-    seen->touching++;
+    if (context->weight[n->value / 4] > 0) seen->touching++; /* once, of several processors */
     seen->deepest = fmax(seen->deepest, -height);
 }
 

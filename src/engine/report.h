@@ -7,7 +7,18 @@
 
 typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MOST];
+    lar_contact_info contact; /* since the start */
 } lar_report;
+
+static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_info *other) {
+    sum->possible += other->possible;
+    sum->boxed += other->boxed;
+    sum->tested += other->tested;
+    sum->searches += other->searches;
+    if (other->steps > sum->steps) sum->steps = other->steps;
+    sum->touching += other->touching;
+    if (other->deepest > sum->deepest) sum->deepest = other->deepest;
+}
 
 /* Before an advance: what one thread has felt is forgotten. */
 static inline void lar_report_begin(lar_acting *acting) {
@@ -26,12 +37,14 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->touching += from->touching;
         to->held += from->held;
     }
+    lar_report_contact(&sum->contact, &other->contact);
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
 static inline void lar_report_add(lar_report *sum, const lar_acting *acting) {
     lar_report own;
     for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
+    own.contact = acting->touch.seen;
     lar_report_join(sum, &own);
 }
 

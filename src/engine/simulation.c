@@ -85,6 +85,7 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     state->step = 0;
     state->damped = state->external = state->contact = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
+    lar_touch_forget(&simulation->domain.acting.touch);
     set_initial_displacements(simulation);
     set_initial_velocities(simulation);
 }
@@ -98,6 +99,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     lar_tools_reset(&simulation->list, &simulation->tools);
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
                               &simulation->tools, &domain->acting.touch, error);
+    domain->acting.touch.always = options->search_always != 0;
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;

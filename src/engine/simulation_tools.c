@@ -138,6 +138,8 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     if (!status && !(tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
     if (!status && changes_hold(tool, motion, wanted.opening)) {
+        /* An empty hand is where it takes hold: its way there means nothing. */
+        if (tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0) now = wanted;
         status = lar_simulation_gather(simulation, error);
         if (!status)
             status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
@@ -171,6 +173,5 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
 }
 
 void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {
-    (void)simulation;
-    *info = (lar_contact_info){0};
+    *info = simulation->report.contact;
 }
