@@ -1,10 +1,10 @@
 /* How far a tool is from the surface at rest.
  *
- * A tool is made of segments with a radius (a sphere's segment is a point), a face of two
- * triangles. Segment and triangle are next to each other at an end of the segment, at an edge of
- * the triangle, or where they cross. What crosses nothing may still lie inside a body as a whole:
- * the solid angles of all faces, seen from it, then sum to 4 pi instead of zero (Van Oosterom and
- * Strackee 1983, eq. 8).
+ * A tool is made of segments with a radius (a sphere's segment is a point), a face of four
+ * triangles around its middle, as contact has them (mechanics/face_contact.h). Segment and triangle
+ * are next to each other at an end of the segment, at an edge of the triangle, or where they cross.
+ * What crosses nothing may still lie inside a body as a whole: the solid angles of all faces, seen
+ * from it, then sum to 4 pi instead of zero (Van Oosterom and Strackee 1983, eq. 8).
  */
 #include <float.h>
 #include <math.h>
@@ -124,20 +124,22 @@ static void corners_of(const lar_model *model, int32_t face, double corner[4][3]
         memcpy(corner[a], model->mesh.position[model->surface.corner[face][a]], sizeof corner[a]);
 }
 
-/* The two triangles of a face are its corners 0 1 2 and 2 3 0. */
-static void second_triangle(double corner[4][3], double t[3][3]) {
-    memcpy(t[0], corner[2], sizeof(vec));
-    memcpy(t[1], corner[3], sizeof(vec));
-    memcpy(t[2], corner[0], sizeof(vec));
+/* Triangle `a` of the four around a face's middle. */
+static void triangle_of(double corner[4][3], int a, double t[3][3]) {
+    memcpy(t[0], corner[a], sizeof(vec));
+    memcpy(t[1], corner[(a + 1) % 4], sizeof(vec));
+    for (int i = 0; i < 3; i++)
+        t[2][i] = 0.25 * ((corner[0][i] + corner[1][i]) + (corner[2][i] + corner[3][i]));
 }
 
 static bool inside(const lar_model *model, const vec p) {
-    double sum = 0, corner[4][3], other[3][3];
+    double sum = 0, corner[4][3], t[3][3];
     for (int32_t f = 0; f < model->surface.face_count; f++) {
         corners_of(model, f, corner);
-        second_triangle(corner, other);
-        sum += solid_angle(p, (const double(*)[3])corner);
-        sum += solid_angle(p, (const double(*)[3])other);
+        for (int a = 0; a < 4; a++) {
+            triangle_of(corner, a, t);
+            sum += solid_angle(p, (const double(*)[3])t);
+        }
     }
     return sum > 2 * LAR_PI;
 }
@@ -167,16 +169,19 @@ static int segments_of(const lar_tool *tool, double end[2][3]) {
 }
 
 static double segment_face(const vec a, const vec b, double corner[4][3], double best) {
-    double reach = 0, other[3][3];
+    double reach = 0, t[3][3];
     vec d;
     for (int c = 1; c < 4; c++) {
         minus(corner[c], corner[0], d);
         reach = fmax(reach, sqrt(dot(d, d)));
     }
     if (sqrt(point_segment(corner[0], a, b)) - reach > best) return DBL_MAX; /* too far away */
-    second_triangle(corner, other);
-    return sqrt(fmin(segment_triangle(a, b, (const double(*)[3])corner),
-                     segment_triangle(a, b, (const double(*)[3])other)));
+    double least = DBL_MAX;
+    for (int c = 0; c < 4; c++) {
+        triangle_of(corner, c, t);
+        least = fmin(least, segment_triangle(a, b, (const double(*)[3])t));
+    }
+    return sqrt(least);
 }
 
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face) {
