@@ -454,7 +454,7 @@ static void test_documented_examples(void **state) {
         at = stop + 3;
         examples++;
     }
-    assert_int_equal(examples, 3);
+    assert_int_equal(examples, 4);
     lar_bytes_free(&docs);
 }
 
