@@ -33,6 +33,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         for (int k = 0; k < 3; k++) {
             to->force[k] += from->force[k];
             to->torque[k] += from->torque[k];
+            to->rest[k] += from->rest[k];
         }
         to->touching += from->touching;
         to->held += from->held;

@@ -167,7 +167,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
         (lar_tool_force){.touching = sum->touching, .held = holds_of(&simulation->tools, tool)};
     for (int i = 0; i < 3; i++) {
         force->force[i] = (double)sum->force[i] * unit;
-        force->torque[i] = (double)sum->torque[i] * unit;
+        force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
     }
     return LAR_OK;
 }

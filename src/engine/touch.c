@@ -276,7 +276,9 @@ static void give(lar_touch *touch, const lar_condition_context *context, int32_t
         }
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
-            sum->torque[i] -= llrint(arm[j] * units[k] - arm[k] * units[j]);
+            double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
+            sum->torque[i] += llrint(whole);
+            sum->rest[i] += llrint((torque - whole) / LAR_TORQUE_REST);
         }
     }
 }

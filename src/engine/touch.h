@@ -25,8 +25,11 @@
 /* Sum of what a tool felt, in force units (and those times metres), of all steps of an advance. */
 typedef struct lar_tool_sum {
     int64_t force[3], torque[3]; /* of the tissue on the tool; about the tip */
+    int64_t rest[3];             /* of the torques, in LAR_TORQUE_REST: arms are short */
     int32_t touching, held;      /* in the last step */
 } lar_tool_sum;
+
+static const double LAR_TORQUE_REST = 0x1p-20;
 
 /* A face of the surface. */
 typedef struct lar_touch_face {

@@ -71,10 +71,220 @@ static void every_joule_of_a_plane_is_accounted_for(void **unused) {
     drop(&tissue, 0.3, true, 0.3, 20);
 }
 
+/* A body lies on a plane: it comes to rest, and does not sink in. */
+static void a_body_comes_to_rest_on_a_plane(void **unused) {
+    (void)unused;
+    brick b = tissue;
+    b.shear = 4e3;
+    b.shift = 0;
+    lar_model *model = brick_model(&b);
+    add_plane(model, (double[]){0, 0, -0.002}, (double[]){0, 0, 1});
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->damping = 20;
+    lar_simulation *simulation = start(model);
+    lar_contact_info info;
+    lar_energy e;
+    while (lar_simulation_time(simulation) < 1.5) advance(simulation, 100);
+    lar_simulation_energy(simulation, &e);
+    lar_simulation_contact(simulation, &info);
+    double lowest = INFINITY;
+    for (int32_t n = 0; n < model->mesh.node_count; n++)
+        lowest = fmin(lowest, model->mesh.position[n][2] + node_u(simulation, n)[2]);
+    print_message("at rest: %d nodes touch, immersion %.1e of an edge, kinetic energy %.1e J of "
+                  "%.1e J fallen; %.2g searches a step\n",
+                  (int)info.touching, (-0.002 - lowest) / b.edge, e.kinetic, e.external,
+                  (double)info.searches / (double)info.steps);
+    assert_int_equal(info.touching, 12);
+    assert_below(fabs(lowest + 0.002), 1e-10); /* the task allows 2 % of an edge */
+    assert_below(e.kinetic, 1e-9 * e.external);
+    assert_below((double)info.searches, 0.02 * (double)info.steps);
+    finish(simulation, model);
+}
+
+/* ---- tools: what goes in comes out ----------------------------------------------------------- */
+
+static void place(lar_simulation *simulation, int32_t tool, const double position[3],
+                  const double orientation[4], double opening, uint64_t steps) {
+    lar_error error;
+    lar_tool_pose pose = {.opening = opening};
+    memcpy(pose.position, position, sizeof pose.position);
+    memcpy(pose.orientation, orientation, sizeof pose.orientation);
+    if (lar_simulation_tool_move(simulation, tool, &pose, steps, &error))
+        fail_msg("%s", error.message);
+}
+
+static const double upright[4] = {1, 0, 0, 0};
+
+static void add_tool(lar_model *model, const char *name, lar_tool tool, const double at[3]) {
+    lar_tool *added = LAR_MODEL_APPEND(model, tool);
+    *added = tool;
+    added->name = lar_strdup(name);
+    added->rest = (lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1};
+    memcpy(added->rest.position, at, sizeof added->rest.position);
+}
+
+static lar_model *poked_model(const brick *b) {
+    lar_model *model = brick_model(b);
+    fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_ALL);
+    add_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.006},
+             (double[]){0.017, 0.012, 0.028});
+    add_tool(model, "rod", (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = 0.004, .length = 0.03},
+             (double[]){0.04, 0.004, 0.011});
+    add_tool(model, "jaws",
+             (lar_tool){.shape = LAR_TOOL_GRASPER, .radius = 0.002, .length = 0.015, .spread = 1.2},
+             (double[]){0.004, 0.01, 0.04});
+    return model;
+}
+
+/* The forces of tools on the body and of the body on tools cancel, and so do their moments; forces
+ * to the last unit. */
+static void what_tools_feel_is_what_the_body_feels(void **unused) {
+    (void)unused;
+    brick b = tissue;
+    b.shear = 4e3;
+    lar_model *model = poked_model(&b);
+    lar_simulation *simulation = start(model);
+    lar_domain *domain = &simulation->domain;
+    place(simulation, 0, (double[]){0.017, 0.012, 0.022}, upright, 1, 200);
+    place(simulation, 1, (double[]){0.033, 0.004, 0.011}, upright, 1, 200);
+    place(simulation, 2, (double[]){0.004, 0.01, 0.031}, upright, 1, 200);
+    advance(simulation, 200);
+    lar_condition_context context = lar_domain_context(domain);
+    lar_touch *touch = &domain->acting.touch;
+    for (int tool = 0; tool < 3; tool++) memset(&touch->sum[tool], 0, sizeof touch->sum[tool]);
+    memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
+    lar_touch_apply(touch, &context, &simulation->state);
+    int64_t sum[3] = {0};
+    double moment[3] = {0}, size = 0;
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        const int64_t *f = simulation->state.force + 4 * domain->layout.local[n];
+        const double *u = node_u(simulation, n), *rest = model->mesh.position[n];
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum[i] -= f[i]; /* residual: internal minus external */
+            moment[i] -= (rest[j] + u[j]) * (double)f[k] - (rest[k] + u[k]) * (double)f[j];
+            size += fabs((rest[j] + u[j]) * (double)f[k]) + fabs((rest[k] + u[k]) * (double)f[j]);
+        }
+    }
+    for (int tool = 0; tool < 3; tool++) {
+        const lar_tool_sum *felt = &touch->sum[tool];
+        lar_tool_pose pose;
+        lar_error error;
+        assert_int_equal(lar_simulation_tool_pose(simulation, tool, &pose, &error), LAR_OK);
+        print_message("tool %d: %.3g %.3g %.3g N, %d points\n", tool,
+                      (double)felt->force[0] / domain->scale,
+                      (double)felt->force[1] / domain->scale,
+                      (double)felt->force[2] / domain->scale, (int)felt->touching);
+        assert_true(felt->touching > 0);
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum[i] += felt->force[i];
+            moment[i] += (double)felt->torque[i] + (double)felt->rest[i] * LAR_TORQUE_REST +
+                         pose.position[j] * (double)felt->force[k] -
+                         pose.position[k] * (double)felt->force[j];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(sum[i], 0);
+        assert_below(fabs(moment[i]) / size, 1e-12);
+    }
+    memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
+    finish(simulation, model);
+}
+
+/* Work of tools is external: pressed, turned, drawn along and away, with damping and a plane. */
+static void every_joule_of_a_tool_is_accounted_for(void **unused) {
+    (void)unused;
+    brick b = soft_brick;
+    b.shift = 0.05;
+    lar_model *model = poked_model(&b);
+    add_plane(model, (double[]){-0.001, 0, 0}, (double[]){1, 0, 0});
+    model->damping = 8;
+    lar_options options = lar_options_default();
+    options.time_step = 1e-4;
+    lar_simulation *simulation = start_with(model, options);
+    double worst = 0, work = 0;
+    const double half = sqrt(0.5), aside[4] = {half, half, 0, 0};
+    for (int tick = 0; tick < 300; tick++) {
+        lar_energy e;
+        double t = tick / 300.0, down = 0.008 * sin(3 * t * 3.14159);
+        place(simulation, 0, (double[]){0.017 - 0.01 * t, 0.012, 0.028 - down}, upright, 1, 10);
+        place(simulation, 1, (double[]){0.04 - down, 0.004 + 0.02 * t, 0.011},
+              tick < 150 ? upright : aside, 1, 100);
+        place(simulation, 2, (double[]){0.004, 0.01, 0.04 - down}, upright, 1 - 0.5 * t, 10);
+        advance(simulation, 10);
+        double now = body_energy(simulation, &e);
+        worst = fmax(worst, fabs(now + e.damping + e.contact - e.external));
+        work = fmax(work, fabs(e.external));
+    }
+    print_message("tools: balance %.2g of %.3g J\n", worst / work, work);
+    assert_below(worst / work, 1e-3);
+    finish(simulation, model);
+}
+
+/* ---- the same bits --------------------------------------------------------------------------- */
+
+static void poke(lar_simulation *simulation, int ticks) {
+    for (int tick = 0; tick < ticks; tick++) {
+        double t = tick / 40.0, down = t < 0.5 ? 0.02 * t : 0.01;
+        place(simulation, 0, (double[]){0.017 + 0.01 * t, 0.012, 0.028 - down}, upright, 1, 10);
+        place(simulation, 1, (double[]){0.04 - down, 0.004 + 0.01 * t, 0.011}, upright, 1, 10);
+        place(simulation, 2, (double[]){0.004, 0.01, 0.04 - down}, upright, 1 - 0.5 * t, 10);
+        advance(simulation, 10);
+    }
+}
+
+static uint64_t poked_hash(const lar_model *model, lar_options options, lar_tool_force force[3],
+                           lar_contact_info *info) {
+    lar_simulation *simulation = start_with(model, options);
+    lar_error error;
+    poke(simulation, 40);
+    uint64_t hash = lar_simulation_hash(simulation);
+    for (int tool = 0; tool < 3; tool++)
+        assert_int_equal(lar_simulation_tool_force(simulation, tool, &force[tool], &error), LAR_OK);
+    lar_simulation_contact(simulation, info);
+    lar_simulation_destroy(simulation);
+    return hash;
+}
+
+static void the_hash_is_the_same_everywhere(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {NULL, "1x1x1", "2x1x1", "2x2x1"};
+    brick b = tissue;
+    b.shear = 4e3;
+    lar_model *model = poked_model(&b);
+    add_plane(model, (double[]){0, 0, -0.0015}, (double[]){0.02, 0, 1});
+    add_plane(model, (double[]){-0.0012, 0, 0}, (double[]){1, 0, 0});
+    memcpy(model->gravity, (double[]){-3, 0, -9.81}, 24);
+    lar_tool_force wanted[3], force[3];
+    lar_contact_info first, info;
+    uint64_t hash = poked_hash(model, lar_options_default(), wanted, &first);
+    assert_true(first.touching > 0 && wanted[0].touching > 0 && wanted[1].touching > 0);
+    print_message("%.0f of %.0f pairs tested, %.0f searches in %.0f steps\n", (double)first.tested,
+                  (double)first.possible, (double)first.searches, (double)first.steps);
+    for (int g = 0; g < 4; g++)
+        for (int threads = 1; threads <= 2; threads++)
+            for (int always = 0; always < 2; always++) {
+                lar_options options = lar_options_default();
+                options.grid = grids[g];
+                options.threads = threads;
+                options.search_always = always;
+                assert_int_equal(poked_hash(model, options, force, &info), hash);
+                assert_memory_equal(force, wanted, sizeof wanted);
+                assert_int_equal(info.touching, first.touching);
+                if (always) assert_true(info.tested > first.tested);
+            }
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dropped_body_gains_no_energy),
         cmocka_unit_test(every_joule_of_a_plane_is_accounted_for),
+        cmocka_unit_test(a_body_comes_to_rest_on_a_plane),
+        cmocka_unit_test(what_tools_feel_is_what_the_body_feels),
+        cmocka_unit_test(every_joule_of_a_tool_is_accounted_for),
+        cmocka_unit_test(the_hash_is_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
