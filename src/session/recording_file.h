@@ -8,7 +8,7 @@
  * Words are little-endian. The checksums are a chain, so that a record that is damaged, missing,
  * doubled or moved is found at its place, and a file without `end` is one whose writer was killed:
  * everything before the first incomplete record still holds. Nothing is read further than it is
- * checked, and no more memory is taken than one record of fixed length and a buffer.
+ * checked, and no more memory is taken than one record: a state at most.
  */
 #ifndef LAR_SESSION_RECORDING_FILE_H
 #define LAR_SESSION_RECORDING_FILE_H
@@ -16,7 +16,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "base/error.h"
+#include "base/memory.h"
 
 /* What the recording was made with. */
 typedef struct lar_recording_header {
@@ -53,14 +53,14 @@ typedef struct lar_recording_writer {
     int cause; /* errno of the first failure; 0: none */
 } lar_recording_writer;
 
-/* Creates the file, or empties it. */
+/* Creates the file. One that is there is written over when it is a recording, or empty, and refused
+ * otherwise. */
 lar_status lar_recording_create(const char *path, const lar_recording_header *header,
                                 lar_recording_writer *writer, lar_error *error);
 /* Adds a record that is no state. A failure is kept and told by lar_recording_finish. */
 void lar_recording_put(lar_recording_writer *writer, const lar_record *record);
-/* Adds the rest of `checkpoint`, whose length is `bytes`. */
-void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, FILE *checkpoint,
-                             uint64_t bytes);
+/* Adds a state: the bytes of a checkpoint (engine/checkpoint.h). */
+void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, const lar_bytes *state);
 /* Hands over to the system what has been put so far: it outlives this process. */
 void lar_recording_flush(lar_recording_writer *writer);
 /* Closes; LAR_ERROR_IO when something could not be written. Twice is fine. */
@@ -85,9 +85,9 @@ void lar_recording_close(lar_recording_reader *reader); /* twice is fine */
 /* The next record. A state must be fetched by lar_recording_state before the next one.
  * LAR_ERROR_FORMAT when it is cut off or damaged, or when the file ends without `end`. */
 lar_status lar_recording_next(lar_recording_reader *reader, lar_record *record, lar_error *error);
-/* Copies a state to `out`; LAR_ERROR_FORMAT when it is damaged. */
-lar_status lar_recording_state(lar_recording_reader *reader, const lar_record *record, FILE *out,
-                               lar_error *error);
+/* The bytes of a state, which the caller frees; LAR_ERROR_FORMAT when it is damaged. */
+lar_status lar_recording_state(lar_recording_reader *reader, const lar_record *record,
+                               lar_bytes *state, lar_error *error);
 
 /* The error of a file that breaks the rules at the record under way. */
 lar_status lar_recording_refuse(const lar_recording_reader *reader, lar_error *error,

@@ -14,7 +14,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/error.h"
+#include "session/device.h"
+#include "session/record.h"
 
 typedef enum lar_request_kind {
     LAR_REQUEST_PLAY = 0,
@@ -25,6 +26,7 @@ typedef enum lar_request_kind {
     LAR_REQUEST_SAVE,
     LAR_REQUEST_LOAD,
     LAR_REQUEST_RECORD,
+    LAR_REQUEST_ATTACH,
     LAR_REQUEST_END
 } lar_request_kind;
 
@@ -33,13 +35,21 @@ typedef struct lar_request_answer {
     bool done;
     lar_status status;
     lar_error error;
+    lar_bytes state;        /* SAVE: the caller writes and frees it */
+    lar_recorder *recorder; /* RECORD: what the engine has let go of; the caller closes it */
 } lar_request_answer;
 
+/* Files are opened, read and written by whoever asks: the engine only gets and gives what is in
+ * them. */
 typedef struct lar_request {
     lar_request_kind kind;
-    uint64_t steps;
-    double pace;
-    const char *path;
+    int32_t tool;               /* ATTACH */
+    uint64_t steps;             /* STEP */
+    double pace;                /* PACE */
+    const char *path;           /* SAVE, LOAD: for messages */
+    const lar_bytes *state;     /* LOAD */
+    lar_recorder *recorder;     /* RECORD; NULL: ends */
+    lar_device *device;         /* ATTACH: the session's when it succeeds */
     lar_request_answer *answer; /* NULL: nobody waits */
 } lar_request;
 
@@ -59,6 +69,9 @@ void lar_requests_create(lar_requests *requests);
 void lar_requests_destroy(lar_requests *requests);
 
 /* Any thread but the engine's, which holds the lock. Waits while the ring is full. */
+static inline bool lar_requests_full(const lar_requests *requests) {
+    return requests->placed - requests->taken == LAR_REQUESTS_MOST;
+}
 void lar_requests_place(lar_requests *requests, const lar_request *request);
 /* Waits on the bell, at most until `deadline` (base/clock.h); false when that has passed. */
 bool lar_requests_wait(lar_requests *requests, int64_t deadline);

@@ -57,6 +57,27 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
     return status;
 }
 
+lar_recording_header lar_session_recording_header(const lar_session *session) {
+    const lar_simulation *simulation = session->simulation;
+    const lar_model *model = simulation->domain.model;
+    return (lar_recording_header){.element = simulation->domain.kind,
+                                  .nodes = model->mesh.node_count,
+                                  .elements = model->mesh.element_count,
+                                  .tools = session->tools,
+                                  .hands = session->tools - lar_model_tool_count(model),
+                                  .time_step = session->time_step,
+                                  .tick_steps = session->tick_steps,
+                                  .hash_every = session->options.hash_every};
+}
+
+static lar_status record_from_start(lar_session *session, lar_error *error) {
+    const char *path = session->options.record;
+    if (!path) return LAR_OK;
+    lar_status status = lar_session_record(session, path, error);
+    session->options.record = NULL; /* borrowed until here */
+    return status;
+}
+
 static void destroy(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {
         lar_device_close(session->tool[i].device);
@@ -90,8 +111,12 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
         return status;
     }
     lar_session_publish(session, true);
-    *out = session;
-    return LAR_OK;
+    status = record_from_start(session, error);
+    if (status)
+        destroy(session);
+    else
+        *out = session;
+    return status;
 }
 
 /* Signals are for the threads of the program, not for the engine. */
@@ -131,210 +156,16 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
     return status;
 }
 
-/* ---- asking -------------------------------------------------------------------------------- */
-
-static void ask(lar_session *session, lar_request request) {
-    if (!session) return;
-    pthread_mutex_lock(&session->requests.lock);
-    if (session->started)
-        lar_requests_place(&session->requests, &request);
-    else
-        lar_session_obey(session, &request);
-    pthread_mutex_unlock(&session->requests.lock);
-}
-
-static lar_status ask_and_wait(lar_session *session, lar_request request, lar_error *error) {
-    lar_request_answer answer = {0};
-    if (!session)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "a call of a session needs one, not NULL");
-    request.answer = &answer;
-    pthread_mutex_lock(&session->requests.lock);
-    if (session->started) {
-        lar_requests_place(&session->requests, &request);
-        while (!answer.done) lar_requests_wait(&session->requests, INT64_MAX);
-    } else {
-        lar_session_obey(session, &request);
-    }
-    pthread_mutex_unlock(&session->requests.lock);
-    if (error && answer.status) *error = answer.error;
-    return answer.status;
-}
-
 lar_status lar_session_close(lar_session *session, lar_error *error) {
-    (void)error;
     if (!session) return LAR_OK;
-    ask(session, (lar_request){.kind = LAR_REQUEST_END});
-    if (session->started) pthread_join(session->thread, NULL);
-    destroy(session);
-    return LAR_OK;
-}
-
-void lar_session_play(lar_session *session) {
-    ask(session, (lar_request){.kind = LAR_REQUEST_PLAY});
-}
-
-void lar_session_pause(lar_session *session) {
-    ask(session, (lar_request){.kind = LAR_REQUEST_PAUSE});
-}
-
-void lar_session_step(lar_session *session, uint64_t steps) {
-    ask(session, (lar_request){.kind = LAR_REQUEST_STEP, .steps = steps});
-}
-
-void lar_session_set_pace(lar_session *session, double pace) {
-    if (pace >= 0 && pace <= 1e6)
-        ask(session, (lar_request){.kind = LAR_REQUEST_PACE, .pace = pace});
-}
-
-lar_status lar_session_reset(lar_session *session, lar_error *error) {
-    return ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_RESET}, error);
-}
-
-static lar_status check_path(const char *path, const char *call, lar_error *error) {
-    if (path && *path) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs the path of a file", call);
-}
-
-lar_status lar_session_save(lar_session *session, const char *path, lar_error *error) {
-    lar_status status = check_path(path, "lar_session_save", error);
-    return status ? status
-                  : ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_SAVE, .path = path},
-                                 error);
-}
-
-lar_status lar_session_load(lar_session *session, const char *path, lar_error *error) {
-    lar_status status = check_path(path, "lar_session_load", error);
-    return status ? status
-                  : ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_LOAD, .path = path},
-                                 error);
-}
-
-lar_status lar_session_record(lar_session *session, const char *path, lar_error *error) {
-    return ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_RECORD, .path = path}, error);
-}
-
-/* ---- tools --------------------------------------------------------------------------------- */
-
-static lar_status check_tool(const lar_session *session, int32_t tool, lar_error *error) {
-    if (!session)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "a call of a session needs one, not NULL");
-    if (tool >= 0 && tool < session->tools) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "there is no tool %ld; the session has %ld, counted from 0", (long)tool,
-                    (long)session->tools);
-}
-
-/* A pose as a device gives it: the quaternion may be off unit length by rounding. */
-static lar_status clean_pose(const lar_tool_pose *pose, lar_tool_pose *clean, lar_error *error) {
-    double square = 0, sum = pose->opening;
-    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
-    for (int i = 0; i < 3; i++) sum += fabs(pose->position[i]);
-    if (!(sum < 1e9) || !(fabs(square - 1) < 0.01) || !(pose->opening >= 0 && pose->opening <= 1))
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "this is no pose of a tool: position %g %g %g m, orientation %g %g %g %g, "
-                        "opening %g; give finite numbers, a unit quaternion, an opening from 0 "
-                        "to 1",
-                        pose->position[0], pose->position[1], pose->position[2],
-                        pose->orientation[0], pose->orientation[1], pose->orientation[2],
-                        pose->orientation[3], pose->opening);
-    *clean = *pose;
-    for (int i = 0; i < 4; i++) clean->orientation[i] /= sqrt(square);
-    return LAR_OK;
-}
-
-lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_tool_pose *pose,
-                                 lar_error *error) {
-    lar_tool_pose clean;
-    lar_status status = check_tool(session, tool, error);
-    if (!status && !pose)
-        status = lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_tool_move needs a pose");
-    if (!status) status = clean_pose(pose, &clean, error);
-    if (status) return status;
-    lar_mailbox *box = &session->tool[tool].hand;
-    lar_mailbox_lock(box);
-    *(lar_tool_pose *)lar_mailbox_draft(box) = clean;
-    lar_mailbox_send(box);
-    lar_mailbox_unlock(box);
-    return LAR_OK;
-}
-
-/* Reading takes a letter out of the box, which changes nothing that callers see. */
-static const lar_session_view *look_at_view(const lar_session *session) {
-    lar_mailbox *box = &((lar_session *)session)->view;
-    lar_mailbox_lock(box);
-    return lar_mailbox_newest(box, NULL);
-}
-
-static void end_look(const lar_session *session) {
-    lar_mailbox_unlock(&((lar_session *)session)->view);
-}
-
-lar_status lar_session_tool_force(const lar_session *session, int32_t tool, lar_tool_pose *pose,
-                                  lar_tool_force *force, lar_error *error) {
-    lar_status status = check_tool(session, tool, error);
-    if (status) return status;
-    const lar_session_view *view = look_at_view(session);
-    if (pose) *pose = view->tool[tool].pose;
-    if (force) *force = view->tool[tool].force;
-    end_look(session);
-    return LAR_OK;
-}
-
-void lar_session_status_get(const lar_session *session, lar_session_status *status) {
-    if (!session || !status) return;
-    *status = look_at_view(session)->status;
-    end_look(session);
-}
-
-int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
-                                  int32_t most, float (*force)[3], uint64_t *last) {
-    uint64_t ignored;
-    if (last) *last = after;
-    if (check_tool(session, tool, NULL) || !force) return 0;
-    return lar_history_copy(&session->history, tool, after, most, force, last ? last : &ignored);
-}
-
-/* ---- snapshots ----------------------------------------------------------------------------- */
-
-lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **out, lar_error *error) {
-    if (!session || !out)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_snapshot_create needs a session and a place for the snapshot");
-    int32_t nodes = session->simulation->domain.model->mesh.node_count;
-    lar_snapshot *snapshot = lar_calloc(1, sizeof *snapshot);
-    if (snapshot) snapshot->u = lar_calloc((size_t)nodes, sizeof *snapshot->u);
-    if (!snapshot || !snapshot->u) {
-        free(snapshot);
-        return lar_fail_memory(error, (size_t)nodes * sizeof *snapshot->u, "a snapshot");
+    if (session->started) {
+        pthread_mutex_lock(&session->requests.lock);
+        lar_requests_place(&session->requests, &(lar_request){.kind = LAR_REQUEST_END});
+        pthread_mutex_unlock(&session->requests.lock);
+        pthread_join(session->thread, NULL);
     }
-    snapshot->nodes = nodes;
-    *out = snapshot;
-    return LAR_OK;
-}
-
-void lar_snapshot_destroy(lar_snapshot *snapshot) {
-    if (!snapshot) return;
-    free(snapshot->u);
-    free(snapshot);
-}
-
-lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot, double seconds,
-                                lar_error *error) {
-    if (!session || !snapshot)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_session_snapshot needs a session and a snapshot; neither may be NULL");
-    int64_t limit = lar_clock_ns() + (int64_t)(1e9 * fmin(fmax(seconds, 0), 1e6));
-    uint64_t number = lar_snapshots_ask(&session->snapshots);
-    bool in_time = true;
-    pthread_mutex_lock(&session->requests.lock);
-    if (!session->started) lar_snapshots_serve(&session->snapshots, session->simulation);
-    pthread_cond_signal(&session->requests.work);
-    while (in_time && !lar_snapshots_ready(&session->snapshots, number))
-        in_time = lar_requests_wait(&session->requests, limit);
-    in_time = lar_snapshots_ready(&session->snapshots, number);
-    pthread_mutex_unlock(&session->requests.lock);
-    if (!in_time)
-        return lar_fail(error, LAR_ERROR_PEER,
-                        "no snapshot came within %g s: a tick takes longer; wait longer", seconds);
-    return lar_snapshots_take(&session->snapshots, session->simulation, snapshot, error);
+    lar_session_note_end(session);
+    lar_status status = lar_recorder_close(session->recorder, error);
+    destroy(session);
+    return status;
 }

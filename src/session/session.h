@@ -71,18 +71,32 @@ struct lar_session {
     lar_pace pace;
     bool stepping; /* pauses when `steps_left` are done */
     uint64_t steps_left;
+    uint64_t good_step;     /* where the last tick ended that did not break */
+    lar_recorder *recorder; /* NULL: none */
+    uint64_t hashed;        /* step of the latest hash in the recording */
     bool ended;
 };
+
+/* Refuses NULL and tools that are none. */
+lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_error *error);
+lar_recording_header lar_session_recording_header(const lar_session *session);
 
 /* All that follows belongs to the engine's thread, or to whoever holds requests.lock while there is
  * none. */
 
 void *lar_session_run(void *session);
 void lar_session_obey(lar_session *session, const lar_request *request);
+/* Plays from now on; rests; stops, because the run broke. */
+void lar_session_go_on(lar_session *session);
+void lar_session_rest(lar_session *session);
+void lar_session_stop(lar_session *session, const lar_error *error);
 /* Tells everybody how it stands; with `quantiles` also what has to be summed up. */
 void lar_session_publish(lar_session *session, bool quantiles);
 /* Into the recording, when there is one. */
 void lar_session_note(lar_session *session, const lar_record *record);
+/* The hash of this moment; the end. */
+void lar_session_note_hash(lar_session *session);
+void lar_session_note_end(lar_session *session);
 
 /* The tools are where the simulation has them, and nobody leads them. */
 void lar_session_take_tools(lar_session *session);

@@ -55,7 +55,7 @@ bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulat
     if (asked == snapshots->answered) return false;
     const lar_state *state = lar_simulation_state(simulation);
     frame *f = lar_mailbox_draft(&snapshots->frames);
-    *f = (frame){.step = state->step, .time = lar_simulation_time(simulation)};
+    *f = (frame){.step = state->step, .time = (double)state->step * simulation->domain.time_step};
     lar_state copy = state_of(f, simulation);
     memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
     memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);

@@ -26,33 +26,34 @@ void lar_session_publish(lar_session *session, bool quantiles) {
 }
 
 static void serve_snapshots(lar_session *session) {
+    lar_error error;
+    if (session->status.state == LAR_SESSION_PLAYING && lar_snapshots_wanted(&session->snapshots) &&
+        lar_simulation_gather(session->simulation, &error))
+        lar_session_stop(session, &error);
     bool served = lar_snapshots_serve(&session->snapshots, session->simulation);
     session->pace.total.snapshots += served;
     if (served || session->requests.ring_the_bell) lar_requests_ring(&session->requests);
 }
 
-void lar_session_note(lar_session *session, const lar_record *record) {
-    (void)session, (void)record;
-}
-
 /* ---- playing ------------------------------------------------------------------------------- */
 
-static void stop(lar_session *session, const lar_error *error) {
+void lar_session_stop(lar_session *session, const lar_error *error) {
     session->status.state = LAR_SESSION_STOPPED;
+    session->stepping = false;
     memcpy(session->status.message, error->message, sizeof session->status.message);
     lar_pace_stop(&session->pace);
     lar_session_idle_tools(session, 0);
     lar_session_publish(session, true);
 }
 
-static void pause_now(lar_session *session) {
+void lar_session_rest(lar_session *session) {
     session->status.state = LAR_SESSION_PAUSED;
     session->stepping = false;
     lar_pace_stop(&session->pace);
     lar_session_publish(session, true);
 }
 
-static void play(lar_session *session) {
+void lar_session_go_on(lar_session *session) {
     session->status.state = LAR_SESSION_PLAYING;
     lar_pace_start(&session->pace);
 }
@@ -64,9 +65,9 @@ static void tick(lar_session *session) {
     lar_pace_begin(&session->pace, steps, (double)steps * session->time_step);
     lar_status status = lar_session_move_tools(session, &error);
     int64_t begin = lar_clock_ns();
-    if (!status) status = lar_simulation_advance(session->simulation, steps, &error);
+    if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
     if (status) {
-        stop(session, &error);
+        lar_session_stop(session, &error);
         return;
     }
     lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
@@ -74,80 +75,16 @@ static void tick(lar_session *session) {
     session->pace.total.exchanges++;
     lar_pace_answered(&session->pace);
     lar_session_publish(session, lar_pace_look(&session->pace));
+    session->good_step = session->status.step;
     serve_snapshots(session);
+    if (session->recorder && session->good_step - session->hashed >= session->options.hash_every)
+        lar_session_note_hash(session);
     if (!session->stepping) return;
     session->steps_left -= steps;
-    if (session->steps_left == 0) pause_now(session);
+    if (session->steps_left == 0) lar_session_rest(session);
 }
 
-/* ---- what is asked for --------------------------------------------------------------------- */
-
-/* The simulation is somewhere else now. */
-static void arrive(lar_session *session) {
-    lar_session_take_tools(session);
-    session->status.message[0] = '\0';
-    if (session->status.state == LAR_SESSION_STOPPED) play(session);
-    lar_pace_restart(&session->pace);
-}
-
-static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
-    lar_simulation *simulation = session->simulation;
-    lar_status status = LAR_OK;
-    switch (request->kind) {
-    case LAR_REQUEST_RESET:
-        status = lar_simulation_reset(simulation, error);
-        if (!status) arrive(session);
-        break;
-    case LAR_REQUEST_SAVE:
-        status = lar_simulation_save(simulation, request->path, error);
-        break;
-    case LAR_REQUEST_LOAD:
-        status = lar_simulation_load(simulation, request->path, error);
-        if (!status) arrive(session);
-        break;
-    default:
-        status = lar_fail(error, LAR_ERROR_UNSUPPORTED, "recording is not there yet");
-        break;
-    }
-    return status;
-}
-
-static void go(lar_session *session, const lar_request *request) {
-    bool broken = session->status.state == LAR_SESSION_STOPPED;
-    switch (request->kind) {
-    case LAR_REQUEST_PLAY:
-        session->stepping = false;
-        if (!broken) play(session);
-        break;
-    case LAR_REQUEST_PAUSE:
-        if (!broken) pause_now(session);
-        break;
-    case LAR_REQUEST_STEP:
-        if (broken || request->steps == 0) break;
-        session->steps_left = (session->stepping ? session->steps_left : 0) + request->steps;
-        session->stepping = true;
-        play(session);
-        break;
-    case LAR_REQUEST_PACE:
-        lar_pace_set(&session->pace, request->pace);
-        break;
-    default:
-        session->ended = true;
-        break;
-    }
-}
-
-void lar_session_obey(lar_session *session, const lar_request *request) {
-    if (!request->answer) {
-        go(session, request);
-        return;
-    }
-    lar_error error = {LAR_OK, ""};
-    lar_status status = change(session, request, &error);
-    lar_session_publish(session, true);
-    request->answer->error = error;
-    request->answer->status = status;
-}
+/* ---- the thread ---------------------------------------------------------------------------- */
 
 static void obey_requests(lar_session *session) {
     lar_request request;
@@ -156,8 +93,6 @@ static void obey_requests(lar_session *session) {
         if (request.answer) lar_requests_answer(&session->requests, request.answer);
     }
 }
-
-/* ---- the thread ---------------------------------------------------------------------------- */
 
 static bool snapshot_is_wanted(void *context) {
     const lar_session *session = context;
@@ -184,7 +119,7 @@ void *lar_session_run(void *argument) {
     lar_session *session = argument;
     double fade = FADE;
     lar_clock_be_prompt();
-    if (session->status.state == LAR_SESSION_PLAYING) lar_pace_start(&session->pace);
+    if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
     while (!session->ended) {
         obey_requests(session);
         if (session->ended) break;

@@ -1,0 +1,128 @@
+/* What is asked of a session, from any thread. */
+
+#include "engine/checkpoint.h"
+#include "session/session.h"
+
+/* Before the start it waits for the start. */
+static void ask(lar_session *session, lar_request request) {
+    if (!session) return;
+    pthread_mutex_lock(&session->requests.lock);
+    if (session->started || !lar_requests_full(&session->requests))
+        lar_requests_place(&session->requests, &request);
+    pthread_mutex_unlock(&session->requests.lock);
+}
+
+/* Done when it returns. */
+static lar_status ask_and_wait(lar_session *session, lar_request request, lar_error *error) {
+    lar_request_answer *answer = request.answer;
+    pthread_mutex_lock(&session->requests.lock);
+    if (session->started) {
+        lar_requests_place(&session->requests, &request);
+        while (!answer->done) lar_requests_wait(&session->requests, INT64_MAX);
+    } else {
+        lar_session_obey(session, &request);
+    }
+    pthread_mutex_unlock(&session->requests.lock);
+    if (error && answer->status) *error = answer->error;
+    return answer->status;
+}
+
+void lar_session_play(lar_session *session) {
+    ask(session, (lar_request){.kind = LAR_REQUEST_PLAY});
+}
+
+void lar_session_pause(lar_session *session) {
+    ask(session, (lar_request){.kind = LAR_REQUEST_PAUSE});
+}
+
+void lar_session_step(lar_session *session, uint64_t steps) {
+    ask(session, (lar_request){.kind = LAR_REQUEST_STEP, .steps = steps});
+}
+
+void lar_session_set_pace(lar_session *session, double pace) {
+    if (pace >= 0 && pace <= 1e6)
+        ask(session, (lar_request){.kind = LAR_REQUEST_PACE, .pace = pace});
+}
+
+static lar_status check_session(const lar_session *session, lar_error *error) {
+    if (session) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "a call of a session needs one, not NULL");
+}
+
+static lar_status check_file(const lar_session *session, const char *path, const char *call,
+                             lar_error *error) {
+    lar_status status = check_session(session, error);
+    if (status || (path && *path)) return status;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs the path of a file", call);
+}
+
+lar_status lar_session_reset(lar_session *session, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = check_session(session, error);
+    if (status) return status;
+    return ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_RESET, .answer = &answer},
+                        error);
+}
+
+lar_status lar_session_save(lar_session *session, const char *path, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = check_file(session, path, "lar_session_save", error);
+    if (!status)
+        status = ask_and_wait(
+            session, (lar_request){.kind = LAR_REQUEST_SAVE, .path = path, .answer = &answer},
+            error);
+    if (!status) status = lar_checkpoint_store(path, &answer.state, error);
+    lar_bytes_free(&answer.state);
+    return status;
+}
+
+lar_status lar_session_load(lar_session *session, const char *path, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_bytes state = {0};
+    lar_status status = check_file(session, path, "lar_session_load", error);
+    if (!status) status = lar_bytes_read(path, &state, error);
+    if (!status)
+        status = ask_and_wait(
+            session,
+            (lar_request){
+                .kind = LAR_REQUEST_LOAD, .path = path, .state = &state, .answer = &answer},
+            error);
+    lar_bytes_free(&state);
+    return status;
+}
+
+lar_status lar_session_record(lar_session *session, const char *path, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_recorder *recorder = NULL;
+    lar_status status = check_session(session, error);
+    if (!status && path) {
+        const lar_recording_header header = lar_session_recording_header(session);
+        status = lar_recorder_create(path, &header, &recorder, error);
+    }
+    if (!status)
+        status = ask_and_wait(
+            session,
+            (lar_request){.kind = LAR_REQUEST_RECORD, .recorder = recorder, .answer = &answer},
+            error);
+    lar_status closed = lar_recorder_close(answer.recorder, status ? NULL : error);
+    return status ? status : closed;
+}
+
+lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
+                              lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_device *opened = NULL;
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && (!device || !*device))
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_attach needs a device, such as \"udp:127.0.0.1:9000\"");
+    if (!status) status = lar_device_open(device, &session->tool[tool].info, &opened, error);
+    if (status) return status;
+    status = ask_and_wait(
+        session,
+        (lar_request){
+            .kind = LAR_REQUEST_ATTACH, .tool = tool, .device = opened, .answer = &answer},
+        error);
+    if (status) lar_device_close(opened);
+    return status;
+}

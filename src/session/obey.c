@@ -1,0 +1,138 @@
+/* What is asked of a session, done by the engine's thread between two ticks. */
+#include <string.h>
+
+#include "session/session.h"
+
+/* ---- the recording ------------------------------------------------------------------------- */
+
+void lar_session_note(lar_session *session, const lar_record *record) {
+    if (session->recorder && !lar_recorder_put(session->recorder, record))
+        session->status.recording = 0; /* the file is at fault; whoever closes it is told */
+}
+
+void lar_session_note_hash(lar_session *session) {
+    lar_error error;
+    if (!session->recorder) return;
+    if (lar_simulation_gather(session->simulation, &error)) {
+        lar_session_stop(session, &error);
+        return;
+    }
+    session->hashed = lar_simulation_steps(session->simulation);
+    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_HASH,
+                                            .step = session->hashed,
+                                            .hash = lar_simulation_hash(session->simulation)});
+}
+
+/* A run that broke is not brought to its last step when it is played: it would break again. */
+void lar_session_note_end(lar_session *session) {
+    if (!session->recorder) return;
+    bool broken = session->status.state == LAR_SESSION_STOPPED;
+    if (!broken) lar_session_note_hash(session);
+    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_END,
+                                            .step = lar_simulation_steps(session->simulation)});
+}
+
+static lar_status change_recorder(lar_session *session, const lar_request *request,
+                                  lar_error *error) {
+    lar_recorder *fresh = request->recorder;
+    lar_status status = LAR_OK;
+    if (fresh) status = lar_recorder_put_state(fresh, session->simulation, error);
+    if (status) {
+        request->answer->recorder = fresh;
+        return status;
+    }
+    lar_session_note_end(session);
+    request->answer->recorder = session->recorder;
+    session->recorder = fresh;
+    session->hashed = lar_simulation_steps(session->simulation);
+    session->status.recording = fresh != NULL;
+    return LAR_OK;
+}
+
+/* ---- going back, saving, loading ----------------------------------------------------------- */
+
+/* The simulation is somewhere else now. */
+static void arrive(lar_session *session) {
+    lar_session_take_tools(session);
+    session->status.message[0] = '\0';
+    session->good_step = session->hashed = lar_simulation_steps(session->simulation);
+    if (session->status.state == LAR_SESSION_STOPPED) lar_session_go_on(session);
+    lar_pace_restart(&session->pace);
+}
+
+static lar_status reset(lar_session *session, lar_error *error) {
+    lar_status status = lar_simulation_reset(session->simulation, error);
+    if (status) return status;
+    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
+    arrive(session);
+    return LAR_OK;
+}
+
+static lar_status load(lar_session *session, const lar_request *request, lar_error *error) {
+    lar_status status =
+        lar_simulation_unpack(session->simulation, request->path, request->state, error);
+    if (status) return status;
+    arrive(session);
+    if (session->recorder)
+        status = lar_recorder_put_state(session->recorder, session->simulation, error);
+    return status;
+}
+
+static lar_status attach(lar_session *session, const lar_request *request, lar_error *error) {
+    lar_session_tool *tool = &session->tool[request->tool];
+    if (tool->device)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %ld, '%s', has a device already, and keeps it until the session ends",
+                        (long)request->tool, tool->info.name);
+    tool->device = request->device;
+    return LAR_OK;
+}
+
+static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
+    switch (request->kind) {
+    case LAR_REQUEST_RESET:
+        return reset(session, error);
+    case LAR_REQUEST_SAVE:
+        return lar_simulation_pack(session->simulation, request->path, &request->answer->state,
+                                   error);
+    case LAR_REQUEST_LOAD:
+        return load(session, request, error);
+    case LAR_REQUEST_RECORD:
+        return change_recorder(session, request, error);
+    default:
+        return attach(session, request, error);
+    }
+}
+
+/* ---- playing ------------------------------------------------------------------------------- */
+
+static void step(lar_session *session, uint64_t steps) {
+    if (steps == 0) return;
+    session->steps_left = steps + (session->stepping ? session->steps_left : 0);
+    session->stepping = true;
+    lar_session_go_on(session);
+}
+
+static void go(lar_session *session, const lar_request *request) {
+    bool broken = session->status.state == LAR_SESSION_STOPPED;
+    if (request->kind == LAR_REQUEST_PACE) lar_pace_set(&session->pace, request->pace);
+    if (request->kind == LAR_REQUEST_END) session->ended = true;
+    if (broken) return;
+    if (request->kind == LAR_REQUEST_PAUSE) lar_session_rest(session);
+    if (request->kind == LAR_REQUEST_STEP) step(session, request->steps);
+    if (request->kind != LAR_REQUEST_PLAY) return;
+    session->stepping = false;
+    lar_session_go_on(session);
+}
+
+void lar_session_obey(lar_session *session, const lar_request *request) {
+    if (!request->answer) {
+        go(session, request);
+        return;
+    }
+    lar_error error = {LAR_OK, ""};
+    lar_status status = change(session, request, &error);
+    lar_session_publish(session, true);
+    request->answer->error = error;
+    request->answer->status = status;
+}
