@@ -24,9 +24,10 @@ TEST_UNUSED static void add_tool(lar_model *model, const char *name, lar_tool_sh
 /* The same body, so fine that its state is more than one packet between processes. */
 static const brick fine_tool_brick = {{12, 10, 8}, 0.005, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
 
-/* everything_model with a ball and a rod above its top and a grasper beside it, all open. */
+/* everything_model, on a ground, with a ball, a rod and an open grasper above its top. */
 TEST_UNUSED static lar_model *tool_model_of(const brick *b) {
     lar_model *model = everything_model(b);
+    fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_X | LAR_AXIS_Z); /* it does not sag away */
     add_tool(model, "ball", LAR_TOOL_SPHERE, 0.03, 0.025, 0.052);
     add_tool(model, "rod", LAR_TOOL_CAPSULE, 0.045, 0.01, 0.052);
     add_tool(model, "grasper", LAR_TOOL_GRASPER, 0.03, 0.015, 0.095);
