@@ -144,6 +144,16 @@ static int parse_choice(const cli_command *command, const cli_option *option, co
     return refuse_value(command, option, text, expected);
 }
 
+static int parse_texts(const cli_command *command, const cli_option *option, const char *text) {
+    cli_texts *texts = option->value;
+    if (!*text) return refuse_value(command, option, "\"\"", option->placeholder);
+    if (texts->count == CLI_TEXTS_MOST)
+        return cli_complain(command, CLI_USAGE, "%s can be given %d times", option->name,
+                            CLI_TEXTS_MOST);
+    texts->text[texts->count++] = text;
+    return -1;
+}
+
 static int parse_value(const cli_command *command, const cli_option *option, const char *text) {
     switch (option->kind) {
     case OPTION_FLAG:
@@ -158,6 +168,8 @@ static int parse_value(const cli_command *command, const cli_option *option, con
         return parse_count(command, option, text);
     case OPTION_CHOICE:
         return parse_choice(command, option, text);
+    case OPTION_TEXTS:
+        return parse_texts(command, option, text);
     }
     return CLI_USAGE;
 }

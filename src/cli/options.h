@@ -20,7 +20,15 @@ typedef enum cli_option_kind {
     OPTION_REAL,   /* double *value, least..most */
     OPTION_COUNT,  /* int64_t *value, least..most */
     OPTION_CHOICE, /* int *value: index into choices */
+    OPTION_TEXTS,  /* cli_texts *value: may be given again and again */
 } cli_option_kind;
+
+enum { CLI_TEXTS_MOST = 16 };
+
+typedef struct cli_texts {
+    int count;
+    const char *text[CLI_TEXTS_MOST];
+} cli_texts;
 
 typedef struct cli_option {
     const char *name; /* "--time"; NULL ends the table */
@@ -38,6 +46,8 @@ typedef struct cli_option {
 #define CLI_VALUE(k, n, p, h, v) .name = n, .kind = k, .placeholder = p, .help = h, .value = v
 #define CLI_TEXT(n, p, h, v)                                                                       \
     { CLI_VALUE(OPTION_TEXT, n, p, h, v) }
+#define CLI_TEXTS(n, p, h, v)                                                                      \
+    { CLI_VALUE(OPTION_TEXTS, n, p, h, v) }
 #define CLI_REAL(n, p, h, v, from, to)                                                             \
     { CLI_VALUE(OPTION_REAL, n, p, h, v), .least = from, .most = to }
 #define CLI_COUNT(n, p, h, v, from, to)                                                            \

@@ -1,0 +1,387 @@
+/* lariat view: a scene in real time, in the browser. */
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/parallel.h"
+#include "cli/view_report.h"
+
+/* Not in every build yet. */
+extern __typeof__(lar_session_attach) lar_session_attach __attribute__((weak));
+
+typedef struct view_settings {
+    const char *scene, *listen, *token, *record, *save_folder, *viewer;
+    cli_texts devices; /* TOOL=SPEC */
+    int64_t port;
+    double pace, seconds, time_step;
+    int isa;
+    bool paused, open, json;
+    cli_parallel parallel;
+    int argc; /* what the command was given */
+    char **argv;
+} view_settings;
+
+typedef struct view {
+    view_settings settings;
+    lar_model *model;
+    lar_processes *processes;
+    lar_parallel parallel;
+    lar_simulation *simulation;
+    lar_session *session;
+    lar_server *server;
+    view_report report;
+    char *url;
+    lar_session_state state; /* as last told */
+    bool slow;
+    double slow_told; /* when slow motion was last announced [s] */
+    double progress_at;
+    lar_status failure;
+} view;
+
+/* ---- stopping ---------------------------------------------------------------------------------
+ */
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_stop(int signal_number) {
+    stop_asked = signal_number;
+}
+
+/* The first signal ends the program with its report, a second one at once. */
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+}
+
+static double now(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+/* ---- opening ----------------------------------------------------------------------------------
+ */
+
+static int fail_by(view *v, const lar_error *error) {
+    v->failure = error->status;
+    return cli_complain(&cli_view, CLI_FAILED, "%s", error->message);
+}
+
+/* The model, the processes, and this one's share of the simulation. */
+static int prepare(view *v) {
+    const view_settings *s = &v->settings;
+    lar_options options = lar_options_default();
+    lar_error error;
+    options.isa = (lar_isa)s->isa;
+    options.time_step = s->time_step;
+    options.hands = 4;
+    cli_parallel_set(&s->parallel, &options);
+    int status = cli_processes_begin(&cli_view, &s->parallel, s->argc, s->argv, &v->processes);
+    if (!status) status = cli_open_model(&cli_view, s->scene, &v->model);
+    if (!status)
+        status = cli_processes_start(&cli_view, v->processes, v->model, &options, &v->parallel);
+    if (status) return status;
+    if (!lar_model_inspect(v->model, &v->report.info, &error) &&
+        !lar_processes_create(v->processes, v->model, &options, &v->simulation, &error))
+        return CLI_DONE;
+    v->failure = error.status;
+    return cli_complain_as_other(&cli_view, v->processes, &error);
+}
+
+static int unknown_tool(const view *v, const char *device) {
+    char known[512] = "";
+    for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation); i++) {
+        lar_tool_info tool;
+        size_t used = strlen(known);
+        if (!lar_simulation_tool(v->simulation, i, &tool, NULL))
+            snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", tool.name);
+    }
+    return cli_complain(&cli_view, CLI_USAGE, "--device %s: there is no such tool; there are: %s",
+                        device, known);
+}
+
+/* "probe=udp:127.0.0.1:9000" */
+static int attach(view *v, const char *device) {
+    const char *equals = strchr(device, '=');
+    size_t length = equals ? (size_t)(equals - device) : 0;
+    lar_error error;
+    if (!equals)
+        return cli_complain(&cli_view, CLI_USAGE,
+                            "--device %s: write TOOL=DEVICE, such as probe=udp:127.0.0.1:9000",
+                            device);
+    for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation); i++) {
+        lar_tool_info tool;
+        if (lar_simulation_tool(v->simulation, i, &tool, NULL) || strlen(tool.name) != length ||
+            memcmp(tool.name, device, length) != 0)
+            continue;
+        if (lar_session_attach(v->session, i, equals + 1, &error)) return fail_by(v, &error);
+        return CLI_DONE;
+    }
+    return unknown_tool(v, device);
+}
+
+/* The port that is asked for, or the next one that is free. */
+static int open_server(view *v) {
+    const view_settings *s = &v->settings;
+    enum { TRIES = 50 };
+    lar_server_options options = {.address = s->listen,
+                                  .port = (int)s->port,
+                                  .token = s->token,
+                                  .folder = s->viewer,
+                                  .save_folder = s->save_folder};
+    lar_error error, first;
+    lar_status status = lar_server_open(v->session, v->model, &options, &v->server, &first);
+    error = first;
+    for (int i = 1; i < TRIES && status == LAR_ERROR_IO && options.port > 0 && options.port < 65535;
+         i++) {
+        options.port++;
+        status = lar_server_open(v->session, v->model, &options, &v->server, &error);
+    }
+    if (status) return fail_by(v, status == LAR_ERROR_IO ? &first : &error);
+    if (options.port != s->port)
+        cli_complain(&cli_view, CLI_DONE, "note: port %d is taken; listening at port %d instead",
+                     (int)s->port, options.port);
+    v->url = strdup(lar_server_url(v->server));
+    return CLI_DONE;
+}
+
+static int open_session(view *v) {
+    const view_settings *s = &v->settings;
+    lar_session_options options = lar_session_options_default();
+    lar_error error;
+    options.pace = s->pace;
+    options.paused = s->paused;
+    options.record = s->record;
+    if (lar_session_open(v->simulation, &options, &v->session, &error)) return fail_by(v, &error);
+    int status = CLI_DONE;
+    for (int i = 0; i < s->devices.count && !status; i++) status = attach(v, s->devices.text[i]);
+    if (!status) status = open_server(v);
+    if (!status && lar_session_start(v->session, &error)) status = fail_by(v, &error);
+    return status;
+}
+
+/* ---- the browser -------------------------------------------------------------------------------
+ */
+
+static bool has_display(void) {
+    const char *x = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+    return (x && *x) || (wayland && *wayland);
+}
+
+static void open_browser(const char *url) {
+    char *const argv[] = {"xdg-open", (char *)url, NULL};
+    extern char **environ;
+    posix_spawn_file_actions_t quiet;
+    pid_t child;
+    if (!has_display()) {
+        cli_complain(&cli_view, CLI_DONE,
+                     "note: there is no display here to open a browser on; open the address "
+                     "yourself");
+        return;
+    }
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    if (posix_spawnp(&child, argv[0], &quiet, NULL, argv, environ) != 0)
+        cli_complain(&cli_view, CLI_DONE,
+                     "note: there is no xdg-open here; open the address in a browser yourself");
+    posix_spawn_file_actions_destroy(&quiet);
+}
+
+/* ---- while it runs ------------------------------------------------------------------------------
+ */
+
+static void clear_progress(view *v) {
+    if (v->progress_at > 0) fputs("\r\033[K", stderr);
+    v->progress_at = 0;
+}
+
+static void show_progress(view *v, const lar_session_status *s, double at) {
+    static const double EVERY = 0.5; /* [s] */
+    if (at < v->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
+    fprintf(stderr,
+            "\r%.1f s simulated, %.2f x real time, %" PRIu64 " of %" PRIu64
+            " ticks missed, %d viewer%s \033[K",
+            s->time, s->real_time_factor_now, s->misses, s->ticks,
+            (int)lar_server_viewers(v->server), lar_server_viewers(v->server) == 1 ? "" : "s");
+    fflush(stderr);
+    v->progress_at = at;
+}
+
+/* Slow motion and stops are announced, each time they begin. */
+static void announce(view *v, const lar_session_status *s, double at) {
+    static const double RATHER_NOT_AGAIN = 5; /* [s] */
+    if (s->slow_motion && !v->slow) {
+        v->report.slow_times++;
+        if (at > v->slow_told + RATHER_NOT_AGAIN) {
+            clear_progress(v);
+            cli_complain(&cli_view, CLI_DONE,
+                         "note: slow motion: %.2f times real time; the machine is busy or the "
+                         "model too large",
+                         s->real_time_factor_now);
+            v->slow_told = at;
+        }
+    }
+    v->slow = s->slow_motion != 0;
+    if (s->state == LAR_SESSION_STOPPED && v->state != LAR_SESSION_STOPPED) {
+        clear_progress(v);
+        cli_complain(&cli_view, CLI_DONE, "note: the run has stopped, reset takes it up again: %s",
+                     s->message);
+    }
+    v->state = s->state;
+}
+
+static void look_after(view *v) {
+    const struct timespec nap = {0, 50000000};
+    double begin = now();
+    v->slow_told = -1e9;
+    while (!stop_asked && (v->settings.seconds <= 0 || now() < begin + v->settings.seconds)) {
+        lar_session_status status;
+        nanosleep(&nap, NULL);
+        lar_session_status_get(v->session, &status);
+        int32_t viewers = lar_server_viewers(v->server);
+        if (viewers > v->report.viewers_most) v->report.viewers_most = viewers;
+        announce(v, &status, now());
+        show_progress(v, &status, now());
+        while (waitpid(-1, NULL, WNOHANG) > 0) continue; /* the browser's starter */
+    }
+    clear_progress(v);
+    v->report.elapsed = now() - begin;
+    lar_session_status_get(v->session, &v->report.status);
+}
+
+/* ---- the command --------------------------------------------------------------------------------
+ */
+
+static void greet(const view *v) {
+    FILE *out = v->settings.json ? stderr : stdout;
+    fprintf(out, "%s\n", v->url ? v->url : "");
+    fprintf(out, "Open this address in a browser; Ctrl-C ends.\n");
+    fflush(out);
+    if (v->settings.open && v->url) open_browser(v->url);
+}
+
+static int report(view *v, int status) {
+    view_report *r = &v->report;
+    r->scene = v->settings.scene;
+    r->url = v->url;
+    r->parallel = &v->parallel;
+    r->simulation = v->simulation;
+    r->pace = v->settings.pace;
+    if (v->settings.json)
+        view_report_json(r, stdout);
+    else
+        view_report_table(r, stdout);
+    return !status && r->status.state == LAR_SESSION_STOPPED ? CLI_UNSTABLE : status;
+}
+
+static int present(view *v) {
+    lar_error error;
+    catch_signals();
+    int status = open_session(v);
+    if (!status) {
+        greet(v);
+        look_after(v);
+    }
+    lar_server_close(v->server);
+    if (lar_session_close(v->session, &error) && !status) status = fail_by(v, &error);
+    if (v->report.elapsed > 0) status = report(v, status);
+    free(v->url);
+    return status;
+}
+
+/* Processor zero hears Ctrl-C too, and ends the session for all. */
+static int serve(view *v) {
+    lar_error error;
+    catch_signals();
+    return lar_simulation_serve(v->simulation, &error) ? fail_by(v, &error) : CLI_DONE;
+}
+
+static int view_scene(const view_settings *settings) {
+    view v = {.settings = *settings};
+    int status = prepare(&v);
+    if (!status) status = lar_processes_self(v.processes) > 0 ? serve(&v) : present(&v);
+    lar_simulation_destroy(v.simulation);
+    lar_model_destroy(v.model);
+    if (status && !v.failure) v.failure = LAR_ERROR_IO;
+    return cli_processes_end(&cli_view, v.processes, v.failure, status);
+}
+
+static int view_main(int argc, char **argv) {
+    view_settings s = {
+        .parallel = CLI_PARALLEL_NONE, .argc = argc, .argv = argv, .port = 8000, .pace = 1};
+    const cli_option options[] = {
+        CLI_COUNT("--port", "N",
+                  "where the viewer is served (8000; when it is taken the next\none that is free); "
+                  "0: any free one",
+                  &s.port, 0, 65535),
+        CLI_TEXT(
+            "--listen", "ADDRESS",
+            "an address of this machine that others can reach, or\n0.0.0.0 for all, instead of "
+            "127.0.0.1; needs --token",
+            &s.listen),
+        CLI_TEXT("--token", "TOKEN",
+                 "what viewers must show: 8 to 128 letters, digits, - and _;\nit is part of the "
+                 "address that is printed",
+                 &s.token),
+        CLI_TEXTS("--device", "TOOL=DEVICE",
+                  "a tool's device: script:FILE.csv, udp:HOST:PORT, gamepad:N;\nmay be given for "
+                  "several tools",
+                  &s.devices),
+        CLI_TEXT("--record", "FILE", "record all inputs, from the start", &s.record),
+        CLI_TEXT("--save-folder", "DIR",
+                 "where the viewer may save states and recordings; without:\nnowhere",
+                 &s.save_folder),
+        CLI_REAL("--pace", "F",
+                 "simulated seconds per second of the clock (1); 0: as fast as it goes", &s.pace, 0,
+                 100),
+        CLI_FLAG("--paused", "wait for play", &s.paused),
+        CLI_REAL("--seconds", "S", "end after so many seconds of the clock; without: at Ctrl-C",
+                 &s.seconds, 1e-3, 1e9),
+        CLI_FLAG("--open", "open the address in a browser, where there is a display", &s.open),
+        CLI_TEXT("--viewer", "DIR", "the viewer's files, instead of those of this build",
+                 &s.viewer),
+        CLI_REAL("--time-step", "S",
+                 "seconds, instead of the scene's; above the stable step an error", &s.time_step,
+                 1e-15, 1e3),
+        CLI_CHOICE(
+            "--isa", "NAME",
+            "instruction set: auto (default), c, neon, avx2, avx512; the\nresults are the same",
+            &s.isa, cli_isa_names),
+        CLI_PARALLEL(s.parallel),
+        CLI_FLAG("--json", "the report as one JSON object on standard output", &s.json),
+        CLI_END};
+    int status = cli_parse(&cli_view, options, argc, argv, &s.scene, 1);
+    if (status >= 0) return status;
+    status = cli_parallel_check(&cli_view, &s.parallel);
+    return status ? status : view_scene(&s);
+}
+
+const cli_command cli_view = {
+    .name = "view",
+    .summary = "simulate a scene in real time, to see and to pull at in the browser",
+    .arguments = "SCENE",
+    .description =
+        "Simulates a scene at the pace of the clock and serves a viewer, whose address is "
+        "printed:\n"
+        "take hold of the organ with the mouse and pull. Only this machine can reach it unless\n"
+        "--listen says otherwise. Ctrl-C ends it with a report; when the run breaks, the viewer\n"
+        "shows why, and its reset begins again.",
+    .examples =
+        "  lariat view demo/uterus_live.yaml\n"
+        "  lariat view demo/uterus_live.yaml --open --save-folder demo/saved\n"
+        "  lariat view demo/uterus_live.yaml --grid 2x1x1 --device probe=udp:127.0.0.1:9000\n"
+        "  lariat view demo/uterus_live.yaml --listen 0.0.0.0 --token correct-horse-battery\n"
+        "  lariat view demo/uterus_live.yaml --seconds 5 --port 0 --json\n",
+    .main = view_main};

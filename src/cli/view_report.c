@@ -1,0 +1,81 @@
+#include "cli/view_report.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "cli/json.h"
+
+static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
+
+static void write_times(json_writer *json, const char *name, double p50, double p99, double p999,
+                        double max) {
+    json_open(json, name, '{');
+    json_number(json, "p50", 1e6 * p50);
+    json_number(json, "p99", 1e6 * p99);
+    json_number(json, "p999", 1e6 * p999);
+    json_number(json, "max", 1e6 * max);
+    json_close(json);
+}
+
+void view_report_json(const view_report *report, FILE *out) {
+    const lar_session_status *s = &report->status;
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(report->simulation));
+    json_writer json = json_begin(out);
+    json_text(&json, "title", report->info.title);
+    json_text(&json, "url", report->url);
+    json_integer(&json, "elements", report->info.elements);
+    json_integer(&json, "nodes", report->info.nodes);
+    json_text(&json, "grid", report->parallel->grid);
+    json_integer(&json, "processors", report->parallel->processors);
+    json_integer(&json, "threads", report->parallel->threads);
+    json_text(&json, "scheme", report->parallel->scheme);
+    json_text(&json, "comm", report->parallel->comm);
+    json_text(&json, "isa", lar_simulation_isa(report->simulation));
+    json_text(&json, "state", state_names[s->state]);
+    json_text(&json, "message", s->message);
+    json_integer(&json, "steps", (int64_t)s->step);
+    json_number(&json, "time", s->time);
+    json_number(&json, "time_step", lar_simulation_time_step(report->simulation));
+    json_number(&json, "tick", report->tick);
+    json_number(&json, "pace", report->pace);
+    json_number(&json, "wall_time", report->elapsed);
+    json_number(&json, "real_time_factor", s->real_time_factor);
+    json_integer(&json, "ticks", (int64_t)s->ticks);
+    json_integer(&json, "deadline_misses", (int64_t)s->misses);
+    write_times(&json, "wall_per_step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
+    write_times(&json, "wall_per_tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
+    json_integer(&json, "slow_motion", report->slow_times);
+    json_number(&json, "skipped", s->skipped);
+    json_integer(&json, "viewers", report->viewers_most);
+    json_text(&json, "state_hash", hash);
+    json_end(&json);
+}
+
+void view_report_table(const view_report *report, FILE *out) {
+    const lar_session_status *s = &report->status;
+    bool titled = *report->info.title != '\0';
+    fprintf(out, "%s: %d elements, %d nodes (%s)\n", titled ? report->info.title : report->scene,
+            (int)report->info.elements, (int)report->info.nodes,
+            lar_simulation_isa(report->simulation));
+    if (report->parallel->divided)
+        fprintf(out, "%-17s%s: %d processors, scheme %s, by %s\n", "grid", report->parallel->grid,
+                (int)report->parallel->processors, report->parallel->scheme,
+                report->parallel->comm);
+    fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s\n", "simulated", s->time, s->step,
+            lar_simulation_time_step(report->simulation));
+    fprintf(out, "%-17s%.3f; slow motion began %" PRId64 " times, %.3g s were given up\n",
+            "real-time factor", s->real_time_factor, report->slow_times, s->skipped);
+    if (s->ticks > 0) {
+        fprintf(out, "%-17s%" PRIu64 " of %.4g s, %" PRIu64 " missed (%.3f %%)\n", "ticks",
+                s->ticks, report->tick, s->misses, 100 * (double)s->misses / (double)s->ticks);
+        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
+                "a tick's forces", 1e6 * s->tick_p50, 1e6 * s->tick_p99, 1e6 * s->tick_p999,
+                1e6 * s->tick_max);
+        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
+                "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
+                1e6 * s->step_max);
+    }
+    fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
+    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
+}

@@ -1,0 +1,165 @@
+/* What viewers wish for is done. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "session/server_state.h"
+
+lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
+    lar_viewer *viewer = server->first;
+    while (viewer && viewer->number != number) viewer = viewer->next;
+    return viewer;
+}
+
+/* ---- files that are saved ---------------------------------------------------------------------
+ */
+
+static const char CHECKPOINT[] = "checkpoint", RECORDING[] = "recording";
+
+/* The first free name of a kind: uterus-3.checkpoint. False when the folder is full of them. */
+static bool choose_name(const lar_server *server, const char *extension, lar_job *job) {
+    enum { NUMBERS_MOST = 10000 };
+    for (int number = 1; number < NUMBERS_MOST; number++) {
+        int length =
+            snprintf(job->name, sizeof job->name, "%s-%d.%s", server->stem, number, extension);
+        int whole = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
+        if (length < 0 || (size_t)length >= sizeof job->name || whole < 0 ||
+            (size_t)whole >= sizeof job->path)
+            return false;
+        if (access(job->path, F_OK) != 0 && errno == ENOENT) return true;
+    }
+    return false;
+}
+
+/* One of those that were saved here: a viewer cannot name any other file. */
+static bool find_saved(const lar_server *server, const lar_wish *wish, lar_job *job) {
+    for (int i = server->saves - 1; i >= 0; i--) {
+        if (wish->name[0] && strcmp(wish->name, server->save[i]) != 0) continue;
+        snprintf(job->name, sizeof job->name, "%s", server->save[i]);
+        int length = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
+        return length > 0 && (size_t)length < sizeof job->path;
+    }
+    return false;
+}
+
+static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish,
+                        lar_job *job) {
+    if (wish->kind == LAR_WISH_RESET) return true;
+    if (!server->save_folder) {
+        lar_viewer_note(server, viewer,
+                        "saving, loading and recording are not allowed here; start the engine with "
+                        "--save-folder");
+        return false;
+    }
+    if (wish->kind == LAR_WISH_LOAD && !find_saved(server, wish, job)) {
+        lar_viewer_note(server, viewer, "there is no saved state of this name; save one first");
+        return false;
+    }
+    bool names = wish->kind == LAR_WISH_SAVE || (wish->kind == LAR_WISH_RECORD && wish->on);
+    if (names && !choose_name(server, wish->kind == LAR_WISH_SAVE ? CHECKPOINT : RECORDING, job)) {
+        lar_viewer_note(server, viewer,
+                        "no name is left in the folder for saved states, or it cannot be read; "
+                        "move some files away");
+        return false;
+    }
+    return true;
+}
+
+static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .on = wish->on};
+    if (prepare_job(server, viewer, wish, &job) && !lar_work_ask(&server->work, &job))
+        lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+}
+
+static void add_saved(lar_server *server, const char *name) {
+    if (server->saves == LAR_SAVES_MOST) {
+        server->saves--;
+        memmove(server->save, server->save + 1, (size_t)server->saves * sizeof *server->save);
+    }
+    snprintf(server->save[server->saves++], sizeof *server->save, "%s", name);
+}
+
+static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what, const char *name) {
+    lar_json *json = &server->json;
+    lar_json_begin(json);
+    lar_json_text(json, "kind", "saved");
+    lar_json_text(json, "what", what);
+    lar_json_text(json, "name", name);
+    lar_json_end(json);
+    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+}
+
+void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
+    lar_viewer *viewer = lar_server_find(server, end->job.viewer);
+    bool done = end->error.status == LAR_OK;
+    if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
+    if (!done) return;
+    if (end->job.kind == LAR_WISH_SAVE) {
+        add_saved(server, end->job.name);
+        if (viewer) tell_saved(server, viewer, CHECKPOINT, end->job.name);
+    } else if (end->job.kind == LAR_WISH_RECORD && end->job.on) {
+        snprintf(server->recording, sizeof server->recording, "%s", end->job.name);
+    } else if (end->job.kind == LAR_WISH_RECORD && server->recording[0]) {
+        if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
+        server->recording[0] = '\0';
+    }
+}
+
+/* ---- wishes -----------------------------------------------------------------------------------
+ */
+
+static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
+    int field = lar_field_index(wish->field);
+    if (!viewer->asks || field != viewer->field) viewer->asked_at = lar_clock_ns();
+    if (field != viewer->field) viewer->due &= ~(unsigned)LAR_DUE_PICTURE;
+    viewer->field = field;
+    viewer->asks = true;
+}
+
+static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_error error;
+    if (lar_hands_move(&server->hands, viewer->number, wish, lar_clock_ns(), &error))
+        lar_viewer_note(server, viewer, error.message);
+}
+
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    switch (wish->kind) {
+    case LAR_WISH_FRAME:
+        ask_frame(viewer, wish);
+        break;
+    case LAR_WISH_FORCES:
+        viewer->forces_tool = wish->tool;
+        viewer->forces_after = wish->after;
+        lar_viewer_wants(viewer, LAR_DUE_FORCES);
+        break;
+    case LAR_WISH_GRAB:
+    case LAR_WISH_PULL:
+    case LAR_WISH_RELEASE:
+        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+        break;
+    case LAR_WISH_TOOL:
+        move_tool(server, viewer, wish);
+        break;
+    case LAR_WISH_PLAY:
+        lar_session_play(server->session);
+        break;
+    case LAR_WISH_PAUSE:
+        lar_session_pause(server->session);
+        break;
+    case LAR_WISH_STEP:
+        lar_session_step(server->session, wish->steps);
+        break;
+    case LAR_WISH_PACE:
+        lar_session_set_pace(server->session, wish->pace);
+        server->pace = wish->pace;
+        break;
+    case LAR_WISH_RESET:
+    case LAR_WISH_SAVE:
+    case LAR_WISH_LOAD:
+    case LAR_WISH_RECORD:
+        ask_job(server, viewer, wish);
+        break;
+    }
+}

@@ -1,0 +1,168 @@
+/* The viewers' server from inside.
+ *
+ *     listener --accept--> connection --+--> GET: server_http.c, from memory
+ *                        (checked: Host,|
+ *                         Origin, path) '--> upgrade: server_socket.c, a viewer
+ *
+ *     viewers --wishes--> hands, session, work        server_socket.c: what comes in
+ *     viewers <-- hello, surface, status, frames --   server_send.c: what goes out
+ *
+ * One thread serves all connections (libwebsockets' loop); server_work.h has the second one, for
+ * what takes time. Nothing is queued for a viewer but its newest picture and some notes: a slow one
+ * misses pictures, and is closed when it takes nothing for a while.
+ */
+#ifndef LAR_SESSION_SERVER_STATE_H
+#define LAR_SESSION_SERVER_STATE_H
+
+#include <libwebsockets.h>
+
+#include "base/clock.h"
+#include "session/server_files.h"
+#include "session/server_hands.h"
+#include "session/server_json.h"
+#include "session/server_work.h"
+
+_Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
+
+enum {
+    LAR_VIEWERS_MOST = 64,
+    LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
+    LAR_NOTES_MOST = 8,         /* that wait for a viewer */
+    LAR_SAVES_MOST = 16,        /* that `load` knows */
+    LAR_HOST_BYTES = 96,
+    LAR_MESSAGES_A_SECOND = 300
+};
+
+#define LAR_PROTOCOL  "lariat.1"
+#define LAR_SECOND_NS 1000000000LL
+
+/* One viewer. What waits to be sent are bits, so that it can wait once only. */
+enum {
+    LAR_DUE_HELLO = 1,
+    LAR_DUE_SURFACE = 2,
+    LAR_DUE_NOTES = 4,
+    LAR_DUE_FORCES = 8,
+    LAR_DUE_PICTURE = 16, /* the server's picture has what it asked for */
+    LAR_DUE_STATUS = 32
+};
+
+typedef struct lar_viewer {
+    struct lws *wsi;
+    struct lar_viewer *next;
+    uint64_t number;
+    unsigned due;
+    bool token_is_right;
+    lar_close closing;
+    bool told; /* why */
+    char reason[LAR_REASON_BYTES];
+
+    bool asks; /* for a picture */
+    int field; /* index into the table */
+    int64_t asked_at, painted_at;
+    uint64_t painted_step; /* of the last frame; UINT64_MAX: none */
+    int painted_field;
+
+    int32_t forces_tool;
+    uint64_t forces_after;
+
+    char *note[LAR_NOTES_MOST]; /* JSON */
+    int notes;
+
+    char in[LAR_MESSAGE_MOST + 1];
+    size_t in_length;
+    double allowance; /* messages that it may send now */
+    int64_t allowed_at;
+    uint64_t bytes_in;      /* until `bytes_at` */
+    int64_t writable_since; /* when it was last asked whether it can take more; 0: it is not */
+} lar_viewer;
+
+struct lar_server {
+    lar_session *session;
+    const lar_model *model;
+    char host[LAR_HOST_BYTES]; /* as in addresses: "[::1]" */
+    int port;
+    bool loopback, any;
+    char *token, *save_folder, *url;
+    char *stem; /* of names of files that are saved */
+    lar_files files;
+
+    int listener, spare; /* `spare`: a number for a socket, kept for when there are none left */
+    struct lws_context *context;
+    struct lws_vhost *vhost;
+    pthread_t thread;
+    bool started;
+    bool ending;     /* atomic */
+    int32_t viewers; /* atomic */
+    int connections;
+
+    /* The server's thread's. */
+    lar_viewer *first;
+    uint64_t last_number;
+    lar_work work;
+    bool working;
+    lar_hands hands;
+    lar_blob surface;
+    lar_picture picture;
+    lar_json hello; /* all but its beginning */
+    lar_json json;  /* what is being sent */
+    lar_blob forces;
+    lar_session_status status;
+    struct {
+        lar_tool_pose pose;
+        lar_tool_force force;
+    } tool[LAR_TOOLS_MOST];
+    double pace;
+    char save[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
+    int saves;
+    char recording[LAR_NAME_MOST + 1];
+    lws_sorted_usec_list_t beat;
+    int64_t status_at, watched_at, paint_begun, paint_cost;
+};
+
+/* ---- server.c ---- */
+
+/* What the worker has done. */
+void lar_server_collect(lar_server *server);
+
+/* ---- server_http.c ---- */
+
+typedef struct lar_download {
+    const lar_file *file;
+    size_t sent;
+} lar_download;
+
+/* For connections that are not viewers yet; libwebsockets calls it. */
+int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                    size_t length);
+/* Whether the Host and the Origin of a request are ours. */
+bool lar_server_trusts(const lar_server *server, struct lws *wsi);
+
+/* ---- server_socket.c ---- */
+
+int lar_server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                      size_t length);
+/* Ends a connection, with a reason that the viewer is told. */
+void lar_viewer_close(lar_viewer *viewer, lar_close code, const char *reason);
+void lar_viewer_wants(lar_viewer *viewer, unsigned due);
+
+/* ---- server_send.c ---- */
+
+/* The part of `hello` that is the same for all viewers. */
+lar_status lar_server_make_hello(lar_server *server, lar_error *error);
+/* Sends one message that is due; not 0: the connection is broken or ends. */
+int lar_viewer_send(lar_server *server, lar_viewer *viewer);
+/* A note of kind "note" with a sentence. */
+void lar_viewer_note(lar_server *server, lar_viewer *viewer, const char *sentence);
+/* A text, which becomes the viewer's; NULL is fine. When too many wait, the oldest goes. */
+void lar_viewer_text(lar_viewer *viewer, char *text);
+/* For lar_hands. */
+void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t tool,
+                          const char *state);
+
+/* ---- server_act.c ---- */
+
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_job_ended(lar_server *server, const lar_job_end *end);
+lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
+
+#endif
