@@ -96,7 +96,7 @@ export class Endoscope {
 
     private fitting(): number {
         const narrow = Math.min(1, this.camera.aspect);
-        return (this.home.size * 1.12) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
+        return (this.home.size * 0.98) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
     }
 
     private jump(): void {

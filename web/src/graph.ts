@@ -58,7 +58,7 @@ export class Graph {
     draw(history: ForceHistory, range: number): void {
         const pen = this.pen;
         if (!pen || !this.width) return;
-        const left = 30;
+        const left = 36;
         const bottom = this.height - 17;
         const top = 7;
         const wide = this.width - left - 4;
@@ -123,7 +123,7 @@ export class Graph {
             pen.moveTo(left, y);
             pen.lineTo(left + wide, y);
             pen.stroke();
-            pen.fillText(i === 2 ? '0' : label((range * (2 - i)) / 2), left - 5, y);
+            pen.fillText(label((range * (2 - i)) / 2) + (i === 0 ? ' N' : ''), left - 5, y);
         }
         pen.textBaseline = 'alphabetic';
         pen.textAlign = 'center';
@@ -133,13 +133,10 @@ export class Graph {
             pen.moveTo(x, top);
             pen.lineTo(x, top + tall);
             pen.stroke();
-            if (second > 0 && second < SECONDS) pen.fillText(`−${second}`, x, top + tall + 13);
+            if (second > 0 && second < SECONDS) pen.fillText(second === SECONDS - 1 ? `−${second} s` : `−${second}`, x, top + tall + 13);
         }
         pen.textAlign = 'right';
         pen.fillText('now', left + wide + 2, top + tall + 13);
-        pen.textAlign = 'left';
-        pen.fillText('N', 2, top + tall + 13);
-        pen.fillText('s', left - 4, top + tall + 13);
     }
 
     private resize(): void {

@@ -16,14 +16,14 @@ export class Panel {
 
     private readonly rows: Row[] = [
         ['simulated time', (s) => `${s.time.toFixed(2)} s`],
-        ['step', (s) => String(s.step)],
+        ['steps', (s) => String(s.step)],
         ['real-time factor', (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
         ['since the start', (s) => number(s.real_time_factor, 3)],
-        ['a step, median', (s) => `${number(s.step_us.p50, 1)} µs`],
-        ['99 % below', (s) => `${number(s.step_us.p99, 1)} µs`],
-        ['longest', (s) => `${number(s.step_us.max, 0)} µs`],
-        ['answer, 99.9 % below', (s) => `${number(s.tick_us.p999, 0)} µs`, (s) => this.late(s)],
-        ['deadlines missed', (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
+        ['step, median', (s) => `${number(s.step_us.p50, 1)} µs`],
+        ['step, 99 %', (s) => `${number(s.step_us.p99, 1)} µs`],
+        ['step, longest', (s) => `${number(s.step_us.max, 0)} µs`],
+        ['answer, 99.9 %', (s) => `${number(s.tick_us.p999, 0)} µs`, (s) => this.late(s)],
+        ['missed', (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
         ['engine', (s) => rate(s.engine_rate)],
         ['haptics', (s) => rate(s.haptic_rate)],
         ['pictures', () => rate(this.pictureRate)],
@@ -42,7 +42,7 @@ export class Panel {
             this.body.append(row);
             this.cells.push(cell);
         }
-        this.details.open = innerWidth > 760 && innerHeight > 700;
+        this.details.open = innerWidth > 760 && innerHeight > 860;
     }
 
     setHello(hello: Hello): void {

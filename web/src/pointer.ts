@@ -63,8 +63,6 @@ export class Pointer {
 
     private down(event: PointerEvent): void {
         this.view.canvas.setPointerCapture(event.pointerId);
-        this.view.canvas.focus({ preventScroll: true });
-        event.preventDefault();
         this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
         if (this.fingers.size === 2) {
             if (this.doing === 'pulling') this.hand.release();

@@ -23,7 +23,6 @@ interface Level {
     sharp: Uint8Array; // per node: on a crease, which stays one
 }
 
-const MOST_NODES = 24000;
 const CREASE = Math.cos((55 * Math.PI) / 180);
 
 export class Surface {
@@ -40,7 +39,8 @@ export class Surface {
     readonly size: number; // half the diagonal of the box around it
     private readonly levels: Level[] = [];
 
-    constructor(rest: Float32Array, quads: Uint32Array) {
+    /* Rounded as long as there are no more than `most` nodes. */
+    constructor(rest: Float32Array, quads: Uint32Array, most: number) {
         this.meshNodes = rest.length / 3;
         this.meshQuads = quads;
         let nodes = this.meshNodes;
@@ -49,7 +49,7 @@ export class Surface {
         let current = quads;
         while (this.levels.length < 2) {
             const finer = nodes + edges.ends.length / 2 + current.length / 4;
-            if (finer > MOST_NODES) break;
+            if (finer > most) break;
             this.levels.push({ nodes, quads: current, edges, sharp: new Uint8Array(nodes) });
             current = split(nodes, current, edges);
             lines = halved(lines, nodes, edges);

@@ -15,9 +15,10 @@ const VERTEX = /* glsl */ `
 attribute vec3 rest;
 attribute vec3 tint;
 attribute float value;
-attribute float open;
+attribute vec4 grain;
 varying vec3 vView, vNormal, vRest, vTint;
-varying float vValue, vOpen;
+varying vec4 vGrain;
+varying float vValue;
 void main() {
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     vView = p.xyz;
@@ -25,7 +26,7 @@ void main() {
     vRest = rest;
     vTint = tint;
     vValue = value;
-    vOpen = open;
+    vGrain = grain;
     gl_Position = projectionMatrix * p;
 }`;
 
@@ -55,7 +56,9 @@ vec4 noise(vec3 x) {
 
 const FRAGMENT = /* glsl */ `
 varying vec3 vView, vNormal, vRest, vTint;
-varying float vValue, vOpen;
+varying vec4 vGrain;    // mottling, distances from two nets of vessels, openness: grain.ts
+varying float vValue;
+uniform mat3 turn;      // world to view
 uniform sampler2D map;
 uniform vec2 range;     // least value, 1 / span
 uniform float mapped;   // 0: tissue, 1: values by the map, 2: tints as they are
@@ -64,26 +67,30 @@ void main() {
     vec3 view = normalize(-vView);
     vec3 normal = normalize(vNormal);
     if (!gl_FrontFacing) normal = -normal;
-
-    vec4 broad = noise(vRest * 5.0);
-    vec4 middle = noise(vRest * 14.0 + broad.xyz * 0.25);
-    vec4 fine = noise(vRest * 52.0);
     float plain = min(mapped, 1.0);
+    float hollow = vGrain.w;
 
-    // An uneven film: bumps, turned with the body into the view, along the surface only.
-    vec3 slope = normalMatrixOf * (middle.xyz * 0.10 + fine.xyz * 0.13);
-    vec3 bumped = normalize(normal - (slope - normal * dot(slope, normal)) * mix(1.0, 0.25, plain));
+    // The film of fluid is uneven: bumps that are fixed to the tissue, along its surface.
+    vec4 middle = noise(vRest * 11.0);
+#ifdef FINE
+    vec4 fine = noise(vRest * 38.0 + middle.w);
+#else
+    vec4 fine = vec4(0.0, 0.0, 0.0, 0.5);
+#endif
+    vec3 slope = turn * (middle.xyz * 0.135 + fine.xyz * 0.060);
+    slope = (slope - normal * dot(slope, normal)) * mix(1.0, 0.2, plain);
+    vec3 bumped = normalize(normal - slope);
     float smooth_ = clamp(dot(normal, view), 0.0, 1.0);
-    float cosine = clamp(mix(dot(bumped, view), smooth_, 0.35), 0.0, 1.0);
     float film = clamp(dot(bumped, view), 0.0, 1.0);
+    float cosine = mix(film, smooth_, 0.4);
 
-    // Tissue: mottled, with vessels where a folded noise is near its ridge.
-    float mottle = (broad.w - 0.5) * 0.5 + (middle.w - 0.5) * 0.35 + (fine.w - 0.5) * 0.2;
-    vec3 colour = vTint * (1.0 + mottle * vec3(0.35, 0.62, 0.58));
-    vec4 course = noise(vRest * 3.4 + middle.xyz * 0.10 + 7.0);
-    float ridge = abs(course.w - 0.5) * 2.0 / (0.35 + length(course.xyz));
-    float vessel = smoothstep(0.055, 0.0, ridge) * smoothstep(0.3, 0.6, broad.w);
-    colour = mix(colour, colour * vec3(0.62, 0.30, 0.33), vessel * 0.6);
+    // Tissue: paler and darker places, vessels.
+    float mottle = vGrain.x * 0.55 + (middle.w - 0.5) * 0.55 + (fine.w - 0.5) * 0.35;
+    vec3 colour = vTint * exp(mottle * vec3(0.30, 0.62, 0.55));
+    float trunk = smoothstep(0.020, 0.004, abs(vGrain.y)) * smoothstep(-0.5, 0.4, vGrain.x);
+    float branch = smoothstep(0.011, 0.002, abs(vGrain.z)) * smoothstep(0.25, -0.35, vGrain.x);
+    colour *= mix(vec3(1.0), vec3(0.60, 0.26, 0.34), trunk * 0.62);
+    colour *= mix(vec3(1.0), vec3(0.78, 0.40, 0.42), branch * 0.55);
 
     vec3 shown = vTint;
     if (mapped > 0.5 && mapped < 1.5) {
@@ -91,27 +98,25 @@ void main() {
         shown = texture2D(map, vec2((t * ${STEPS - 1}.0 + 0.5) / ${STEPS}.0, 0.5)).rgb;
         shown *= shown; // stored as square roots, which spends its 8 bits evenly
     }
-    shown *= 1.0 + mottle * 0.10;
-    colour = mix(colour, shown, plain);
+    colour = mix(colour, shown * (1.0 + mottle * 0.10), plain);
 
-    vec3 soft = mix(vec3(0.30, 0.11, 0.09), vec3(0.35), plain);
-    vec3 lit = pow((vec3(cosine) + soft) / (1.0 + soft), mix(vec3(1.35), vec3(0.8), plain));
-    float hollow = mix(1.0, vOpen, mix(1.0, 0.45, plain));
-    lit *= mix(vec3(hollow * hollow, hollow * hollow * hollow, hollow * hollow * hollow), vec3(hollow), 0.35);
+    // Light that has been inside comes out red: green and blue fade sooner towards the rim.
+    vec3 lit = pow(vec3(cosine * 0.93 + 0.07), mix(vec3(1.15, 1.95, 1.85), vec3(0.62), plain));
+    lit *= mix(vec3(hollow, hollow * hollow, hollow * hollow), vec3(0.55 + 0.45 * hollow), plain);
 
-    // Highlights: a broad sheen and a sharp glint, both of the same film.
-    float off = 1.0 - film * film;
-    float sheen = 0.020 / pow(off + 0.050, 1.5) * 0.10;
-    float glint = 0.00052 / pow(off * off + 0.0012, 1.0);
-    float wet = smoothstep(0.25, 0.75, broad.w * 0.6 + middle.w * 0.4);
-    float grazing = pow(1.0 - smooth_, 4.0);
-    vec3 shine = vec3(1.0, 0.96, 0.92) * (sheen * 1.1 + glint * (0.5 + wet)) * hollow;
-    shine += vec3(0.16, 0.075, 0.06) * grazing * hollow;
-    shine *= mix(1.0, 0.22, plain);
+    // Highlights of the film: a soft sheen, and glints with a hard edge where it is thick.
+    float off = 1.0 - film;
+    float wet = smoothstep(-0.5, 0.5, vGrain.x + (middle.w - 0.5) * 0.8);
+    float sheen = 0.11 * exp(-off * 18.0);
+    float glint = (0.35 + 0.75 * wet) * smoothstep(0.0125, 0.0035, off);
+    float grazing = (1.0 - smooth_) * (1.0 - smooth_);
+    vec3 shine = vec3(1.0, 0.97, 0.95) * (sheen + glint) * hollow;
+    shine += vec3(0.13, 0.06, 0.05) * grazing * grazing * hollow;
+    shine *= mix(1.0, 0.16, plain);
 
-    vec3 light = colour * lit * mix(1.25, 1.05, plain) + shine;
+    vec3 light = colour * lit * mix(1.36, 1.08, plain) + shine;
     // Bright places roll off instead of burning out.
-    light = light / (1.0 + max(light - 0.6, 0.0) * 0.55);
+    light = min(light, 0.62) + 0.38 * (1.0 - exp(-max(light - 0.62, 0.0) / 0.38));
     gl_FragColor = vec4(light, 1.0);
     #include <colorspace_fragment>
 }`;
@@ -120,16 +125,18 @@ export class Tissue {
     readonly material: THREE.ShaderMaterial;
     private readonly maps: Record<MapName, THREE.DataTexture>;
 
-    constructor() {
+    /* `fine`: also the finest bumps, which cost a third of the drawing. */
+    constructor(fine: boolean) {
         this.maps = { rising: textureOf('rising'), signed: textureOf('signed') };
         this.material = new THREE.ShaderMaterial({
             vertexShader: VERTEX,
-            fragmentShader: FRAGMENT.replace('varying vec3', 'uniform mat3 normalMatrixOf;\nvarying vec3'),
+            fragmentShader: FRAGMENT,
+            defines: fine ? { FINE: 1 } : {},
             uniforms: {
                 map: { value: this.maps.rising },
                 range: { value: new THREE.Vector2(0, 1) },
                 mapped: { value: 0 },
-                normalMatrixOf: { value: new THREE.Matrix3() },
+                turn: { value: new THREE.Matrix3() },
             },
             side: THREE.DoubleSide,
             polygonOffset: true,
@@ -155,7 +162,7 @@ export class Tissue {
 
     /* The bumps turn with the body: once a frame. */
     follow(camera: THREE.Camera): void {
-        this.material.uniforms.normalMatrixOf!.value.setFromMatrix4(camera.matrixWorldInverse);
+        this.material.uniforms.turn!.value.setFromMatrix4(camera.matrixWorldInverse);
     }
 }
 

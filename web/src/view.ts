@@ -3,6 +3,8 @@ import * as THREE from 'three';
 import { PullPicture } from './arrow';
 import { Endoscope } from './camera';
 import { Instruments } from './instruments';
+import { Cavity } from './cavity';
+import { grain } from './grain';
 import { openness } from './hollow';
 import { organColour, processorColour } from './palette';
 import type { Frame, SurfaceMessage } from './protocol';
@@ -13,11 +15,13 @@ export class View {
     readonly endoscope = new Endoscope();
     readonly instruments = new Instruments();
     readonly pull = new PullPicture();
-    readonly tissue = new Tissue();
+    readonly tissue: Tissue;
     surface: Surface | null = null;
     drawn = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
     private readonly scene = new THREE.Scene();
+    private readonly cavity = new Cavity();
+    private readonly fine: boolean;
     private organ: THREE.Mesh | null = null;
     private edges: THREE.LineSegments | null = null;
     private edgesShown = false;
@@ -27,9 +31,11 @@ export class View {
     private stale = true;
 
     constructor(readonly canvas: HTMLCanvasElement) {
-        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-        this.renderer.setClearColor(0, 0);
-        this.scene.add(this.instruments.group, this.pull.group);
+        this.fine = fineEnough();
+        this.tissue = new Tissue(this.fine);
+        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
+        this.renderer.setClearColor(0x07080a);
+        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group);
         new ResizeObserver(() => this.resize()).observe(canvas);
         canvas.addEventListener('webglcontextrestored', () => (this.stale = true));
         this.resize();
@@ -38,7 +44,7 @@ export class View {
     /* A new organ. */
     setSurface(message: SurfaceMessage): void {
         this.dispose();
-        const surface = new Surface(message.rest, message.faces);
+        const surface = new Surface(message.rest, message.faces, this.fine ? 24000 : 6000);
         this.surface = surface;
         const unit = new Float32Array(surface.rest.length);
         for (let i = 0; i < unit.length; i++)
@@ -58,7 +64,7 @@ export class View {
         geometry.setAttribute('rest', new THREE.BufferAttribute(unit, 3));
         geometry.setAttribute('tint', new THREE.BufferAttribute(this.tints.organs.slice(), 3));
         geometry.setAttribute('value', this.valueAttribute);
-        geometry.setAttribute('open', new THREE.BufferAttribute(openness(surface), 1));
+        geometry.setAttribute('grain', new THREE.BufferAttribute(grain(unit, openness(surface)), 4));
         this.organ = new THREE.Mesh(geometry, this.tissue.material);
         this.organ.frustumCulled = false;
 
@@ -115,6 +121,7 @@ export class View {
         if (!this.stale) return false;
         this.stale = false;
         this.tissue.follow(this.endoscope.camera);
+        this.cavity.follow(this.endoscope.camera);
         this.renderer.render(this.scene, this.endoscope.camera);
         this.drawn++;
         return true;
@@ -123,7 +130,7 @@ export class View {
     private resize(): void {
         const { clientWidth: width, clientHeight: height } = this.canvas;
         if (!width || !height) return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.fine ? 2 : 1));
         this.renderer.setSize(width, height, false);
         this.endoscope.resize(width / height);
         this.stale = true;
@@ -138,6 +145,18 @@ export class View {
         }
         this.organ = this.edges = null;
     }
+}
+
+/* Whether a graphics processor draws. Where the main processor has to, which the engine needs too, the
+ * picture is plainer; the address may say otherwise, with #quality=fine or #quality=plain. */
+function fineEnough(): boolean {
+    const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
+    if (asked) return asked === 'fine';
+    const probe = document.createElement('canvas').getContext('webgl2');
+    const names = probe?.getExtension('WEBGL_debug_renderer_info');
+    const name = probe && names ? String(probe.getParameter(names.UNMASKED_RENDERER_WEBGL)) : '';
+    probe?.getExtension('WEBGL_lose_context')?.loseContext();
+    return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
 
 /* Colours per node, the mean of those of the faces around; borders between organs are soft. */
