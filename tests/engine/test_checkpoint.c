@@ -88,6 +88,14 @@ static void a_loaded_run_goes_on_as_if_never_stopped(void **unused) {
     lar_model_destroy(model);
 }
 
+static void check_rest(const lar_simulation *simulation, int32_t tool) {
+    lar_tool_info info;
+    lar_tool_pose pose;
+    assert_int_equal(lar_simulation_tool(simulation, tool, &info, NULL), LAR_OK);
+    assert_int_equal(lar_simulation_tool_pose(simulation, tool, &pose, NULL), LAR_OK);
+    assert_memory_equal(&pose, &info.rest, sizeof pose);
+}
+
 /* Back and forth between past and future, after even and odd numbers of steps, so that packets of
  * every round have met those of another: rounds that were steps would take old packets for new. */
 static void time_may_go_back_again_and_again(void **unused) {
@@ -102,6 +110,7 @@ static void time_may_go_back_again_and_again(void **unused) {
             reset(simulation);
             assert_int_equal(lar_simulation_steps(simulation), 0);
             assert_int_equal(lar_simulation_hash(simulation), c.start);
+            for (int32_t t = 0; t < TEST_TOOLS; t++) check_rest(simulation, t);
         }
         act(simulation, 0, 8);
         assert_int_equal(lar_simulation_hash(simulation), c.middle);
@@ -175,6 +184,7 @@ static void go_back_and_forth(lar_simulation *simulation, const course *c) {
     act(simulation, 0, 8);
     assert_int_equal(lar_simulation_hash(simulation), c->middle);
     save(simulation, PATH);
+    act(simulation, 9, 10);
     advance(simulation, 7);
     load(simulation, PATH);
     assert_int_equal(lar_simulation_hash(simulation), c->middle);
