@@ -508,6 +508,19 @@ LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t to
 
 /* ---- recordings ----------------------------------------------------------------------------- */
 
+/* What a recording was made with: a simulation that shall play it needs the same. */
+typedef struct lar_recording_info {
+    lar_element_kind element;
+    int32_t nodes, elements; /* of the model */
+    int32_t tools, hands;    /* lar_options.hands, and with them all tools */
+    double time_step;        /* [s] */
+    uint64_t tick_steps;     /* steps of a tick */
+} lar_recording_info;
+
+/* Reads the beginning of a recording. LAR_ERROR_FORMAT when it is none. */
+LAR_API lar_status lar_recording_inspect(const char *path, lar_recording_info *info,
+                                         lar_error *error);
+
 typedef struct lar_replay_report {
     uint64_t steps;     /* done */
     uint64_t hashes;    /* compared */
@@ -516,8 +529,10 @@ typedef struct lar_replay_report {
 } lar_replay_report;
 
 /* Plays a recording on a simulation of the same model and time step, on any grid, and compares the
- * hashes. A difference is LAR_ERROR_FORMAT, and `report` names the step. `watch` as in
- * lar_simulation_advance_watched, may be NULL: called after every tick with the number of steps. */
+ * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does a
+ * file that is damaged or cut off where it is; what comes before is played and compared, and
+ * `different` says that it is equal. `watch` may be NULL: called after every tick with the number
+ * of steps, between two advances, so that it may look at the simulation; 0 ends the replay. */
 LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
                               void *context, lar_replay_report *report, lar_error *error);
 

@@ -89,6 +89,9 @@ lar_status lar_recording_next(lar_recording_reader *reader, lar_record *record, 
 lar_status lar_recording_state(lar_recording_reader *reader, const lar_record *record,
                                lar_bytes *state, lar_error *error);
 
+/* Behind the end there is nothing. */
+lar_status lar_recording_check_end(const lar_recording_reader *reader, lar_error *error);
+
 /* The error of a file that breaks the rules at the record under way. */
 lar_status lar_recording_refuse(const lar_recording_reader *reader, lar_error *error,
                                 const char *what);

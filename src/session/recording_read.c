@@ -6,6 +6,9 @@
 
 #include "session/recording_words.h"
 
+/* Sums of two numbers of steps do not overflow. */
+static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+
 lar_status lar_recording_refuse(const lar_recording_reader *reader, lar_error *error,
                                 const char *what) {
     return lar_fail(error, LAR_ERROR_FORMAT, "%s: record %" PRIu64 ", at byte %" PRIu64 ", %s",
@@ -39,7 +42,8 @@ static lar_status check_header(const lar_recording_reader *reader, const uint64_
     double time_step = lar_double_of(word[6]);
     bool good = word[1] <= LAR_ELEMENT_HEX8_MATRIX && word[2] > 0 && word[2] <= INT32_MAX &&
                 word[3] > 0 && word[3] <= INT32_MAX && word[4] <= INT16_MAX && word[5] <= word[4] &&
-                time_step > 0 && isfinite(time_step) && word[7] > 0 && word[8] > 0;
+                time_step > 0 && isfinite(time_step) && word[7] > 0 && word[7] <= STEPS_MOST &&
+                word[8] > 0;
     if (good) return LAR_OK;
     return lar_fail(error, LAR_ERROR_FORMAT,
                     "%s: the header of the recording holds numbers that no recording has; take an "
@@ -124,8 +128,8 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
     record->pose.opening = lar_double_of(word[10]);
     for (int i = 0; i < 3; i++) sum += fabs(record->pose.position[i]);
     for (int i = 0; i < 4; i++) square += record->pose.orientation[i] * record->pose.orientation[i];
-    if (record->steps > 0 && sum < 1e9 && fabs(square - 1) < 0.01 && record->pose.opening >= 0 &&
-        record->pose.opening <= 1)
+    if (record->steps > 0 && record->steps <= STEPS_MOST && sum < 1e9 && fabs(square - 1) < 0.01 &&
+        record->pose.opening >= 0 && record->pose.opening <= 1)
         return LAR_OK;
     return lar_recording_refuse(reader, error, "moves a tool to where none can be; it was altered");
 }
@@ -134,6 +138,8 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
 static lar_status take_record(lar_recording_reader *reader, const uint64_t *word,
                               lar_record *record, lar_error *error) {
     record->step = word[0];
+    if (record->step > STEPS_MOST)
+        return lar_recording_refuse(reader, error, "has a step beyond all range; it was altered");
     if (record->kind != LAR_RECORD_STATE && record->step < reader->step)
         return lar_recording_refuse(reader, error, "goes back in time; it was altered");
     reader->step = record->kind == LAR_RECORD_RESET ? 0 : record->step;
@@ -195,4 +201,11 @@ lar_status lar_recording_state(lar_recording_reader *reader, const lar_record *r
     *state = (lar_bytes){(unsigned char *)word, record->bytes};
     reader->at += 8 * (4 + words);
     return LAR_OK;
+}
+
+lar_status lar_recording_check_end(const lar_recording_reader *reader, lar_error *error) {
+    if (reader->at == reader->size) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_FORMAT,
+                    "%s: %" PRIu64 " bytes follow the end of the recording; it was altered",
+                    reader->path, reader->size - reader->at);
 }

@@ -1,0 +1,367 @@
+/* A recording plays with the same hashes on any grid; one that is damaged, altered or of something
+ * else is refused by name. */
+#include <errno.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include "base/folder.h"
+#include "session/recording_words.h"
+#include "session/session_test.h"
+
+#define PATH  LAR_TEST_BUILD "/session.recording"
+#define STATE LAR_TEST_BUILD "/session.checkpoint"
+#define BAD   LAR_TEST_BUILD "/bad.recording"
+
+/* Leads the first hand along a circle for a while. */
+static void lead(const bench *b, double seconds) {
+    for (double t = 0; t < seconds; t += 0.002) {
+        const lar_tool_pose pose = {.position = {0.03 + 0.01 * t, 0.02 * t, 0.02},
+                                    .orientation = {1, 0, 0, 0},
+                                    .opening = t < 0.01 ? 1 : 0};
+        DONE(lar_session_tool_move(b->session, 0, &pose, &failure));
+        nap(0.002);
+    }
+}
+
+/* A session of some tenths of a second in which everything happens. */
+static uint64_t record(const char *grid, int threads) {
+    lar_session_options options = lar_session_options_default();
+    options.record = PATH;
+    options.hash_every = 50;
+    bench b = open_bench(grid, threads, &options);
+    DONE(lar_session_start(b.session, &failure));
+    assert_int_equal(status_of(&b).recording, 1);
+    lead(&b, 0.05);
+    DONE(lar_session_save(b.session, STATE, &failure));
+    lead(&b, 0.03);
+    lar_session_pause(b.session);
+    await_state(&b, LAR_SESSION_PAUSED);
+    lar_session_step(b.session, 3);
+    nap(0.01);
+    lar_session_play(b.session);
+    DONE(lar_session_reset(b.session, &failure));
+    lead(&b, 0.03);
+    DONE(lar_session_load(b.session, STATE, &failure));
+    lead(&b, 0.03);
+    uint64_t step = status_of(&b).step;
+    close_bench(&b);
+    return step;
+}
+
+static lar_status replay(const char *path, const char *grid, int threads,
+                         lar_replay_report *report) {
+    lar_model *model = hanging_block();
+    lar_simulation *simulation = NULL;
+    lar_options options = lar_options_default();
+    options.time_step = 1e-4;
+    options.grid = grid;
+    options.threads = threads;
+    options.hands = 2;
+    DONE(lar_simulation_create(model, &options, &simulation, &failure));
+    lar_status status = lar_replay(simulation, path, NULL, NULL, report, &failure);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+    return status;
+}
+
+static void plays_on_every_grid(void **unused) {
+    (void)unused;
+    static const struct {
+        const char *grid;
+        int threads;
+    } divided[] = {{NULL, 0}, {"2x1x1", 1}, {"1x2x1", 2}, {"3x1x2", 1}};
+    for (int recorded = 0; recorded < 2; recorded++) {
+        uint64_t end = record(recorded ? "2x1x1" : NULL, recorded ? 2 : 0);
+        for (int k = 0; k < 4; k++) {
+            lar_replay_report report;
+            DONE(replay(PATH, divided[k].grid, divided[k].threads, &report));
+            assert_true(report.hashes > 20);
+            assert_true(report.steps > 1200);
+            assert_true(report.different == UINT64_MAX);
+            assert_true(report.recorded_hash == report.replayed_hash);
+            assert_true(report.steps >= end);
+        }
+    }
+}
+
+/* ---- altered on purpose -------------------------------------------------------------------- */
+
+static lar_bytes file;
+
+static uint64_t *word_at(size_t byte) {
+    assert_true(byte % 8 == 0 && byte < file.size);
+    return (uint64_t *)(void *)(file.data + byte);
+}
+
+/* Byte where the record behind the one at `at` begins. */
+static size_t behind(size_t at) {
+    return at + 8 * (3 + (size_t)((*word_at(at + 8) + 7) / 8));
+}
+
+static const size_t FIRST = 8 * (2 + LAR_RECORDING_HEADER_WORDS);
+
+/* All checksums as they should be now. */
+static void sign(void) {
+    uint64_t sum = lar_chain(0, word_at(0), 1 + LAR_RECORDING_HEADER_WORDS);
+    *word_at(FIRST - 8) = sum;
+    for (size_t at = FIRST; at < file.size; at = behind(at)) {
+        size_t words = (behind(at) - at) / 8 - 1;
+        sum = lar_chain(sum, word_at(at), words);
+        *word_at(at + 8 * words) = sum;
+    }
+}
+
+static void write_bad(size_t size) {
+    FILE *out = fopen(BAD, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(file.data, 1, size, out), size);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void refused(lar_status status, const char *word) {
+    lar_replay_report report;
+    failure.message[0] = '\0';
+    assert_int_equal(replay(BAD, NULL, 0, &report), status);
+    if (!strstr(failure.message, word) || !strstr(failure.message, BAD))
+        fail_msg("'%s' lacks '%s'", failure.message, word);
+}
+
+static size_t find(lar_record_kind kind, int which) {
+    for (size_t at = FIRST; at < file.size; at = behind(at))
+        if (*word_at(at) == (uint64_t)kind && which-- == 0) return at;
+    fail_msg("no record of kind %d", (int)kind);
+    return 0;
+}
+
+static void reload(void) {
+    lar_bytes_free(&file);
+    DONE(lar_bytes_read(PATH, &file, &failure));
+}
+
+static void first_difference_is_named(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    reload();
+    /* A hash that was altered. */
+    size_t at = find(LAR_RECORD_HASH, 4);
+    uint64_t step = *word_at(at + 16);
+    *word_at(at + 24) ^= 1;
+    sign();
+    write_bad(file.size);
+    lar_replay_report report;
+    assert_int_equal(replay(BAD, NULL, 0, &report), LAR_ERROR_FORMAT);
+    assert_true(report.different == step);
+    assert_int_equal(report.hashes, 5);
+    assert_true(report.recorded_hash == (report.replayed_hash ^ 1));
+    char name[40];
+    snprintf(name, sizeof name, "at step %llu", (unsigned long long)step);
+    assert_non_null(strstr(failure.message, name));
+    lar_bytes_free(&file);
+}
+
+static void damage_is_found(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    reload();
+    for (size_t bit = 5; bit < 8 * file.size; bit += 8 * file.size / 40) {
+        file.data[bit / 8] ^= (unsigned char)(1u << bit % 8);
+        write_bad(file.size);
+        failure.message[0] = '\0';
+        assert_int_equal(replay(BAD, NULL, 0, NULL), LAR_ERROR_FORMAT);
+        assert_non_null(strstr(failure.message, BAD));
+        file.data[bit / 8] ^= (unsigned char)(1u << bit % 8);
+    }
+    for (size_t size = 1; size < file.size; size += file.size / 40) {
+        lar_replay_report report;
+        write_bad(size);
+        refused(LAR_ERROR_FORMAT, size < 8 ? "is no recording" : "cut off");
+        if (replay(BAD, NULL, 0, &report) && size > FIRST)
+            assert_true(report.different == UINT64_MAX);
+    }
+    lar_bytes_free(&file);
+}
+
+static void forged_files_are_refused(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    static const struct {
+        lar_record_kind kind;
+        int which; /* record */
+        int word;  /* of the payload */
+        uint64_t value;
+        const char *name;
+    } forged[] = {
+        {LAR_RECORD_MOVE, 3, 0, 0, "back in time"},
+        {LAR_RECORD_MOVE, 3, 0, UINT64_MAX, "beyond all range"},
+        {LAR_RECORD_MOVE, 3, 1, 2, "a tool that the recording does not have"},
+        {LAR_RECORD_MOVE, 3, 2, 0, "where none can be"},
+        {LAR_RECORD_MOVE, 3, 3, 0x7ff8000000000000, "where none can be"},
+        {LAR_RECORD_MOVE, 3, 10, 0x4000000000000000, "where none can be"},
+        {LAR_RECORD_MOVE, 3, -1, 16, "wrong length"},
+        {LAR_RECORD_MOVE, 3, -2, 77, "unknown kind"},
+        {LAR_RECORD_STATE, 0, 0, 5, "a state of another step"},
+        {LAR_RECORD_STATE, 0, 3, 5, "checkpoint"},
+        {LAR_RECORD_STATE, 0, -2, LAR_RECORD_END, "wrong length"},
+    };
+    for (size_t i = 0; i < sizeof forged / sizeof forged[0]; i++) {
+        reload();
+        size_t at = find(forged[i].kind, forged[i].which);
+        size_t next = behind(at);
+        uint64_t *word = word_at(at + 16) + forged[i].word;
+        *word = forged[i].value;
+        if (forged[i].word != -1)
+            sign();
+        else {
+            /* Up to the record itself the chain must hold. */
+            *word = 88;
+            sign();
+            *word = forged[i].value;
+        }
+        (void)next;
+        write_bad(file.size);
+        refused(LAR_ERROR_FORMAT, forged[i].name);
+    }
+    reload();
+    *word_at(8) = 2;
+    write_bad(file.size);
+    refused(LAR_ERROR_FORMAT, "version 2");
+    reload();
+    *word_at(8 * 7) = 0; /* time step */
+    sign();
+    write_bad(file.size);
+    refused(LAR_ERROR_FORMAT, "numbers that no recording has");
+    lar_bytes_free(&file);
+}
+
+static void other_models_are_refused(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    static const struct {
+        size_t word;
+        uint64_t value;
+        const char *name;
+    } other[] = {{3, 5, "another model"},
+                 {4, 5, "another model"},
+                 {7, 0x3f1a36e2eb1c432e, "time step"},
+                 {2, 1, "elements hex8-full"},
+                 {5, 7, "7 tools"}};
+    for (size_t i = 0; i < sizeof other / sizeof other[0]; i++) {
+        reload();
+        *word_at(8 * other[i].word) = other[i].value;
+        sign();
+        write_bad(file.size);
+        refused(LAR_ERROR_MODEL, other[i].name);
+    }
+    lar_bytes_free(&file);
+}
+
+/* ---- the file ------------------------------------------------------------------------------ */
+
+static void killed_writers_leave_a_beginning(void **unused) {
+    (void)unused;
+    remove(PATH);
+    pid_t child = fork();
+    if (child == 0) {
+        lar_session_options options = lar_session_options_default();
+        options.record = PATH;
+        bench b = open_bench(NULL, 0, &options);
+        if (lar_session_start(b.session, &failure)) _exit(1);
+        lead(&b, 60);
+        _exit(1);
+    }
+    assert_true(child > 0);
+    struct stat about = {0};
+    for (int i = 0; i < 1000 && (stat(PATH, &about) || about.st_size < 12000); i++) nap(0.01);
+    kill(child, SIGKILL);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    lar_replay_report report;
+    assert_int_equal(replay(PATH, "2x1x1", 1, &report), LAR_ERROR_FORMAT);
+    assert_non_null(strstr(failure.message, "cut off"));
+    assert_true(report.hashes > 0);
+    assert_true(report.different == UINT64_MAX);
+}
+
+static void other_files_are_spared(void **unused) {
+    (void)unused;
+    bench b = open_bench(NULL, 0, NULL);
+    FILE *out = fopen(BAD, "w");
+    fputs("lariat: 1\n", out);
+    fclose(out);
+    assert_int_equal(lar_session_record(b.session, BAD, &failure), LAR_ERROR_IO);
+    assert_non_null(strstr(failure.message, "is no recording"));
+    assert_int_equal(lar_session_record(b.session, LAR_TEST_BUILD, &failure), LAR_ERROR_IO);
+    assert_int_equal(lar_session_record(b.session, LAR_TEST_BUILD "/no/where", &failure),
+                     LAR_ERROR_IO);
+    remove(BAD);
+    assert_int_equal(mkfifo(BAD, 0600), 0);
+    assert_int_equal(lar_session_record(b.session, BAD, &failure), LAR_ERROR_IO);
+    remove(BAD);
+    assert_int_equal(status_of(&b).recording, 0);
+    close_bench(&b);
+    lar_replay_report report;
+    assert_int_equal(replay(LAR_TEST_BUILD "/none", NULL, 0, &report), LAR_ERROR_IO);
+    assert_int_equal(replay(LAR_TEST_BUILD, NULL, 0, &report), LAR_ERROR_IO);
+}
+
+/* A disk that is full: the session goes on, and closing tells. */
+static void full_disks_are_told(void **unused) {
+    (void)unused;
+    struct rlimit before, small;
+    bench b = open_bench(NULL, 0, NULL);
+    DONE(lar_session_start(b.session, &failure));
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before);
+    small = before;
+    small.rlim_cur = 4096;
+    setrlimit(RLIMIT_FSIZE, &small);
+    DONE(lar_session_record(b.session, PATH, &failure));
+    lead(&b, 0.1);
+    lar_status status = lar_session_record(b.session, NULL, &failure);
+    setrlimit(RLIMIT_FSIZE, &before);
+    assert_int_equal(status, LAR_ERROR_IO);
+    assert_non_null(strstr(failure.message, "could not be written completely"));
+    assert_int_equal(status_of(&b).state, LAR_SESSION_PLAYING);
+    close_bench(&b);
+}
+
+static int few(void *context, uint64_t step) {
+    (void)step;
+    return ++*(int *)context < 5;
+}
+
+static void replays_can_be_ended(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    lar_recording_info info;
+    DONE(lar_recording_inspect(PATH, &info, &failure));
+    assert_int_equal(info.hands, 2);
+    assert_int_equal(info.tick_steps, 10);
+    lar_model *model = hanging_block();
+    lar_simulation *simulation = NULL;
+    lar_options options = lar_options_default();
+    options.time_step = info.time_step;
+    options.hands = info.hands;
+    DONE(lar_simulation_create(model, &options, &simulation, &failure));
+    int ticks = 0;
+    lar_replay_report report;
+    DONE(lar_replay(simulation, PATH, few, &ticks, &report, &failure));
+    assert_int_equal(ticks, 5);
+    assert_true(report.steps <= 50 && report.steps > 0);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(plays_on_every_grid),
+                                       cmocka_unit_test(first_difference_is_named),
+                                       cmocka_unit_test(damage_is_found),
+                                       cmocka_unit_test(forged_files_are_refused),
+                                       cmocka_unit_test(other_models_are_refused),
+                                       cmocka_unit_test(killed_writers_leave_a_beginning),
+                                       cmocka_unit_test(other_files_are_spared),
+                                       cmocka_unit_test(full_disks_are_told),
+                                       cmocka_unit_test(replays_can_be_ended)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
