@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Writes the meshes of the scenes in this folder: blocks.inp and strip.inp (millimetres)."""
+from math import cos, pi, radians, sin
+
+
+class Mesh:
+    def __init__(self):
+        self.nodes, self.elements = [], []
+
+    def grid(self, counts, place, name):
+        """A block of counts[0] x [1] x [2] hexahedra; place(u, v, w), each 0..1, is a point."""
+        nx, ny, nz = counts
+        first = len(self.nodes)
+        for k in range(nz + 1):
+            for j in range(ny + 1):
+                for i in range(nx + 1):
+                    self.nodes.append(place(i / nx, j / ny, k / nz))
+
+        def node(i, j, k):
+            return first + 1 + i + (nx + 1) * (j + (ny + 1) * k)
+
+        corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+        for k in range(nz):
+            for j in range(ny):
+                for i in range(nx):
+                    self.elements.append((name, [node(i + a, j + b, k + c)
+                                                 for c in (0, 1) for a, b in corners]))
+
+    def write(self, path, title):
+        with open(path, "w") as out:
+            out.write(f"** {title}, in millimetres; written by meshes.py\n*NODE\n")
+            for number, (x, y, z) in enumerate(self.nodes, 1):
+                out.write(f"{number}, {x:.5g}, {y:.5g}, {z:.5g}\n")
+            last = None
+            for number, (name, nodes) in enumerate(self.elements, 1):
+                if name != last:
+                    out.write(f"*ELEMENT, TYPE=C3D8, ELSET={name}\n")
+                last = name
+                out.write(", ".join(map(str, [number] + nodes)) + "\n")
+
+
+def turned(point, axis, angle):
+    """A point turned about a coordinate axis through the origin."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    c, s = cos(radians(angle)), sin(radians(angle))
+    result = list(point)
+    result[i], result[j] = c * point[i] - s * point[j], s * point[i] + c * point[j]
+    return result
+
+
+def blocks():
+    """A slab on the table, and a cube that hangs above it, tilted so that an edge lands first."""
+    mesh = Mesh()
+    mesh.grid((8, 8, 4), lambda u, v, w: (40 * u - 20, 40 * v - 20, 16 * w), "lower")
+
+    def cube(u, v, w):
+        point = turned((20 * u - 10, 20 * v - 10, 20 * w - 10), 1, 12)
+        x, y, z = turned(point, 2, 25)
+        return x, y, z + 33
+    mesh.grid((5, 5, 5), cube, "upper")
+    mesh.write("blocks.inp", "Two blocks")
+
+
+def strip():
+    """A C: a strip bent to 300 degrees of a ring, its gap to the right."""
+    def place(u, v, w):
+        angle = pi / 6 + u * 5 * pi / 3
+        radius = 18 + 4 * v
+        return radius * cos(angle), 12 * w - 6, radius * sin(angle)
+    mesh = Mesh()
+    mesh.grid((45, 2, 4), place, "strip")
+    mesh.write("strip.inp", "A strip bent to a C")
+
+
+blocks()
+strip()
