@@ -110,10 +110,11 @@ static lar_status read_option(const lar_device_backend *backend, char *option,
     snprintf(word, sizeof word, " %.*s ", (int)(name.length < 28 ? name.length : 28), name.at);
     bool known = strstr(COMMON_OPTIONS, word) || strstr(backend->options, word);
     if (!split || !known || strchr(word + 1, ' ') != word + strlen(word) - 1)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "device '%s': '%s' is no option of it; there are%s%s, each as "
-                        "name=value behind a comma",
-                        spec->text, option, COMMON_OPTIONS, backend->options);
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "device '%s': '%s' is no option of it; there are%s%sto write as name=value, "
+            "each behind a comma",
+            spec->text, option, COMMON_OPTIONS, backend->options + 1);
     const char *wanted = NULL;
     if (lar_span_equal(name, "at")) {
         spec->at_given = true;

@@ -43,8 +43,8 @@ typedef struct udp_state {
     int socket, port;
     bool only_owner; /* connected: the kernel drops packets of others */
     lar_link link;
-    struct sockaddr_storage owner;
-    socklen_t owner_bytes;
+    struct sockaddr_storage bound, owner;
+    socklen_t bound_bytes, owner_bytes;
     int due; /* answers */
     udp_answer answer[READ_MOST];
     udp_answer last;  /* taken: what is said while a force fades */
@@ -103,12 +103,12 @@ static lar_status bind_socket(udp_state *state, const lar_device_spec *spec, lar
     struct addrinfo *found = NULL;
     lar_status status = find_address(spec, &found, error);
     if (status) return status;
-    struct sockaddr_storage bound;
-    socklen_t bytes = sizeof bound;
+    struct sockaddr_storage *bound = &state->bound;
     int yes = 1;
+    state->bound_bytes = sizeof *bound;
     state->socket = socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (state->socket < 0 || bind(state->socket, found->ai_addr, found->ai_addrlen) ||
-        getsockname(state->socket, (struct sockaddr *)&bound, &bytes))
+        getsockname(state->socket, (struct sockaddr *)bound, &state->bound_bytes))
         status = lar_fail(error, LAR_ERROR_IO, "device '%s': cannot listen there: %s", spec->text,
                           strerror(errno));
     freeaddrinfo(found);
@@ -116,8 +116,8 @@ static lar_status bind_socket(udp_state *state, const lar_device_spec *spec, lar
     /* Without time stamps (no Linux has none) answer times begin when the engine looks. */
     (void)setsockopt(state->socket, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
     state->port =
-        ntohs(bound.ss_family == AF_INET6 ? ((struct sockaddr_in6 *)(void *)&bound)->sin6_port
-                                          : ((struct sockaddr_in *)(void *)&bound)->sin_port);
+        ntohs(bound->ss_family == AF_INET6 ? ((struct sockaddr_in6 *)(void *)bound)->sin6_port
+                                           : ((struct sockaddr_in *)(void *)bound)->sin_port);
     return LAR_OK;
 }
 
@@ -198,11 +198,14 @@ static void take(udp_state *state, int i, uint64_t now) {
 /* Listens to everybody again, or to the owner alone. */
 static void choose_senders(udp_state *state, bool flooded) {
     static const struct sockaddr nobody = {.sa_family = AF_UNSPEC};
-    if (state->only_owner && !state->link.owned)
+    if (state->only_owner && !state->link.owned) {
         state->only_owner = connect(state->socket, &nobody, sizeof nobody) != 0;
-    else if (!state->only_owner && state->link.owned && flooded)
+        /* Linux forgets a port that it has chosen itself. */
+        (void)bind(state->socket, (const struct sockaddr *)&state->bound, state->bound_bytes);
+    } else if (!state->only_owner && state->link.owned && flooded) {
         state->only_owner =
             connect(state->socket, (const struct sockaddr *)&state->owner, state->owner_bytes) == 0;
+    }
 }
 
 static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pose) {

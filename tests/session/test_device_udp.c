@@ -1,0 +1,240 @@
+/* A device on the network, over real sockets on loopback. Time is the test's own. */
+#include "testing.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/device_packet.h"
+#include "session/device.h"
+
+static const uint64_t MS = 1000000;
+static const lar_tool_info PROBE = {.name = "probe",
+                                    .radius = 0.005,
+                                    .rest = {.position = {0, 0, 0.1}, .orientation = {1, 0, 0, 0}}};
+
+typedef struct rig {
+    lar_device *device;
+    lar_device_report report;
+    uint64_t now;
+    lar_tool_pose pose;
+    lar_tool_force force;
+} rig;
+
+static rig open_rig(const char *spec) {
+    rig r = {.now = 1000 * MS, .pose = PROBE.rest, .force = {.force = {0, 0, 2}, .touching = 3}};
+    lar_error error = {LAR_OK, ""};
+    if (lar_device_open(spec, &PROBE, &r.device, &error)) fail_msg("%s", error.message);
+    lar_device_report_get(r.device, &r.report);
+    return r;
+}
+
+static bool tick(rig *r) {
+    lar_device_tick tick = {.step = r->now / 100000, .seconds = 0.001, .now = r->now};
+    bool here = lar_device_poll(r->device, &tick, &r->pose);
+    lar_device_feel(r->device, &tick, &r->force, &r->pose);
+    lar_device_report_get(r->device, &r->report);
+    r->now += MS;
+    return here;
+}
+
+static int reach(const rig *r) {
+    struct sockaddr_in to = {.sin_family = AF_INET,
+                             .sin_port = htons((uint16_t)r->report.port),
+                             .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    int s = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+    assert_true(s >= 0);
+    assert_int_equal(connect(s, (struct sockaddr *)&to, sizeof to), 0);
+    return s;
+}
+
+static void send_position(int s, uint32_t sequence, double x, const char *token) {
+    unsigned char bytes[LAR_PACKET_BYTES];
+    lar_position_packet packet = {
+        .sequence = sequence, .time = sequence, .pose = {{x, 0, 0}, {1, 0, 0, 0}, 1}};
+    if (token) memcpy(packet.token, token, strnlen(token, sizeof packet.token));
+    lar_position_packet_encode(&packet, bytes);
+    /* Who is shut out is told that nobody listens, by the send after that. */
+    if (send(s, bytes, sizeof bytes, 0) < 0) assert_int_equal(errno, ECONNREFUSED);
+}
+
+/* False when nothing has come. */
+static bool receive(int s, lar_force_packet *packet) {
+    unsigned char bytes[LAR_PACKET_BYTES + 1];
+    long size = recv(s, bytes, sizeof bytes, MSG_DONTWAIT);
+    if (size < 0) return false;
+    assert_true(lar_force_packet_decode(bytes, (size_t)size, packet));
+    return true;
+}
+
+/* A force for every position, in the next tick. */
+static void test_position_in_force_out(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0,scale=0.5");
+    assert_true(r.report.port > 0);
+    assert_string_equal(r.report.name, "udp:127.0.0.1:0,scale=0.5");
+    int s = reach(&r);
+    lar_force_packet answer;
+    assert_false(tick(&r));
+    assert_false(receive(s, &answer));
+    for (uint32_t i = 1; i <= 400; i++) {
+        send_position(s, i, 0.02, NULL);
+        assert_true(tick(&r));
+        assert_true(receive(s, &answer));
+        assert_int_equal(answer.sequence, i);
+        assert_int_equal(answer.time, i);
+        assert_true(answer.flags & LAR_ANSWER_PLAYING && answer.flags & LAR_ANSWER_TOUCHING);
+        assert_false(receive(s, &answer));
+    }
+    assert_true(r.report.connected);
+    assert_true(answer.force[2] == 2 && !(answer.flags & LAR_ANSWER_FADING));
+    assert_true(fabs(r.pose.position[0] - 0.01) < 1e-12); /* scaled, from the rest pose on */
+    assert_true(fabs(r.pose.position[2] - 0.1) < 1e-12);
+    assert_true(fabs(answer.position[0] - 0.02) < 1e-12); /* and back */
+    for (uint32_t i = 401; i <= 404; i++) send_position(s, i, 0.02, NULL);
+    tick(&r); /* four at once: four answers */
+    for (uint32_t i = 401; i <= 404; i++) {
+        assert_true(receive(s, &answer));
+        assert_int_equal(answer.sequence, i);
+    }
+    assert_int_equal(r.report.received, 404);
+    assert_int_equal(r.report.answered, 404);
+    assert_true(r.report.answer_p50 > 0 && r.report.answer_max < 1);
+    close(s);
+    lar_device_close(r.device);
+}
+
+/* Silence: the last answer is repeated while its force fades, and then not any more. */
+static void test_silent_device_is_told_zero(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int s = reach(&r), answers = 0;
+    lar_force_packet answer = {0};
+    for (uint32_t i = 1; i <= 350; i++) {
+        send_position(s, i, 0.02, NULL);
+        tick(&r);
+        assert_true(receive(s, &answer));
+    }
+    assert_true(answer.force[2] == 2);
+    double before = 2;
+    for (int i = 0; i < 150; i++) {
+        assert_int_equal(tick(&r), i < 20);
+        if (!receive(s, &answer)) continue;
+        answers++;
+        assert_int_equal(answer.sequence, 350);
+        assert_true(answer.force[2] < before || answer.force[2] == 0);
+        assert_true(answer.flags & LAR_ANSWER_FADING);
+        before = answer.force[2];
+    }
+    assert_true(before == 0);
+    assert_true(answers > 45 && answers < 60);
+    assert_int_equal(r.report.timeouts, 1);
+    assert_false(r.report.connected);
+    close(s);
+    lar_device_close(r.device);
+}
+
+/* Others get no answer and move nothing; a flood is read in portions and then not at all. */
+static void test_strangers_and_floods(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int owner = reach(&r), stranger = reach(&r);
+    lar_force_packet answer;
+    send_position(owner, 1, 0.02, NULL);
+    tick(&r);
+    assert_true(receive(owner, &answer));
+    for (uint32_t i = 0; i < 10; i++) send_position(stranger, 100 + i, 0.5, NULL);
+    assert_int_equal(send(stranger, "hello", 5, 0), 5);
+    assert_int_equal(send(stranger, "", 0, 0), 0);
+    tick(&r);
+    assert_false(receive(stranger, &answer));
+    assert_int_equal(r.report.refused, 12);
+    for (uint32_t i = 0; i < 100; i++) send_position(stranger, i, 0.5, NULL);
+    uint64_t before = r.report.refused;
+    tick(&r);
+    assert_true(r.report.refused - before <= 32);
+    for (int i = 0; i < 4; i++) tick(&r); /* what was there already */
+    before = r.report.refused;
+    for (uint32_t i = 0; i < 100; i++) send_position(stranger, i, 0.5, NULL);
+    send_position(owner, 2, 0.02, NULL);
+    tick(&r);
+    assert_int_equal(r.report.refused, before);
+    assert_true(receive(owner, &answer));
+    assert_int_equal(answer.sequence, 2);
+    r.now += 1100 * MS; /* the owner has gone: everybody is heard again */
+    tick(&r);
+    send_position(stranger, 6, 0.01, NULL); /* takes the error of before, or is heard */
+    send_position(stranger, 7, 0.01, NULL);
+    tick(&r);
+    while (receive(stranger, &answer)) continue;
+    assert_int_equal(answer.sequence, 7);
+    close(owner);
+    close(stranger);
+    lar_device_close(r.device);
+}
+
+static void test_token_on_any_address(void **state) {
+    (void)state;
+    rig r = open_rig("udp:0.0.0.0:0,token=let-me-in");
+    int s = reach(&r);
+    lar_force_packet answer;
+    send_position(s, 1, 0, "let-me-out");
+    tick(&r);
+    assert_false(receive(s, &answer));
+    send_position(s, 2, 0, "let-me-in");
+    tick(&r);
+    assert_true(receive(s, &answer));
+    close(s);
+    lar_device_close(r.device);
+}
+
+static void test_port_in_use(void **state) {
+    (void)state;
+    rig r = open_rig("udp:localhost:0");
+    char spec[64];
+    lar_device *second = NULL;
+    lar_error error;
+    snprintf(spec, sizeof spec, "udp:127.0.0.1:%d", r.report.port);
+    assert_int_equal(lar_device_open(spec, &PROBE, &second, &error), LAR_ERROR_IO);
+    assert_non_null(strstr(error.message, "cannot listen there"));
+    lar_device_close(r.device);
+    r = open_rig("udp:127.0.0.1:0");
+    lar_device_close(r.device);
+}
+
+/* A reset: the force comes back slowly, and the pose from where the tool is. */
+static void test_reset_is_smooth(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int s = reach(&r);
+    lar_force_packet answer;
+    for (uint32_t i = 1; i <= 350; i++) {
+        send_position(s, i, 0.05, NULL);
+        tick(&r);
+        assert_true(receive(s, &answer));
+    }
+    lar_device_reset(r.device);
+    r.pose = PROBE.rest;
+    lar_device_feel(r.device, &(lar_device_tick){.now = r.now}, &r.force, &r.pose);
+    send_position(s, 351, 0.05, NULL);
+    assert_true(tick(&r));
+    assert_true(receive(s, &answer));
+    assert_true(answer.force[2] < 0.05);
+    assert_true(fabs(r.pose.position[0]) < 0.001);
+    close(s);
+    lar_device_close(r.device);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_position_in_force_out),
+        cmocka_unit_test(test_silent_device_is_told_zero),
+        cmocka_unit_test(test_strangers_and_floods),
+        cmocka_unit_test(test_token_on_any_address),
+        cmocka_unit_test(test_port_in_use),
+        cmocka_unit_test(test_reset_is_smooth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
