@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -87,8 +88,88 @@ static void simulation_calls(void **unused) {
     lar_model_destroy(model);
 }
 
+/* A simulation without and with a hand. */
+static void tool_calls(void **unused) {
+    (void)unused;
+    lar_model *model = NULL;
+    lar_simulation *simulation = NULL;
+    lar_tool_info info;
+    lar_tool_pose pose = {{0, 0, 1}, {1, 0, 0, 0}, 1};
+    lar_tool_force force;
+    lar_options options = lar_options_default();
+    assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
+    options.hands = -1;
+    REFUSED(lar_simulation_create(model, &options, &simulation, &error));
+    options.hands = 1000;
+    REFUSED(lar_simulation_create(model, &options, &simulation, &error));
+    for (int32_t hands = 0; hands < 2; hands++) {
+        options.hands = hands;
+        assert_int_equal(lar_simulation_create(model, &options, &simulation, &error), LAR_OK);
+        assert_int_equal(lar_simulation_tool_count(simulation), hands);
+        REFUSED(lar_simulation_tool(simulation, hands, &info, &error));
+        REFUSED(lar_simulation_tool(simulation, -1, &info, &error));
+        REFUSED(lar_simulation_tool_pose(simulation, hands, &pose, &error));
+        REFUSED(lar_simulation_tool_move(simulation, hands, &pose, 10, &error));
+        REFUSED(lar_simulation_tool_force(simulation, hands, &force, &error));
+        if (hands == 0) lar_simulation_destroy(simulation);
+    }
+    REFUSED(lar_simulation_tool(NULL, 0, &info, &error));
+    REFUSED(lar_simulation_tool(simulation, 0, NULL, &error));
+    REFUSED(lar_simulation_tool_pose(NULL, 0, &pose, &error));
+    REFUSED(lar_simulation_tool_pose(simulation, 0, NULL, &error));
+    REFUSED(lar_simulation_tool_move(NULL, 0, &pose, 10, &error));
+    REFUSED(lar_simulation_tool_move(simulation, 0, NULL, 10, &error));
+    REFUSED(lar_simulation_tool_move(simulation, 0, &pose, 0, &error));
+    REFUSED(lar_simulation_tool_force(NULL, 0, &force, &error));
+    REFUSED(lar_simulation_tool_force(simulation, 0, NULL, &error));
+    assert_int_equal(lar_simulation_tool(simulation, 0, &info, &error), LAR_OK);
+    assert_string_equal(info.name, "hand");
+    assert_int_equal(info.shape, LAR_TOOL_HAND);
+    assert_int_equal(lar_simulation_tool_move(simulation, 0, &pose, 10, &error), LAR_OK);
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, &error), LAR_OK);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
+static void restart_and_picture_calls(void **unused) {
+    (void)unused;
+    lar_model *model = NULL;
+    lar_simulation *simulation = NULL;
+    assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
+    assert_int_equal(lar_simulation_create(model, NULL, &simulation, &error), LAR_OK);
+    REFUSED(lar_simulation_reset(NULL, &error));
+    REFUSED(lar_simulation_save(NULL, "x", &error));
+    REFUSED(lar_simulation_save(simulation, NULL, &error));
+    REFUSED(lar_simulation_save(simulation, "", &error));
+    REFUSED(lar_simulation_load(NULL, "x", &error));
+    REFUSED(lar_simulation_load(simulation, NULL, &error));
+    REFUSED(lar_simulation_load(simulation, "", &error));
+    assert_int_equal(lar_simulation_load(simulation, BEAM, &error), LAR_ERROR_FORMAT);
+    assert_int_equal(lar_simulation_reset(simulation, &error), LAR_OK);
+    int32_t nodes;
+    lar_model_info info;
+    assert_int_equal(lar_model_inspect(model, &info, &error), LAR_OK);
+    nodes = info.nodes;
+    double(*u)[3] = calloc((size_t)nodes, sizeof *u);
+    float *out = calloc((size_t)nodes, sizeof *out);
+    const double(*at)[3] = (const double(*)[3])u;
+    REFUSED(lar_simulation_field(NULL, LAR_FIELD_VON_MISES, at, out, &error));
+    REFUSED(lar_simulation_field(simulation, LAR_FIELD_VON_MISES, NULL, out, &error));
+    REFUSED(lar_simulation_field(simulation, LAR_FIELD_VON_MISES, at, NULL, &error));
+    REFUSED(lar_simulation_field(simulation, LAR_FIELD_VELOCITY, at, out, &error));
+    REFUSED(lar_simulation_field(simulation, (lar_field)0, at, out, &error));
+    REFUSED(lar_simulation_field(simulation, (lar_field)3, at, out, &error));
+    assert_int_equal(lar_simulation_field(simulation, LAR_FIELD_VON_MISES, at, out, &error),
+                     LAR_OK);
+    free(out);
+    free(u);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(model_calls),
-                                       cmocka_unit_test(simulation_calls)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(model_calls), cmocka_unit_test(simulation_calls),
+        cmocka_unit_test(tool_calls), cmocka_unit_test(restart_and_picture_calls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
