@@ -1,12 +1,17 @@
 /* Who holds what: surface points bound to tools.
  *
- *     hand: opening 1 ... 0.2     takes hold of the points of the surface within its radius
- *                                 (of the nearest one, when there is none but one is near)
- *     grasper                     of the points between its jaws
- *     opening 0.2 ... 0.6         lets go
+ *     opening 1 ... 0.2    hand: takes hold of the points of the surface within its radius, or of
+ *                          the nearest one within twice as much when there is none
+ *                          grasper: of the points between its jaws
+ *     opening 0.2 ... 0.6  lets go
+ *
+ * Points are those at which tools touch (engine/touch.h). A hold is a spring and a damper between
+ * the point and where it was in the tool's own axes when it was taken, so taking hold moves
+ * nothing. All holds of a tool together are as stiff as what it stands for: finger tips, or jaws.
  *
  * Decided between advances by whoever has the whole state (engine/tools.h); the springs themselves
- * are engine/touch.h's. */
+ * are engine/touch.h's.
+ */
 #ifndef LAR_ENGINE_HOLD_H
 #define LAR_ENGINE_HOLD_H
 
@@ -14,8 +19,9 @@
 #include "engine/state.h"
 
 /* Takes hold or lets go, as the tool's new pose asks: `pose->opening` below 0.25 closes a grasper
- * or a hand that is open, above 0.5 opens it. Where the tool is now, at state->step, decides what
- * is within reach. Other tools do not hold. No memory is asked for. */
+ * or a hand that is open, above 0.5 opens it. A grasper takes what is between its jaws now, at
+ * state->step; an empty hand is already at `pose`. Other tools do not hold. A tool gets its share
+ * of LAR_HOLDS_MOST: of more points it takes every second, third, ... No memory is asked for. */
 lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
                            const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
                            lar_tools *tools, lar_error *error);

@@ -172,6 +172,7 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, la
         }
         simulation->report_steps = lar_simulation_steps(simulation) - before;
     }
+    if (!status) lar_trip_blame(&simulation->domain, trip);
     return status ? status : lar_trip_report(&simulation->domain, trip, error);
 }
 

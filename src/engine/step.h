@@ -25,6 +25,10 @@ typedef struct lar_trip {
     double volume_ratio; /* of the element */
     double growth;       /* of its frequency */
     double speed;        /* of the node [m/s] */
+    /* What lar_trip_blame found. */
+    bool blamed, tool_pulls;
+    int32_t tool;      /* counted from 1; 0: none has to do with it */
+    double tool_speed; /* [m/s] */
 } lar_trip;
 
 /* Every so many steps the kernels also look at the hourglass modes. */
@@ -79,7 +83,14 @@ static inline lar_condition_context lar_domain_context(const lar_domain *domain)
  * steps later, when the state says little. `domain` has the element, or the nodes. */
 void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip);
 
+/* Looks for the tool that has to do with an examined trip, once. `domain` is the whole model's; the
+ * tools still move as they did. */
+void lar_trip_blame(const lar_domain *domain, lar_trip *trip);
+
 /* The sentence for an examined trip: element or node, place, time, cause and remedy. */
 lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error);
+/* The same where trip->tool is to blame: it does what to the element or node. */
+lar_status lar_trip_report_tool(const lar_domain *domain, const lar_trip *trip,
+                                const char *what_it_does, lar_error *error);
 
 #endif

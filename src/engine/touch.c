@@ -121,8 +121,8 @@ void lar_touch_forget(lar_touch *touch) {
 /* ---- where tools are ----------------------------------------------------------------------- */
 
 /* Jaws hang on the tip and open in the plane y = 0. */
-static void place_segments(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
-                           lar_segment segment[2]) {
+void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
+                    lar_segment segment[2]) {
     double end[2][3] = {{0, 0, tool->shape == LAR_TOOL_CAPSULE ? tool->length : 0}};
     body->count = 1;
     if (tool->shape == LAR_TOOL_GRASPER) {
@@ -166,20 +166,22 @@ static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool
     lar_tool_body *body = &watch->body, old = *body;
     lar_tool_pose pose;
     lar_tool_at(motion, step, time_step, &pose, NULL);
-    place_segments(tool, &pose, body, body->now);
+    lar_tool_place(tool, &pose, body, body->now);
     lar_tool_at(motion, step + 1, time_step, &pose, NULL);
-    place_segments(tool, &pose, body, body->next);
+    lar_tool_place(tool, &pose, body, body->next);
     watch->rests = step >= motion->end;
     return watch->known ? way_between(old.now, body->now, body->count) : 0;
 }
 
 /* ---- contact of one face ------------------------------------------------------------------- */
 
-/* Points along an edge of a face: no farther apart than half the tool's radius, so that a sphere
- * that touches has several inside. */
-static int points_along(const lar_touch_face *face, double radius) {
+int lar_touch_points(const lar_touch_face *face, double radius) {
     double wanted = ceil(2 * face->edge / radius);
     return wanted < 2 ? 2 : wanted > 6 ? 6 : (int)wanted;
+}
+
+void lar_touch_weights(int point, int n, double weight[4]) {
+    lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
 }
 
 /* The mass behind each of n x n points: with weights w_a of all points their sum over a node's
@@ -234,19 +236,18 @@ static void touch_point(lar_patch *patch, const lar_contact_law *law, const doub
 static void touch_face(lar_patch *patch, const lar_contact_law *law, const double *v,
                        const double *mass) {
     const lar_touch_face *face = patch->face;
-    int n = points_along(face, patch->radius);
+    int n = lar_touch_points(face, patch->radius);
     patch->mass = point_mass(face, mass, n);
     for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = sqrt(patch->out[0] * patch->out[0] + patch->out[1] * patch->out[1] +
                        patch->out[2] * patch->out[2]);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            double weight[4];
-            lar_face_weights((2 * i + 1.0) / n - 1, (2 * j + 1.0) / n - 1, weight);
-            touch_point(patch, law, weight);
-        }
+    for (int i = 0; i < n * n; i++) {
+        double weight[4];
+        lar_touch_weights(i, n, weight);
+        touch_point(patch, law, weight);
+    }
 }
 
 /* ---- forces -------------------------------------------------------------------------------- */
@@ -311,7 +312,12 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
 
 /* ---- holds --------------------------------------------------------------------------------- */
 
-/* Where a point of the tool's own axes is. */
+/* Where the anchors of a tool's holds go in a step. */
+typedef struct lar_hold_motion {
+    lar_tool_pose now, next;
+    bool known;
+} lar_hold_motion;
+
 static void place_anchor(const lar_tool_pose *pose, const double anchor[3], double out[3]) {
     lar_turn(pose->orientation, anchor, out);
     for (int i = 0; i < 3; i++) out[i] += pose->position[i];
@@ -320,24 +326,21 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
 /* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
  * radius, so that what is torn away from a tool slips instead of being torn apart. */
 static void hold_point(lar_touch *touch, const lar_condition_context *context,
-                       const lar_state *state, const lar_hold *hold, const lar_contact_law *law) {
+                       const lar_state *state, const lar_hold *hold, const lar_hold_motion *motion,
+                       const lar_contact_law *law) {
     const lar_touch_face *face = &touch->face[touch->face_of[hold->face]];
     const lar_tool *tool = &touch->list->tool[hold->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
-    double pull[3], length = 0, force[4][3];
-    lar_tool_pose pose;
-    lar_tool_at(&touch->tools->motion[hold->tool], state->step + 1, dt, &pose, NULL);
-    place_anchor(&pose, hold->anchor, next);
-    lar_tool_at(&touch->tools->motion[hold->tool], state->step, dt, &pose, NULL);
-    place_anchor(&pose, hold->anchor, now);
+    double pull[3], force[4][3], length = 0;
+    place_anchor(&motion->now, hold->anchor, now);
+    place_anchor(&motion->next, hold->anchor, next);
     lar_touch_corners(face, state->u, x);
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
     lar_face_mean((const double(*)[3])x, hold->weight, point);
     lar_face_mean((const double(*)[3])v, hold->weight, speed);
-    int n = points_along(face, tool->radius);
+    int n = lar_touch_points(face, tool->radius);
     double most = law->stiffness * point_mass(face, context->mass, n);
-    double stiffness = fmin(hold->stiffness, most);
-    double damping = sqrt(stiffness * most) * dt;
+    double stiffness = fmin(hold->stiffness, most), damping = sqrt(stiffness * most) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
         length += pull[i] * pull[i];
@@ -346,9 +349,27 @@ static void hold_point(lar_touch *touch, const lar_condition_context *context,
     double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) force[a][i] = hold->weight[a] * share * pull[i];
-    give(touch, context, touch->face_of[hold->face], hold->tool, pose.position,
+    give(touch, context, touch->face_of[hold->face], hold->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
     touch->sum[hold->tool].held++;
+}
+
+static void apply_holds(lar_touch *touch, const lar_condition_context *context,
+                        const lar_state *state, const lar_contact_law *law) {
+    lar_hold_motion motion[LAR_TOOLS_MOST];
+    for (int t = 0; t < LAR_TOOLS_MOST; t++) motion[t].known = false;
+    for (int32_t i = 0; i < touch->tools->hold_count; i++) {
+        const lar_hold *hold = &touch->tools->hold[i];
+        if (touch->face_of[hold->face] < 0) continue;
+        lar_hold_motion *of = &motion[hold->tool];
+        const lar_tool_motion *tool = &touch->tools->motion[hold->tool];
+        if (!of->known) {
+            lar_tool_at(tool, state->step, context->time_step, &of->now, NULL);
+            lar_tool_at(tool, state->step + 1, context->time_step, &of->next, NULL);
+            of->known = true;
+        }
+        hold_point(touch, context, state, hold, of, law);
+    }
 }
 
 /* ---- the step ------------------------------------------------------------------------------ */
@@ -417,9 +438,7 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
         if (touch->list->tool[t].shape != LAR_TOOL_HAND)
             apply_tool(touch, context, state, t, known ? travel : 0, &law);
     }
-    for (int32_t i = 0; i < touch->tools->hold_count; i++)
-        if (touch->face_of[touch->tools->hold[i].face] >= 0)
-            hold_point(touch, context, state, &touch->tools->hold[i], &law);
+    apply_holds(touch, context, state, &law);
     add_forces(touch, state->force);
 }
 

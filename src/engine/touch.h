@@ -123,13 +123,21 @@ typedef struct lar_touch_note {
 void lar_touch_remember(const lar_touch *touch, lar_touch_note *note);
 void lar_touch_restore(lar_touch *touch, const lar_touch_note *note);
 
-/* ---- between touch.c and touch_search.c ------------------------------------------------------ */
+/* ---- for touch_search.c, hold.c and trip_tool.c
+ * ------------------------------------------------------ */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_touch_group_faces(lar_touch *touch, lar_error *error);
+/* Points along an edge of a face: no farther apart than half the tool's radius, so that a sphere
+ * that touches has several inside. The weights of point 0 .. n n - 1. */
+int lar_touch_points(const lar_touch_face *face, double radius);
+void lar_touch_weights(int point, int n, double weight[4]);
 /* Corners of a face now [m], and the ball around them. */
 void lar_touch_corners(const lar_touch_face *face, const double *u, double x[4][3]);
 double lar_touch_ball(const double x[4][3], double center[3]);
+/* Where a tool's segments are in a pose. */
+void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
+                    lar_segment segment[2]);
 /* Distance of a point from a tool's segments, less its radius. */
 double lar_touch_distance(const lar_tool_body *body, double radius, const double point[3]);
 /* The faces near a tool, for some dozens of steps in which the path grows by `step_path` each. */

@@ -43,10 +43,20 @@ static void examine_place(const lar_domain *domain, const lar_state *state, lar_
     choose_place(center, rest, trip->place);
 }
 
+/* What a tool does to an element. */
+static const char *deed_of(const lar_domain *domain, const lar_trip *trip) {
+    if (!isfinite(trip->volume_ratio) || !isfinite(trip->growth)) return "tears apart";
+    if (!(trip->volume_ratio > domain->limits.least_volume)) return "turns inside out or crushes";
+    if (trip->growth * domain->time_step > domain->stable_step)
+        return "squeezes more than the time step allows";
+    return "loads beyond all reason";
+}
+
 static lar_status report_element(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
     const double *place = trip->place, volume_ratio = trip->volume_ratio, growth = trip->growth;
     const char *cause, *remedy;
+    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, deed_of(domain, trip), error);
     if (!isfinite(volume_ratio) || !isfinite(growth))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
@@ -96,6 +106,7 @@ static lar_status report_speed(const lar_domain *domain, const lar_trip *trip, l
     const lar_mesh *mesh = &domain->model->mesh;
     lar_gid node = trip->element;
     const double *place = trip->place, highest = trip->speed;
+    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, "hurls away", error);
     if (!isfinite(highest))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "

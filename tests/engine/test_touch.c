@@ -103,36 +103,19 @@ static void a_body_comes_to_rest_on_a_plane(void **unused) {
 
 /* ---- tools: what goes in comes out ----------------------------------------------------------- */
 
-static void place(lar_simulation *simulation, int32_t tool, const double position[3],
-                  const double orientation[4], double opening, uint64_t steps) {
-    lar_error error;
-    lar_tool_pose pose = {.opening = opening};
-    memcpy(pose.position, position, sizeof pose.position);
-    memcpy(pose.orientation, orientation, sizeof pose.orientation);
-    if (lar_simulation_tool_move(simulation, tool, &pose, steps, &error))
-        fail_msg("%s", error.message);
-}
-
 static const double upright[4] = {1, 0, 0, 0};
-
-static void add_tool(lar_model *model, const char *name, lar_tool tool, const double at[3]) {
-    lar_tool *added = LAR_MODEL_APPEND(model, tool);
-    *added = tool;
-    added->name = lar_strdup(name);
-    added->rest = (lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1};
-    memcpy(added->rest.position, at, sizeof added->rest.position);
-}
 
 static lar_model *poked_model(const brick *b) {
     lar_model *model = brick_model(b);
     fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_ALL);
-    add_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.006},
-             (double[]){0.017, 0.012, 0.028});
-    add_tool(model, "rod", (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = 0.004, .length = 0.03},
-             (double[]){0.04, 0.004, 0.011});
-    add_tool(model, "jaws",
-             (lar_tool){.shape = LAR_TOOL_GRASPER, .radius = 0.002, .length = 0.015, .spread = 1.2},
-             (double[]){0.004, 0.01, 0.04});
+    touch_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.006},
+               (double[]){0.017, 0.012, 0.028});
+    touch_tool(model, "rod", (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = 0.004, .length = 0.03},
+               (double[]){0.04, 0.004, 0.011});
+    touch_tool(
+        model, "jaws",
+        (lar_tool){.shape = LAR_TOOL_GRASPER, .radius = 0.002, .length = 0.015, .spread = 1.2},
+        (double[]){0.004, 0.01, 0.04});
     return model;
 }
 

@@ -28,6 +28,27 @@ TEST_UNUSED static void fall(lar_model *model, const double velocity[3]) {
     memcpy(initial->velocity, velocity, sizeof initial->velocity);
 }
 
+/* Sends a tool on its way; it is there after so many steps. */
+TEST_UNUSED static void place(lar_simulation *simulation, int32_t tool, const double position[3],
+                              const double orientation[4], double opening, uint64_t steps) {
+    lar_error error;
+    lar_tool_pose pose = {.opening = opening};
+    memcpy(pose.position, position, sizeof pose.position);
+    memcpy(pose.orientation, orientation, sizeof pose.orientation);
+    if (lar_simulation_tool_move(simulation, tool, &pose, steps, &error))
+        fail_msg("%s", error.message);
+}
+
+/* Adds a tool at rest at `at`, upright and open. */
+TEST_UNUSED static void touch_tool(lar_model *model, const char *name, lar_tool tool,
+                                   const double at[3]) {
+    lar_tool *added = LAR_MODEL_APPEND(model, tool);
+    *added = tool;
+    added->name = lar_strdup(name);
+    added->rest = (lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1};
+    memcpy(added->rest.position, at, sizeof added->rest.position);
+}
+
 /* What the body has. */
 TEST_UNUSED static double body_energy(lar_simulation *simulation, lar_energy *e) {
     lar_simulation_energy(simulation, e);
