@@ -1,15 +1,372 @@
 #include "engine/collide.h"
 
-void lar_collide_destroy(lar_collide *collide) {
-    *collide = (lar_collide){0};
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/face_contact.h"
+
+/* ---- one group ------------------------------------------------------------------------------ */
+
+typedef struct touching {
+    int32_t face;     /* contact face */
+    double weight[4]; /* of its corners */
+    double force[3];  /* on the node [N] */
+    double depth;     /* [m] */
+} touching;
+
+static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
+                     double v[3]) {
+    const lar_contact_view *view = &collide->view;
+    if (view->place) {
+        const double *place = view->place[view->slot[node]];
+        memcpy(x, place, 3 * sizeof *x);
+        if (v) memcpy(v, place + 3, 3 * sizeof *v);
+        return;
+    }
+    const double *rest = collide->surface->rest[node];
+    const double *u = state->u + view->value[node];
+    for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
+    if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
 }
 
-void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
-                       lar_state *state) {
-    (void)collide, (void)context, (void)state;
+static void corners_of(const lar_collide *collide, const lar_state *state, int32_t face,
+                       double x[4][3], double v[4][3]) {
+    for (int a = 0; a < 4; a++)
+        place_of(collide, state, collide->surface->face[face].corner[a], x[a], v ? v[a] : NULL);
+}
+
+/* Not farther than this is the face: a ball around its middle holds it. */
+static double nearest_possible(const double x[3], const double corner[4][3]) {
+    double middle[3], radius = 0, square = 0;
+    for (int i = 0; i < 3; i++)
+        middle[i] = 0.25 * ((corner[0][i] + corner[1][i]) + (corner[2][i] + corner[3][i]));
+    for (int a = 0; a < 4; a++) {
+        double r = 0;
+        for (int i = 0; i < 3; i++) r += (corner[a][i] - middle[i]) * (corner[a][i] - middle[i]);
+        radius = fmax(radius, r);
+    }
+    for (int i = 0; i < 3; i++) square += (x[i] - middle[i]) * (x[i] - middle[i]);
+    return sqrt(square) - sqrt(radius);
+}
+
+/* Distances of a group's faces, INFINITY for those that cannot be the closest one. */
+typedef struct survey {
+    double reach; /* of the faces for the node [m] */
+    double distance[LAR_GROUP_FACES_MOST];
+    double least; /* of those within reach */
+    double gap;   /* by which all faces are out of reach, at most 0 when one is not [m] */
+} survey;
+
+static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
+                        double *distance, survey *s) {
+    const lar_contact_face *face = &collide->surface->face[f];
+    double corner[4][3], tie = LAR_FACE_TIE * face->size;
+    corners_of(collide, state, f, corner, NULL);
+    double nearest = nearest_possible(x, corner);
+    *distance = INFINITY;
+    if (nearest > s->least + tie || nearest - s->reach > collide->list.skin) {
+        s->gap = fmin(s->gap, nearest - s->reach);
+        return;
+    }
+    collide->info.tested++;
+    double d = lar_face_distance(x, corner);
+    s->gap = fmin(s->gap, d - s->reach);
+    if (!(d <= s->reach)) return;
+    *distance = d;
+    s->least = fmin(s->least, d);
+}
+
+/* The one that was closest the last time goes first: most others then need no more than a look. */
+static void survey_group(lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
+                         survey *s) {
+    const lar_contact_group *group = &collide->list.group[g];
+    const int32_t *face = collide->list.face + group->first;
+    int32_t first = collide->last[g];
+    s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
+                                 &collide->surface->face[face[0]]);
+    s->least = s->gap = INFINITY;
+    survey_face(collide, state, x, face[first], &s->distance[first], s);
+    for (int32_t i = 0; i < group->count; i++)
+        if (i != first) survey_face(collide, state, x, face[i], &s->distance[i], s);
+}
+
+/* The closest face of a group, an entry of it. */
+static int32_t choose_face(lar_collide *collide, const lar_state *state, int32_t g,
+                           const double x[3], const survey *s, lar_face_point *point) {
+    const lar_contact_group *group = &collide->list.group[g];
+    int32_t chosen = -1;
+    for (int32_t i = 0; i < group->count; i++) {
+        int32_t f = collide->list.face[group->first + i];
+        double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
+        lar_face_point other;
+        if (!(s->distance[i] <= s->least + tie)) continue;
+        corners_of(collide, state, f, corner, NULL);
+        lar_face_closest(x, corner, tie, &other);
+        if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
+        *point = other;
+        chosen = i;
+    }
+    return chosen;
+}
+
+/* The force of a face on a node behind it. False: they do not touch, or no longer push. */
+static bool push(const lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
+                 const lar_face_point *point, touching *t) {
+    const lar_contact_surface *surface = collide->surface;
+    const lar_contact_face *f = &surface->face[face];
+    double x[3], v[3], corner[4][3], speed[4][3], p[3], vp[3], square = 0, rate = 0;
+    place_of(collide, state, node, x, v);
+    corners_of(collide, state, face, corner, speed);
+    lar_face_mean((const double(*)[3])corner, point->weight, p);
+    lar_face_mean((const double(*)[3])speed, point->weight, vp);
+    for (int i = 0; i < 3; i++) square += (p[i] - x[i]) * (p[i] - x[i]);
+    double depth = sqrt(square);
+    /* Without a length there is no direction. */
+    if (!(point->height < 0) || !(depth > LAR_FACE_TIE * f->size)) return false;
+    for (int i = 0; i < 3; i++) rate += (vp[i] - v[i]) * (p[i] - x[i]) / depth;
+    double moved = lar_contact_pair_mass(surface->node[node].mass, surface->body[f->body].mass);
+    double force = lar_contact_force(&collide->law, moved, depth, rate);
+    *t = (touching){.face = face, .depth = depth};
+    memcpy(t->weight, point->weight, sizeof t->weight);
+    for (int i = 0; i < 3; i++) t->force[i] = force * (p[i] - x[i]) / depth;
+    return true;
+}
+
+/* Contact of group g; sets when it is due again. */
+static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
+    static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
+    const lar_contact_group *group = &collide->list.group[g];
+    double x[3];
+    survey s;
+    lar_face_point point;
+    place_of(collide, state, group->node, x, NULL);
+    survey_group(collide, state, g, x, &s);
+    collide->due[g] = s.gap > 0 ? collide->travel + s.gap / APPROACH : 0;
+    if (!(s.least < INFINITY)) return false;
+    int32_t chosen = choose_face(collide, state, g, x, &s, &point);
+    if (chosen < 0) return false;
+    collide->last[g] = chosen;
+    int32_t face = collide->list.face[group->first + chosen];
+    return lar_contact_active(&collide->surface->node[group->node],
+                              &collide->surface->face[face]) &&
+           push(collide, state, group->node, face, &point, t);
+}
+
+/* ---- forces --------------------------------------------------------------------------------- */
+
+/* Notes a force that this thread adds, for its work. */
+static void note(lar_collide_part *part, int32_t value, const int64_t sum[3], double scale) {
+    part->value[part->count] = value;
+    for (int i = 0; i < 3; i++) part->force[part->count][i] = -(double)sum[i] / scale;
+    part->count++;
+}
+
+/* Force sums are internal minus external forces. Who adds only some of the five parts rounds the
+ * same numbers as who adds the others. */
+static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
+                       int32_t node, const touching *t) {
+    static const double MOST = 0x1p58; /* of a force in force units */
+    const lar_contact_face *face = &collide->surface->face[t->face];
+    const int32_t *value = collide->view.value;
+    lar_collide_part *part = &collide->part[collide->part_count];
+    int64_t corner[4][3], sum[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        double force = t->force[i] * context->scale;
+        /* Beyond all reason: the speeds that make such a force stop the run. */
+        if (!(fabs(force) < MOST)) return;
+        for (int a = 0; a < 4; a++) {
+            corner[a][i] = llrint(t->weight[a] * force);
+            sum[i] -= corner[a][i];
+        }
+    }
+    part->count = 0;
+    if (!collide->adds_node || collide->adds_node[node])
+        note(part, value[node], sum, context->scale);
+    if (!collide->adds_corner || collide->adds_corner[t->face])
+        for (int a = 0; a < 4; a++) note(part, value[face->corner[a]], corner[a], context->scale);
+    if (!part->count) return;
+    if (!collide->adds_node || collide->adds_node[node])
+        for (int i = 0; i < 3; i++) state->force[value[node] + i] += sum[i];
+    if (!collide->adds_corner || collide->adds_corner[t->face])
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) state->force[value[face->corner[a]] + i] += corner[a][i];
+    collide->part_count++;
+}
+
+void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
+    collide->part_count = 0;
+    collide->info.touching = 0;
+    collide->info.deepest = 0;
+    if (collide->travel < collide->least_due) return;
+    double least = INFINITY;
+    for (int32_t g = 0; g < collide->list.group_count; g++) {
+        if (collide->travel >= collide->due[g]) {
+            int32_t node = collide->list.group[g].node;
+            touching t;
+            if (contact(collide, state, g, &t)) {
+                add_forces(collide, context, state, node, &t);
+                /* Each node is counted once, by who adds its force. */
+                bool own = !collide->adds_node || collide->adds_node[node];
+                collide->info.touching += own;
+                if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
+            }
+        }
+        least = fmin(least, collide->due[g]);
+    }
+    collide->least_due = least;
 }
 
 void lar_collide_half_work(const lar_collide *collide, const lar_condition_context *context,
                            lar_state *state) {
-    (void)collide, (void)context, (void)state;
+    double power = 0;
+    for (int32_t p = 0; p < collide->part_count; p++) {
+        const lar_collide_part *part = &collide->part[p];
+        for (int k = 0; k < part->count; k++) {
+            const double *v = state->v + part->value[k];
+            for (int i = 0; i < 3; i++) power += part->force[k][i] * v[i];
+        }
+    }
+    state->contact -= 0.5 * context->time_step * power;
+}
+
+void lar_collide_restart(lar_collide *collide) {
+    collide->travel = collide->least_due = 0;
+    for (int32_t g = 0; g < collide->list.group_count; g++) {
+        collide->due[g] = 0;
+        collide->last[g] = 0;
+    }
+}
+
+/* ---- motion and searches, of the whole model ------------------------------------------------ */
+
+/* Steps that a search should last. */
+enum { SEARCH_STEPS = 200 };
+
+/* Fetches the places; returns how far the farthest has moved since the search. */
+static double fetch_places(lar_collide *collide, const lar_state *state) {
+    lar_collide_motion *motion = collide->motion;
+    double most = 0;
+    for (int32_t n = 0; n < collide->surface->node_count; n++) {
+        place_of(collide, state, n, motion->x[n], NULL);
+        for (int i = 0; i < 3; i++) {
+            double moved = fabs(motion->x[n][i] - motion->searched[n][i]);
+            if (!(moved <= most)) most = moved;
+        }
+    }
+    return most;
+}
+
+static void search(lar_collide *collide, double way) {
+    lar_collide_motion *motion = collide->motion;
+    double skin = 2 * way * SEARCH_STEPS;
+    skin = fmin(fmax(skin, motion->skin_least), motion->skin_most);
+    size_t bytes = (size_t)collide->surface->node_count * sizeof *motion->x;
+    if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x, skin))
+        collide->crowded = true;
+    memcpy(motion->searched, motion->x, bytes);
+    motion->moved = 0;
+    collide->list = motion->search->list;
+    collide->info.searches++;
+    collide->info.boxed += (uint64_t)collide->list.face_count;
+    lar_collide_restart(collide);
+}
+
+/* What has really moved. `way` is what a step takes at present. */
+static void look(lar_collide *collide, const lar_state *state, double way) {
+    lar_collide_motion *motion = collide->motion;
+    double moved = fetch_places(collide, state);
+    bool enough = moved < 0.25 * collide->list.skin && moved + 16 * way < 0.5 * collide->list.skin;
+    if (!motion->valid || motion->always || !enough)
+        search(collide, way);
+    else
+        motion->moved = moved;
+    motion->valid = true;
+}
+
+void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
+                       lar_state *state) {
+    if (!collide->surface) return;
+    lar_collide_motion *motion = collide->motion;
+    if (state->step != motion->next) motion->valid = false;
+    if (!motion->valid || motion->always || !(motion->moved < 0.5 * collide->list.skin))
+        look(collide, state, context->time_step * state->fastest);
+    motion->next = state->step + 1;
+    lar_collide_add(collide, context, state);
+    collide->info.possible += collide->surface->possible;
+    collide->info.steps++;
+}
+
+void lar_collide_moved(lar_collide *collide, double way) {
+    collide->travel += way;
+    if (collide->motion) collide->motion->moved += way;
+}
+
+void lar_collide_forget(lar_collide *collide) {
+    if (collide->motion) collide->motion->valid = false;
+}
+
+/* ---- creation ------------------------------------------------------------------------------- */
+
+static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error *error) {
+    lar_collide_motion *motion = collide->motion;
+    const lar_contact_surface *surface = &motion->search->surface;
+    size_t nodes = (size_t)surface->node_count, groups = (size_t)motion->search->list.group_room;
+    int32_t *value = lar_calloc(nodes, sizeof *value);
+    collide->view.value = value;
+    motion->x = lar_calloc(nodes, sizeof *motion->x);
+    motion->searched = lar_calloc(nodes, sizeof *motion->searched);
+    collide->due = lar_calloc(groups, sizeof *collide->due);
+    collide->last = lar_calloc(groups, sizeof *collide->last);
+    collide->part = lar_calloc(groups, sizeof *collide->part);
+    if (!value || !motion->x || !motion->searched || !collide->due || !collide->last ||
+        !collide->part)
+        return lar_fail_memory(error, groups * sizeof *collide->part, "contact of bodies");
+    for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
+    return LAR_OK;
+}
+
+lar_status lar_collide_create(const lar_model *model, const double *mass, const int32_t *local,
+                              double time_step, double stable_step, bool search_always,
+                              lar_collide *collide, lar_error *error) {
+    *collide = (lar_collide){0};
+    lar_collide_motion *motion = collide->motion = lar_calloc(1, sizeof *motion);
+    if (motion) motion->search = lar_calloc(1, sizeof *motion->search);
+    if (!motion || !motion->search) {
+        lar_collide_destroy(collide);
+        return lar_fail_memory(error, sizeof *motion->search, "contact of bodies");
+    }
+    lar_status status = lar_contact_search_create(model, mass, local, motion->search, error);
+    const lar_contact_surface *surface = &motion->search->surface;
+    if (status || surface->node_count == 0) {
+        lar_collide_destroy(collide);
+        return status;
+    }
+    collide->law = lar_contact_law_for(time_step, stable_step);
+    collide->list = motion->search->list;
+    motion->always = search_always;
+    motion->skin_least = 0.25 * surface->reach;
+    motion->skin_most = 2 * surface->reach_most;
+    status = allocate(collide, local, error);
+    if (status)
+        lar_collide_destroy(collide);
+    else
+        collide->surface = surface;
+    return status;
+}
+
+void lar_collide_destroy(lar_collide *collide) {
+    lar_collide_motion *motion = collide->motion;
+    free(collide->due);
+    free(collide->last);
+    free(collide->part);
+    if (motion) {
+        free((int32_t *)collide->view.value);
+        if (motion->search) lar_contact_search_clear(motion->search);
+        free(motion->search);
+        free(motion->x);
+        free(motion->searched);
+        free(motion);
+    }
+    *collide = (lar_collide){0};
 }

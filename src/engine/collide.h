@@ -1,18 +1,96 @@
-/* Bodies against each other and themselves: what one thread has of it. */
+/* Bodies against each other and themselves: what one thread has of it (T 2.2.8, 3.8).
+ *
+ *     search (contact_search.h)     now and then: groups of a node and faces that it may meet
+ *     prediction                    each group: not looked at before it can have come into reach
+ *     contact                       a function of places and velocities alone
+ *
+ * Contact of a group. Of all its faces within reach the closest one counts; between equally close
+ * ones the one over or under whose plane the node is farthest, then the one with the lower number.
+ * If the node is behind it, the closest point p pulls it: F along p - x, of the law of
+ * mechanics/contact.h, -w_a F on the corners. The mass is that of the
+ * node against a light face of the body. Which other pairs are in the list does not matter, nor
+ * when it was made, so searching in every step gives the same bits. Forces are rounded at the
+ * corners, and the node gets minus their sum: momentum is kept to the last bit.
+ *
+ * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
+ * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
+ * up, step by step, how far any node has moved along any axis at most. A group whose faces are all
+ * farther away than their reach, by a `gap`, is due when travel has grown by gap / (2 sqrt 3): two
+ * nodes, three axes. The list is good until travel since its search is half its skin. Then the real
+ * motion is looked at, and the search is made anew if it is true that something has moved.
+ *
+ * Several threads and processors: contact_exchange.h.
+ */
 #ifndef LAR_ENGINE_COLLIDE_H
 #define LAR_ENGINE_COLLIDE_H
 
 #include "engine/conditions.h"
+#include "engine/contact_search.h"
+#include "mechanics/contact.h"
+
+/* Where the contact nodes are: in the state of whoever has all of them, or on a board. */
+typedef struct lar_contact_view {
+    const int32_t *value;     /* [contact nodes] 4 * local node, -1: not here */
+    const double (*place)[6]; /* NULL, or by slot: place and velocity */
+    const int32_t *slot;      /* [contact nodes] with `place` */
+} lar_contact_view;
+
+/* What this thread adds in the step under way: forces on its local nodes. */
+typedef struct lar_collide_part {
+    int32_t count;
+    int32_t value[5]; /* 4 * local node */
+    double force[5][3];
+} lar_collide_part;
+
+/* The list and what has moved since, of whoever has the whole model. */
+typedef struct lar_collide_motion {
+    lar_contact_search *search;
+    double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
+    double moved;                   /* since then, along any axis, at most [m] */
+    double skin_least, skin_most;   /* [m] */
+    uint64_t next;                  /* the step that follows the last one */
+    bool valid;                     /* the list belongs to the state */
+    bool always;                    /* search in every step */
+} lar_collide_motion;
 
 typedef struct lar_collide {
-    int32_t pair_count;
+    const lar_contact_surface *surface; /* NULL: nothing to do */
+    lar_contact_law law;
+    lar_contact_view view;
+    lar_contact_list list;                  /* what this thread has to do with */
+    const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
+    double *due;                            /* [list.group_room] travel at which to look */
+    int32_t *last;                          /* [list.group_room] the closest face then, an entry */
+    double travel, least_due;               /* [m] */
+    int32_t part_count;
+    lar_collide_part *part; /* [list.group_room] */
+    bool crowded;           /* there was no room for all pairs: the run must stop */
+    lar_contact_info info;
+    lar_collide_motion *motion; /* of whoever has all nodes; otherwise NULL */
 } lar_collide;
 
+/* For the whole model. Without contacts of bodies it costs nothing. */
+lar_status lar_collide_create(const lar_model *model, const double *mass, const int32_t *local,
+                              double time_step, double stable_step, bool search_always,
+                              lar_collide *collide, lar_error *error);
 void lar_collide_destroy(lar_collide *collide); /* idempotent */
 
-/* Adds the forces at the state's step to state->force. Asks for no memory. */
+/* The state was changed by others: nothing is known of its motion. */
+void lar_collide_forget(lar_collide *collide);
+
+/* Adds the forces at the state's step to state->force, after a search where that is due. Asks for
+ * no memory. */
 void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
                        lar_state *state);
+
+/* The same for a list that somebody else keeps. */
+void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state);
+
+/* All groups are to be looked at again. */
+void lar_collide_restart(lar_collide *collide);
+
+/* The nodes have moved, none farther than `way` along any axis [m]. */
+void lar_collide_moved(lar_collide *collide, double way);
 
 /* Half the work of these forces in this step, to state->contact: once before and once after the
  * nodes move. */

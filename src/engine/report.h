@@ -46,6 +46,7 @@ static inline void lar_report_add(lar_report *sum, const lar_acting *acting) {
     lar_report own;
     for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
     own.contact = acting->touch.seen;
+    lar_report_contact(&own.contact, &acting->collide.info);
     lar_report_join(sum, &own);
 }
 

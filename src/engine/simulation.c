@@ -100,6 +100,10 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
                               &simulation->tools, &domain->acting.touch, error);
     domain->acting.touch.always = options->search_always != 0;
+    if (!status)
+        status = lar_collide_create(model, domain->mass, domain->layout.local, domain->time_step,
+                                    domain->stable_step, options->search_always != 0,
+                                    &domain->acting.collide, error);
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;

@@ -70,17 +70,20 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     }
 }
 
-static void move_nodes(const lar_domain *domain, const lar_condition_context *context,
-                       bool gravity_varies, double time, lar_state *state, lar_trip *trip) {
+static void move_nodes(const lar_domain *domain, const lar_acting *acting,
+                       const lar_condition_context *context, double time, lar_state *state,
+                       lar_trip *trip) {
+    /* Where contact is predicted from the fastest node, that is none of these. */
+    uint64_t park_interval = acting->collide.surface ? 4 : LAR_WATCH_INTERVAL;
     const lar_model *model = domain->model;
     lar_motion motion = domain->motion;
-    if (gravity_varies) {
+    if (acting->conditions.gravity_varies) {
         double gravity[3];
         lar_gravity_at(model, time, gravity);
         for (int i = 0; i < 3; i++)
             motion.drift[i] = gravity[i] * motion.dt / (1 + 0.5 * model->damping * motion.dt);
     }
-    if (state->step % LAR_WATCH_INTERVAL == 0) park_spares(domain, context, state);
+    if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = model->damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
     if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
@@ -99,12 +102,11 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
             .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
 }
 
-/* Loads and contact; half of their work when the nodes are about to move. */
+/* Loads, tools and planes; half of their work when the nodes are about to move. */
 static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
                 lar_state *state, lar_trip *trip) {
     apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, trip);
     lar_touch_apply(&acting->touch, context, state);
-    lar_collide_apply(&acting->collide, context, state);
 }
 
 static void add_half_work(const lar_domain *domain, const lar_acting *acting,
@@ -112,14 +114,26 @@ static void add_half_work(const lar_domain *domain, const lar_acting *acting,
     state->external += lar_conditions_half_work(&acting->conditions, context,
                                                 lar_state_time(domain, state), state);
     lar_touch_half_work(&acting->touch, context, state);
-    lar_collide_half_work(&acting->collide, context, state);
+}
+
+/* Contact of bodies, by who has all nodes. */
+static void collide(lar_collide *collide, const lar_condition_context *context, lar_state *state,
+                    lar_trip *trip) {
+    lar_collide_apply(collide, context, state);
+    if (collide->crowded && !trip->kind)
+        *trip = (lar_trip){.kind = LAR_TRIP_CROWD, .element = -1, .step = state->step};
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
     lar_touch_note note;
     lar_touch_remember(&domain->acting.touch, &note);
+    lar_contact_info counted = domain->acting.collide.info;
     act(domain, &domain->acting, &context, state, trip);
+    lar_collide_forget(&domain->acting.collide);
+    collide(&domain->acting.collide, &context, state, trip);
+    lar_collide_forget(&domain->acting.collide);
+    domain->acting.collide.info = counted;
     lar_touch_restore(&domain->acting.touch, &note);
     lar_step_recover(domain, 0, domain->run_count, state, trip);
 }
@@ -136,14 +150,16 @@ void lar_step_move(const lar_domain *domain, lar_acting *acting,
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
     lar_touch_observe(&acting->touch, context, state);
-    move_nodes(domain, context, conditions->gravity_varies, time, state, trip);
+    move_nodes(domain, acting, context, time, state, trip);
     state->external += lar_conditions_impose(conditions, context, time, state);
     lar_touch_stop(&acting->touch, context, state);
+    lar_collide_moved(&acting->collide, state->fastest * domain->time_step);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,
                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
     add_half_work(domain, acting, context, state);
+    lar_collide_half_work(&acting->collide, context, state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !trip->kind)
         *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
@@ -153,6 +169,8 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
     lar_step_begin(domain, &domain->acting, &context, state, trip);
+    collide(&domain->acting.collide, &context, state, trip);
+    lar_collide_half_work(&domain->acting.collide, &context, state);
     lar_step_recover(domain, 0, domain->run_count, state, trip);
     lar_step_move(domain, &domain->acting, &context, state, trip);
     lar_step_end(domain, &domain->acting, &context, state, trip);

@@ -17,7 +17,13 @@
 
 /* Why a run must stop: polled once per step, set once, never cleared. */
 typedef struct lar_trip {
-    enum { LAR_TRIP_NONE, LAR_TRIP_ELEMENT, LAR_TRIP_SPEED, LAR_TRIP_LOAD } kind;
+    enum {
+        LAR_TRIP_NONE,
+        LAR_TRIP_ELEMENT,
+        LAR_TRIP_SPEED,
+        LAR_TRIP_LOAD,
+        LAR_TRIP_CROWD /* contact: more faces near a node than make sense */
+    } kind;
     lar_gid element; /* of LAR_TRIP_ELEMENT; the node of the others */
     uint64_t step;   /* the step under way */
     /* What lar_trip_examine found, for the report. */
@@ -40,7 +46,8 @@ void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
 /* The parts of a step. What acts, and the state's sums (force, damped, external, contact), are one
  * thread's; u and v may be shared with the threads that move other nodes. */
 
-/* Loads, and the first half of their work. */
+/* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
+ * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */
 void lar_step_begin(const lar_domain *domain, lar_acting *acting,
                     const lar_condition_context *context, lar_state *state, lar_trip *trip);
 /* The elements of runs first .. first + count - 1 of the domain. */

@@ -134,6 +134,15 @@ static lar_status report_load(const lar_domain *domain, const lar_trip *trip, la
                     (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
 }
 
+static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): more than %d faces lie close to the surface "
+                    "nodes that may touch them, on average: the surface is crushed; use slower or "
+                    "smaller loads and motions, or a finer mesh where bodies touch",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    LAR_PAIRS_PER_NODE);
+}
+
 void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
     if (trip->kind == LAR_TRIP_ELEMENT) {
         examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
@@ -147,5 +156,6 @@ lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_e
     if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
     if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
     if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
+    if (trip->kind == LAR_TRIP_CROWD) return report_crowd(domain, trip, error);
     return report_speed(domain, trip, error);
 }

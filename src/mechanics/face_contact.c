@@ -1,0 +1,126 @@
+#include "mechanics/face_contact.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "mechanics/contact.h"
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void between(const double from[3], const double to[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = to[i] - from[i];
+}
+
+/* A share of two numbers that add up to `whole`, which is 0 where an edge has no length. */
+static double share(double part, double whole) {
+    return whole > 0 ? part / whole : 0;
+}
+
+/* Weights of b and c in the point of the triangle a b c that is closest to x: a corner, a point of
+ * an edge, or the foot of the perpendicular, by the signs of the projections of x - corner on the
+ * edges and of the areas that the foot cuts off (Ericson, Real-Time Collision Detection, 2005,
+ * 5.1.5 has the regions). */
+static void closest_of_triangle(const double x[3], const double a[3], const double b[3],
+                                const double c[3], double *wb, double *wc) {
+    double ab[3], ac[3], from_a[3], from_b[3], from_c[3];
+    between(a, b, ab);
+    between(a, c, ac);
+    between(a, x, from_a);
+    between(b, x, from_b);
+    between(c, x, from_c);
+    double a_ab = dot(ab, from_a), a_ac = dot(ac, from_a);
+    double b_ab = dot(ab, from_b), b_ac = dot(ac, from_b);
+    double c_ab = dot(ab, from_c), c_ac = dot(ac, from_c);
+    double area_c = a_ab * b_ac - b_ab * a_ac; /* opposite to c, times the area of the whole */
+    double area_b = c_ab * a_ac - a_ab * c_ac;
+    double area_a = b_ab * c_ac - c_ab * b_ac;
+    *wb = *wc = 0;
+    if (a_ab <= 0 && a_ac <= 0) return;
+    if (b_ab >= 0 && b_ac <= b_ab) {
+        *wb = 1;
+    } else if (c_ac >= 0 && c_ab <= c_ac) {
+        *wc = 1;
+    } else if (area_c <= 0 && a_ab >= 0 && b_ab <= 0) {
+        *wb = share(a_ab, a_ab - b_ab);
+    } else if (area_b <= 0 && a_ac >= 0 && c_ac <= 0) {
+        *wc = share(a_ac, a_ac - c_ac);
+    } else if (area_a <= 0 && b_ac - b_ab >= 0 && c_ab - c_ac >= 0) {
+        *wc = share(b_ac - b_ab, (b_ac - b_ab) + (c_ab - c_ac));
+        *wb = 1 - *wc;
+    } else {
+        double whole = area_a + area_b + area_c;
+        *wb = share(area_b, whole);
+        *wc = share(area_c, whole);
+    }
+}
+
+/* The closest point of triangle t: corners t, t + 1 and the middle. */
+static void closest_of_part(const double x[3], const double corner[4][3], const double middle[3],
+                            int t, double weight[4]) {
+    int next = (t + 1) % 4;
+    double wb, wc;
+    closest_of_triangle(x, corner[t], corner[next], middle, &wb, &wc);
+    for (int a = 0; a < 4; a++) weight[a] = 0.25 * wc;
+    weight[next] += wb;
+    weight[t] += 1 - wb - wc;
+}
+
+static double distance_to(const double x[3], const double corner[4][3], const double weight[4]) {
+    double point[3], away[3];
+    lar_face_mean(corner, weight, point);
+    between(point, x, away);
+    return sqrt(dot(away, away));
+}
+
+/* Of x over the plane of triangle t, seen from a point of the triangle. */
+static double height_over(const double x[3], const double corner[4][3], const double middle[3],
+                          int t, const double weight[4]) {
+    double point[3], away[3], to_next[3], to_middle[3], normal[3];
+    lar_face_mean(corner, weight, point);
+    between(point, x, away);
+    between(corner[t], corner[(t + 1) % 4], to_next);
+    between(corner[t], middle, to_middle);
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        normal[i] = to_next[j] * to_middle[k] - to_next[k] * to_middle[j];
+    }
+    double length = sqrt(dot(normal, normal));
+    return length > 0 ? dot(away, normal) / length : 0;
+}
+
+static void middle_of(const double corner[4][3], double middle[3]) {
+    static const double even[4] = {0.25, 0.25, 0.25, 0.25};
+    lar_face_mean(corner, even, middle);
+}
+
+double lar_face_distance(const double x[3], const double corner[4][3]) {
+    double middle[3], weight[4], least = INFINITY;
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        closest_of_part(x, corner, middle, t, weight);
+        least = fmin(least, distance_to(x, corner, weight));
+    }
+    return least;
+}
+
+void lar_face_closest(const double x[3], const double corner[4][3], double tie,
+                      lar_face_point *point) {
+    double middle[3], least = INFINITY;
+    lar_face_point part[4];
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        closest_of_part(x, corner, middle, t, part[t].weight);
+        part[t].distance = distance_to(x, corner, part[t].weight);
+        part[t].height = NAN;
+        least = fmin(least, part[t].distance);
+    }
+    const lar_face_point *chosen = NULL; /* stays so where there are no numbers */
+    for (int t = 0; t < 4; t++) {
+        if (!(part[t].distance <= least + tie)) continue;
+        part[t].height = height_over(x, corner, middle, t, part[t].weight);
+        if (!chosen || lar_face_point_before(&part[t], chosen)) chosen = &part[t];
+    }
+    *point = chosen ? *chosen : part[0];
+}

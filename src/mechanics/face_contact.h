@@ -1,0 +1,50 @@
+/* Where a point stands to a face of a body: how far, on which side, and over which of its points.
+ *
+ *        d---------c      A face is taken as four flat triangles around its centre m, the mean of
+ *        | \     / |      its corners. The closest point of the closest triangle has weights in
+ *        |   \ /   |      that triangle; m's is shared out evenly. So
+ *        |    m    |          sum w_a = 1,   sum w_a x_a = the point,
+ *        |   / \   |      and forces w_a F on the corners and -F on the other point, along the line
+ *        | /     \ |      between the two, balance in force and in moment (T figure 2.7 a).
+ *        a---------b
+ *
+ * Why triangles: the closest point of a bilinear face needs an iteration, of a triangle it is
+ * found in closed form, and the surface has no gaps between neighbouring faces either way.
+ *
+ * Which side. The sign of the distance to a closed surface is that of the height over the plane of
+ * the closest triangle, if that is unique. On an edge or corner of several, the planes may
+ * disagree; the one over or under which the point is farthest has the right sign (its plane lies
+ * most squarely to the way from the point to the edge). That decides between the triangles of a
+ * face here, and between faces in lar_face_point_before.
+ */
+#ifndef LAR_MECHANICS_FACE_CONTACT_H
+#define LAR_MECHANICS_FACE_CONTACT_H
+
+#include <stdbool.h>
+
+typedef struct lar_face_point {
+    double distance;  /* from the point to the closest one of the face, at least 0 [m] */
+    double height;    /* of the point over the plane of that triangle, negative inside [m] */
+    double weight[4]; /* of the corners */
+} lar_face_point;
+
+/* Distances closer to each other than this part of the size of a face are equal: rounding must not
+ * choose between two planes. */
+#define LAR_FACE_TIE 1e-9
+
+/* The distance alone. `corner` counter-clockwise seen from outside. */
+double lar_face_distance(const double x[3], const double corner[4][3]);
+
+/* All of it. Triangles whose distance exceeds the smallest by no more than `tie` [m] count as
+ * equally close. Faces without area are as good as any, at height 0. */
+void lar_face_closest(const double x[3], const double corner[4][3], double tie,
+                      lar_face_point *point);
+
+/* Whether a decides before b, both being equally close. */
+static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
+    double over = a->height < 0 ? -a->height : a->height;
+    double under = b->height < 0 ? -b->height : b->height;
+    return over > under;
+}
+
+#endif

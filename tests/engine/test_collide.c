@@ -1,0 +1,270 @@
+/* Bodies that fall on each other, rest on each other, and fold upon themselves. */
+#include "engine/collide_test.h"
+
+#include "base/hash.h"
+
+/* Firm enough for an impact at 5 m/s, which crushes what is softer: its 12 kPa are the shear
+ * modulus of liver and more. */
+static const brick lower_brick = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+static const brick upper_brick = {{3, 3, 3}, 0.008, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+
+static double total(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass;
+}
+
+static double stable_step(const lar_model *model) {
+    double step;
+    lar_gid worst;
+    assert_int_equal(lar_stable_step(model, LAR_ELEMENT_HEX8, &step, &worst, NULL), LAR_OK);
+    return step;
+}
+
+static lar_simulation *start_step(lar_model *model, double step) {
+    lar_options options = lar_options_default();
+    options.time_step = step;
+    return start_with(model, options);
+}
+
+/* ---- momentum ------------------------------------------------------------------------------- */
+
+/* Sums of m v and x x m v over all nodes, by the positions half a step back. */
+static void momentum(const lar_simulation *s, double linear[3], double angular[3]) {
+    const lar_model *model = s->domain.model;
+    double dt = s->domain.time_step;
+    for (int i = 0; i < 3; i++) linear[i] = angular[i] = 0;
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        double m = s->domain.mass[s->domain.layout.local[n]];
+        const double *u = node_u(s, n), *v = node_v(s, n);
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            double xj = model->mesh.position[n][j] + u[j] - 0.5 * dt * v[j];
+            double xk = model->mesh.position[n][k] + u[k] - 0.5 * dt * v[k];
+            linear[i] += m * v[i];
+            angular[i] += m * (xj * v[k] - xk * v[j]);
+        }
+    }
+}
+
+/* Two free bodies hit each other off centre: what one gets the other loses. */
+static void a_collision_keeps_momentum(void **unused) {
+    (void)unused;
+    brick shifted = lower_brick;
+    shifted.shift = 0.1;
+    lar_model *model = two_bricks(&shifted, &upper_brick, 0.002, false);
+    int32_t first =
+        (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){0.1, -0.2, -1});
+    lar_simulation *s = start(model);
+    double before[3], spin[3], after[3], turned[3];
+    momentum(s, before, spin);
+    double size = fabs(before[2]), turn = size * 0.05;
+    lar_contact_info info;
+    int touched = 0;
+    for (int i = 0; i < 400; i++) {
+        advance(s, 1);
+        lar_simulation_contact(s, &info);
+        touched += info.touching;
+    }
+    assert_true(touched > 100);
+    momentum(s, after, turned);
+    assert_true(node_v(s, first)[2] > -0.9); /* it was stopped */
+    for (int i = 0; i < 3; i++) {
+        assert_below(fabs(after[i] - before[i]) / size, 1e-10);
+        assert_below(fabs(turned[i] - spin[i]) / turn, 1e-9);
+    }
+    finish(s, model);
+}
+
+/* ---- energy --------------------------------------------------------------------------------- */
+
+/* Largest total energy over the first one of a body that is thrown on another. */
+static double thrown(double speed, double part_of_stable_step, bool self, double *rebound) {
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.0005, true);
+    if (self) {
+        model->contact_count = 0;
+        touch_self(model);
+    }
+    int32_t first =
+        (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){0, 0, -speed});
+    double step = part_of_stable_step * stable_step(model);
+    lar_simulation *s = start_step(model, step);
+    lar_energy e;
+    lar_simulation_energy(s, &e);
+    double first_energy = total(&e), most = 0, until = 0.0005 / speed + 0.05;
+    bool touched = false;
+    while (lar_simulation_time(s) < until) {
+        lar_contact_info info;
+        advance(s, 12);
+        lar_simulation_energy(s, &e);
+        lar_simulation_contact(s, &info);
+        touched = touched || info.touching > 0;
+        most = fmax(most, total(&e));
+    }
+    assert_true(touched);
+    *rebound = total(&e) / first_energy;
+    finish(s, model);
+    return most / first_energy;
+}
+
+static void a_collision_adds_no_energy(void **unused) {
+    (void)unused;
+    static const double speeds[] = {0.01, 0.1, 1, 5}, parts[] = {0.2, 0.8, 0.999};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 3; j++) {
+            double left, most = thrown(speeds[i], parts[j], (i + j) % 2, &left);
+            print_message("%4g m/s, %.3f of the stable step: at most %.5f, %.4f left\n", speeds[i],
+                          parts[j], most, left);
+            assert_below(most, 1.001);
+        }
+}
+
+/* What contact takes is accounted for. */
+static void every_joule_of_contact_is_accounted_for(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.0005, true);
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->damping = 2;
+    lar_simulation *s = start_step(model, 0.1 * stable_step(model));
+    double worst = 0, work = 0, taken = 0;
+    while (lar_simulation_time(s) < 0.3) {
+        lar_energy e;
+        advance(s, 10);
+        lar_simulation_energy(s, &e);
+        worst = fmax(worst, fabs(total(&e) + e.damping + e.contact - e.external));
+        work = fmax(work, fabs(e.external));
+        taken = fmax(taken, fabs(e.contact));
+    }
+    assert_true(taken > 1e-3 * work);
+    assert_below(worst / work, 1e-4);
+    finish(s, model);
+}
+
+/* ---- rest ----------------------------------------------------------------------------------- */
+
+static void a_body_comes_to_rest_on_another(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, 0, true);
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->damping = 60;
+    lar_simulation *s = start(model);
+    advance(s, (uint64_t)(1.5 / lar_simulation_time_step(s)));
+    lar_energy e;
+    lar_contact_info info;
+    lar_simulation_energy(s, &e);
+    lar_simulation_contact(s, &info);
+    print_message("at rest: %d nodes touch, %.2g of an element deep, kinetic %.2g of %.2g J\n",
+                  (int)info.touching, info.deepest / upper_brick.edge, e.kinetic, e.strain);
+    assert_true(info.touching >= 16);
+    assert_below(info.deepest, 0.02 * upper_brick.edge);
+    assert_below(e.kinetic, 1e-6 * e.strain);
+    finish(s, model);
+}
+
+/* ---- prediction ----------------------------------------------------------------------------- */
+
+static uint64_t hash_after(lar_model *model, int always, uint64_t steps, lar_contact_info *info) {
+    int32_t touching = 0;
+    lar_options options = lar_options_default();
+    options.search_always = always;
+    lar_simulation *s = start_with(model, options);
+    uint64_t hash = 0;
+    for (uint64_t i = 0; i < steps; i += 50) {
+        advance(s, 50);
+        hash = lar_hash_word(hash, lar_simulation_hash(s));
+        lar_simulation_contact(s, info);
+        touching += info->touching;
+    }
+    info->touching = touching;
+    lar_simulation_destroy(s);
+    return hash;
+}
+
+static void prediction_changes_no_bit(void **unused) {
+    (void)unused;
+    for (int self = 0; self < 2; self++) {
+        lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.001, true);
+        memcpy(model->gravity, (double[]){0.5, 0, -9.81}, 24);
+        model->damping = 5;
+        if (self) {
+            model->contact_count = 0;
+            touch_self(model);
+        }
+        lar_contact_info predicted, always;
+        uint64_t one = hash_after(model, 0, 1500, &predicted);
+        uint64_t other = hash_after(model, 1, 1500, &always);
+        assert_true(one == other);
+        assert_true(predicted.touching > 0);
+        assert_int_equal(predicted.touching, always.touching);
+        assert_int_equal(always.searches, 1500);
+        assert_true(predicted.searches < 150);
+        assert_true(predicted.tested < always.tested);
+        print_message("%s: possible %.3g, boxed %.3g (always %.3g), tested %.3g (%.3g), "
+                      "searches %d\n",
+                      self ? "self" : "between", (double)predicted.possible,
+                      (double)predicted.boxed, (double)always.boxed, (double)predicted.tested,
+                      (double)always.tested, (int)predicted.searches);
+        lar_model_destroy(model);
+    }
+}
+
+/* ---- a body and itself ---------------------------------------------------------------------- */
+
+/* A strip bent to a C, whose ends are pulled against each other. */
+static lar_model *c_strip(brick *b) {
+    *b = (brick){{24, 3, 2}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+    lar_model *model = brick_model(b);
+    static const double PI = 3.14159265358979323846;
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        double *x = model->mesh.position[n];
+        double angle = -1.62 * PI * (x[0] / 0.24 - 0.5), radius = 0.045 - x[2];
+        double at[3] = {-radius * cos(angle), x[1], radius * sin(angle)};
+        memcpy(x, at, sizeof at);
+    }
+    fix_nodes(model, brick_side(b, 0, 12), LAR_AXIS_ALL);
+    touch_self(model);
+    model->damping = 20;
+    return model;
+}
+
+static void a_strip_that_closes_on_itself_holds(void **unused) {
+    (void)unused;
+    brick b;
+    lar_model *model = c_strip(&b);
+    int ramp = add_ramp(model, 0.1);
+    load_nodes(model, brick_side(&b, 0, 0), 0, 0, -0.004, ramp);
+    load_nodes(model, brick_side(&b, 0, -1), 0, 0, 0.004, ramp);
+    lar_simulation *s = start(model);
+    lar_contact_info info;
+    lar_simulation_contact(s, &info);
+    assert_int_equal(info.touching, 0);
+    /* The inner side of one end stays above that of the other. */
+    int32_t one = brick_node(&b, 0, 1, 1), other = brick_node(&b, b.cells[0], 1, 1);
+    double sign = model->mesh.position[one][2] > model->mesh.position[other][2] ? 1 : -1;
+    double least = INFINITY;
+    while (lar_simulation_time(s) < 0.6) {
+        advance(s, 20);
+        least = fmin(least, sign * (model->mesh.position[one][2] + node_u(s, one)[2] -
+                                    model->mesh.position[other][2] - node_u(s, other)[2]));
+    }
+    lar_simulation_contact(s, &info);
+    print_message(
+        "the ends: %d nodes touch, %.2g of an element deep; their middles %.2g mm apart\n",
+        (int)info.touching, info.deepest / b.edge, 1e3 * least);
+    assert_true(info.touching > 0);
+    assert_below(info.deepest, 0.1 * b.edge);
+    assert_true(least > -0.1 * b.edge);
+    finish(s, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_collision_keeps_momentum),
+        cmocka_unit_test(a_collision_adds_no_energy),
+        cmocka_unit_test(every_joule_of_contact_is_accounted_for),
+        cmocka_unit_test(a_body_comes_to_rest_on_another),
+        cmocka_unit_test(prediction_changes_no_bit),
+        cmocka_unit_test(a_strip_that_closes_on_itself_holds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

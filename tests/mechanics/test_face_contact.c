@@ -1,0 +1,161 @@
+/* The closest point of a face: against a fine search, and on which side of a body a point is. */
+#include "mechanics/face_contact.h"
+
+#include "mechanics/contact.h"
+#include "testing.h"
+
+static uint32_t seed = 1;
+
+/* Pseudo-random in [-1, 1). */
+static double noise(void) {
+    seed = seed * 1664525u + 1013904223u;
+    return (double)seed / 2147483648.0 - 1;
+}
+
+static double apart(const double a[3], const double b[3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) square += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(square);
+}
+
+static void random_face(double corner[4][3], double bend) {
+    static const double flat[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) corner[a][i] = flat[a][i] + bend * noise();
+}
+
+/* The least distance over many points of the four triangles. */
+static double searched_distance(const double x[3], const double corner[4][3]) {
+    enum { FINE = 60 };
+    double least = INFINITY;
+    for (int t = 0; t < 4; t++)
+        for (int i = 0; i <= FINE; i++)
+            for (int j = 0; i + j <= FINE; j++) {
+                double m = (double)i / FINE, n = (double)j / FINE, point[3];
+                for (int k = 0; k < 3; k++) {
+                    double middle =
+                        0.25 * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
+                    point[k] = m * middle + n * corner[(t + 1) % 4][k] + (1 - m - n) * corner[t][k];
+                }
+                least = fmin(least, apart(x, point));
+            }
+    return least;
+}
+
+static void the_closest_point_is_the_closest(void **unused) {
+    (void)unused;
+    for (int trial = 0; trial < 300; trial++) {
+        double corner[4][3], x[3] = {2.5 * noise(), 2.5 * noise(), 1.5 * noise()}, point[3];
+        random_face(corner, 0.3);
+        lar_face_point found;
+        lar_face_closest(x, (const double(*)[3])corner, 1e-9, &found);
+        double sum = 0;
+        for (int a = 0; a < 4; a++) {
+            assert_true(found.weight[a] >= -1e-15);
+            sum += found.weight[a];
+        }
+        assert_below(fabs(sum - 1), 1e-14);
+        lar_face_mean((const double(*)[3])corner, found.weight, point);
+        assert_below(fabs(apart(x, point) - found.distance), 1e-14);
+        assert_below(fabs(found.distance - lar_face_distance(x, (const double(*)[3])corner)), 1e-9);
+        double searched = searched_distance(x, (const double(*)[3])corner);
+        assert_true(found.distance <= searched + 1e-12);
+        assert_below(searched - found.distance, 0.03);
+        assert_true(fabs(found.height) <= found.distance + 1e-12);
+    }
+}
+
+/* Forces w_a F on the corners and -F on the point, along the line between point and face. */
+static void forces_and_moments_balance(void **unused) {
+    (void)unused;
+    for (int trial = 0; trial < 300; trial++) {
+        double corner[4][3], x[3] = {1.5 * noise(), 1.5 * noise(), noise()}, point[3];
+        random_face(corner, 0.3);
+        lar_face_point found;
+        lar_face_closest(x, (const double(*)[3])corner, 1e-9, &found);
+        lar_face_mean((const double(*)[3])corner, found.weight, point);
+        double force[3], sum[3], moment[3] = {0}, size = 0;
+        for (int i = 0; i < 3; i++) {
+            sum[i] = force[i] = (point[i] - x[i]) / found.distance;
+            size += fabs(force[i]);
+        }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            moment[i] = x[j] * force[k] - x[k] * force[j];
+            for (int a = 0; a < 4; a++)
+                moment[i] -= found.weight[a] * (corner[a][j] * force[k] - corner[a][k] * force[j]);
+        }
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) sum[i] -= found.weight[a] * force[i];
+        for (int i = 0; i < 3; i++) {
+            assert_below(fabs(sum[i]), 1e-14 * size);
+            assert_below(fabs(moment[i]), 1e-13 * size);
+        }
+    }
+}
+
+/* The faces of a cube of edge 2 around the origin, sheared by s so that edges are sharp. */
+static void cube_face(int f, double s, double corner[4][3]) {
+    static const int at[6][4][3] = {{{-1, -1, -1}, {-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}},
+                                    {{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}},
+                                    {{-1, -1, -1}, {1, -1, -1}, {1, -1, 1}, {-1, -1, 1}},
+                                    {{-1, 1, -1}, {-1, 1, 1}, {1, 1, 1}, {1, 1, -1}},
+                                    {{-1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {1, -1, -1}},
+                                    {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
+    for (int a = 0; a < 4; a++) {
+        for (int i = 0; i < 3; i++) corner[a][i] = at[f][a][i];
+        corner[a][0] += s * corner[a][2];
+    }
+}
+
+/* Where several faces are equally close, at edges and corners, the choice between them has the
+ * sign of the whole body right. */
+static void inside_is_inside_also_at_edges(void **unused) {
+    (void)unused;
+    static const double shear[] = {0, 1, 2.5};
+    for (int k = 0; k < 3; k++)
+        for (int trial = 0; trial < 20000; trial++) {
+            double x[3] = {1.3 * noise(), 1.3 * noise(), 1.3 * noise()}, corner[4][3];
+            if (trial % 4 == 0) x[1] = x[1] > 0 ? 1.05 : -1.05; /* beside an edge */
+            bool inside = fabs(x[0]) < 1 && fabs(x[1]) < 1 && fabs(x[2]) < 1;
+            x[0] += shear[k] * x[2];
+            lar_face_point face[6];
+            double least = INFINITY;
+            for (int f = 0; f < 6; f++) {
+                cube_face(f, shear[k], corner);
+                lar_face_closest(x, (const double(*)[3])corner, 1e-9, &face[f]);
+                least = fmin(least, face[f].distance);
+            }
+            int chosen = -1;
+            for (int f = 0; f < 6; f++)
+                if (face[f].distance <= least + 1e-9 &&
+                    (chosen < 0 || lar_face_point_before(&face[f], &face[chosen])))
+                    chosen = f;
+            if (least > 1e-6) assert_true((face[chosen].height < 0) == inside);
+        }
+}
+
+static void what_has_no_size_makes_no_trouble(void **unused) {
+    (void)unused;
+    double corner[4][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    lar_face_point found;
+    lar_face_closest((double[]){0, 3, 4}, (const double(*)[3])corner, 0, &found);
+    assert_below(fabs(found.distance - 5), 1e-15);
+    assert_true(found.height == 0);
+    corner[1][0] = corner[2][0] = 1; /* a line */
+    lar_face_closest((double[]){0.5, 0, 2}, (const double(*)[3])corner, 0, &found);
+    assert_below(fabs(found.distance - 2), 1e-15);
+    corner[0][0] = NAN;
+    lar_face_closest((double[]){0.5, 0, 2}, (const double(*)[3])corner, 0, &found);
+    assert_false(found.height < 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_closest_point_is_the_closest),
+        cmocka_unit_test(forces_and_moments_balance),
+        cmocka_unit_test(inside_is_inside_also_at_edges),
+        cmocka_unit_test(what_has_no_size_makes_no_trouble),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
