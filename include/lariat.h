@@ -451,6 +451,24 @@ LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t to
 LAR_API lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                                       lar_error *error);
 
+/* How a tool's device goes. Zero where its kind has no such thing. */
+typedef struct lar_device_status {
+    const char *name;  /* as it was attached, lives as long as the session; NULL: no device */
+    int port;          /* where it listens */
+    int connected;     /* not 0: somebody holds it now */
+    uint64_t received; /* positions taken */
+    uint64_t answered; /* forces sent */
+    uint64_t refused;  /* packets that are none, or of somebody else */
+    uint64_t late;     /* packets that came after a newer one, or twice */
+    uint64_t lost;     /* sequence numbers that never came */
+    uint64_t timeouts; /* times that it fell silent */
+    double answer_p50, answer_p99, answer_p999, answer_max; /* packet in to force out [s] */
+} lar_device_status;
+
+/* As of the last second. A tool without a device has a status of zeros. */
+LAR_API lar_status lar_session_device(const lar_session *session, int32_t tool,
+                                      lar_device_status *status, lar_error *error);
+
 typedef enum lar_session_state {
     LAR_SESSION_IDLE = 0, /* not started */
     LAR_SESSION_PLAYING,
@@ -531,8 +549,9 @@ typedef struct lar_replay_report {
 /* Plays a recording on a simulation of the same model and time step, on any grid, and compares the
  * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does a
  * file that is damaged or cut off where it is; what comes before is played and compared, and
- * `different` says that it is equal. `watch` may be NULL: called after every tick with the number
- * of steps, between two advances, so that it may look at the simulation; 0 ends the replay. */
+ * `different` says that it is equal. `watch` may be NULL: called with the number of steps at the
+ * beginning, after every tick, reset and load, between two advances, so that it may look at the
+ * simulation; 0 ends the replay. */
 LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
                               void *context, lar_replay_report *report, lar_error *error);
 

@@ -92,13 +92,27 @@ static lar_status compare(player *p, const lar_record *record, lar_error *error)
                     p->reader.path, record->step, hash, record->hash, before);
 }
 
+/* The simulation is where a state or a reset has put it. */
+static void look_again(player *p) {
+    p->stopped = p->watch && !p->watch(p->context, lar_simulation_steps(p->simulation));
+}
+
 static lar_status take_state(player *p, const lar_record *record, lar_error *error) {
     lar_bytes state = {0};
     lar_status status = lar_recording_state(&p->reader, record, &state, error);
     if (!status) status = lar_simulation_unpack(p->simulation, p->reader.path, &state, error);
     lar_bytes_free(&state);
-    if (status || lar_simulation_steps(p->simulation) == record->step) return status;
-    return lar_recording_refuse(&p->reader, error, "has a state of another step; it was altered");
+    if (!status && lar_simulation_steps(p->simulation) != record->step)
+        return lar_recording_refuse(&p->reader, error,
+                                    "has a state of another step; it was altered");
+    if (!status) look_again(p);
+    return status;
+}
+
+static lar_status reset(player *p, lar_error *error) {
+    lar_status status = lar_simulation_reset(p->simulation, error);
+    if (!status) look_again(p);
+    return status;
 }
 
 static lar_status move(player *p, const lar_record *record, lar_error *error) {
@@ -121,7 +135,7 @@ static lar_status play(player *p, const lar_record *record, lar_error *error) {
     if (status || p->stopped) return status;
     if (record->kind == LAR_RECORD_MOVE) return move(p, record, error);
     if (record->kind == LAR_RECORD_HASH) return compare(p, record, error);
-    if (record->kind == LAR_RECORD_RESET) return lar_simulation_reset(p->simulation, error);
+    if (record->kind == LAR_RECORD_RESET) return reset(p, error);
     return lar_recording_check_end(&p->reader, error);
 }
 

@@ -1,0 +1,273 @@
+/* lariat replay: a recording of a session again, compared hash by hash, and as pictures. */
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/json.h"
+#include "cli/parallel.h"
+#include "study/step_clock.h"
+
+typedef struct replay_settings {
+    const char *recording, *scene, *out;
+    double every; /* between frames [s]; 0: not given */
+    int isa;
+    bool json;
+    cli_parallel parallel;
+    int argc; /* what the command was given */
+    char **argv;
+} replay_settings;
+
+/* One replay under way. */
+typedef struct replay {
+    replay_settings settings;
+    lar_recording_info recorded;
+    lar_model *model;
+    lar_model_info info;
+    lar_processes *processes;
+    lar_parallel parallel;
+    lar_simulation *simulation;
+    lar_replay_report report;
+    lar_status failure;   /* of the library, LAR_OK: none */
+    lar_results *results; /* NULL without --out */
+    lar_status written;   /* of the results */
+    lar_error written_error;
+    double interval;   /* between frames [s] */
+    double next_frame; /* when the next one is due [s] */
+    uint64_t step;     /* of the latest look */
+    int frames, parts; /* a part for each time that the simulation went back */
+    lar_step_clock clock;
+    double elapsed, progress_at; /* [s] */
+} replay;
+
+/* ---- stopping ------------------------------------------------------------------------------ */
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_stop(int signal_number) {
+    stop_asked = signal_number;
+}
+
+/* The first signal ends the replay with what there is, a second one the program. */
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+/* ---- frames -------------------------------------------------------------------------------- */
+
+/* A series of frames has one time line: where the recording goes back, a new one begins. */
+static lar_status open_part(replay *r, lar_error *error) {
+    char folder[4096];
+    r->parts++;
+    lar_status status = lar_results_close(r->results, error);
+    r->results = NULL;
+    if (status) return status;
+    if (r->parts == 1)
+        snprintf(folder, sizeof folder, "%s", r->settings.out);
+    else
+        snprintf(folder, sizeof folder, "%s/part_%d", r->settings.out, r->parts);
+    return lar_results_open(folder, r->simulation, &r->results, error);
+}
+
+static lar_status add_frame(replay *r, uint64_t step, lar_error *error) {
+    double time = lar_simulation_time(r->simulation);
+    lar_status status = LAR_OK;
+    if (r->parts == 0 || step < r->step) {
+        status = open_part(r, error);
+        r->next_frame = time;
+    }
+    if (status || time < r->next_frame - 1e-9) return status;
+    r->next_frame = r->interval * (floor(time / r->interval + 1e-6) + 1);
+    r->frames++;
+    return lar_results_add(r->results, r->simulation, error);
+}
+
+static void show_progress(replay *r) {
+    static const double QUIET = 1.0, EVERY = 0.1; /* [s] */
+    double elapsed = lar_step_clock_elapsed(&r->clock);
+    if (elapsed < QUIET || elapsed < r->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
+    fprintf(stderr, "\r%.4g s simulated, %d frame%s \033[K", lar_simulation_time(r->simulation),
+            r->frames, r->frames == 1 ? "" : "s");
+    fflush(stderr);
+    r->progress_at = elapsed;
+}
+
+static int look(void *context, uint64_t step) {
+    replay *r = context;
+    if (r->settings.out) r->written = add_frame(r, step, &r->written_error);
+    r->step = step;
+    show_progress(r);
+    return !r->written && !stop_asked;
+}
+
+/* ---- telling ------------------------------------------------------------------------------- */
+
+static void write_json(const replay *r) {
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(r->simulation));
+    json_writer json = json_begin(stdout);
+    json_text(&json, "recording", r->settings.recording);
+    json_text(&json, "title", r->info.title);
+    json_integer(&json, "elements", r->info.elements);
+    json_integer(&json, "nodes", r->info.nodes);
+    json_text(&json, "element", cli_element_names[r->recorded.element]);
+    json_integer(&json, "steps", (int64_t)r->report.steps);
+    json_number(&json, "time_step", r->recorded.time_step);
+    json_text(&json, "grid", r->parallel.grid);
+    json_integer(&json, "processors", r->parallel.processors);
+    json_integer(&json, "threads", r->parallel.threads);
+    json_text(&json, "scheme", r->parallel.scheme);
+    json_text(&json, "comm", r->parallel.comm);
+    json_text(&json, "isa", lar_simulation_isa(r->simulation));
+    json_number(&json, "wall_time", r->elapsed);
+    json_integer(&json, "hashes", (int64_t)r->report.hashes);
+    json_boolean(&json, "equal", true);
+    json_text(&json, "state_hash", hash);
+    json_integer(&json, "frames", r->frames);
+    json_boolean(&json, "interrupted", stop_asked != 0);
+    json_end(&json);
+}
+
+static void write_table(const replay *r) {
+    printf("%s: %d elements, %d nodes (%s, %s)\n",
+           *r->info.title ? r->info.title : r->settings.scene, (int)r->info.elements,
+           (int)r->info.nodes, cli_element_names[r->recorded.element],
+           lar_simulation_isa(r->simulation));
+    printf("%-17s%" PRIu64 " steps of %.4g s in %.4g s%s\n", "played", r->report.steps,
+           r->recorded.time_step, r->elapsed, stop_asked ? ", interrupted" : "");
+    printf("%-17sall %" PRIu64 " hashes are equal to those of the recording\n", "compared",
+           r->report.hashes);
+    printf("%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(r->simulation));
+    if (!r->settings.out) return;
+    printf("%-17s%s: %d frame%s, .pvd, probes.csv", "results", r->settings.out, r->frames,
+           r->frames == 1 ? "" : "s");
+    if (r->parts > 1)
+        printf("; in %d parts, because the session went back %d time%s", r->parts, r->parts - 1,
+               r->parts == 2 ? "" : "s");
+    printf("\n");
+}
+
+/* ---- the replay ---------------------------------------------------------------------------- */
+
+static int fail_by(replay *r, const lar_error *error) {
+    r->failure = error->status;
+    return cli_complain(&cli_replay,
+                        error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, "%s",
+                        error->message);
+}
+
+/* The model, the processes, and this one's share of the simulation. */
+static int prepare(replay *r) {
+    const replay_settings *s = &r->settings;
+    lar_options options = lar_options_default();
+    lar_error error;
+    int status = cli_processes_begin(&cli_replay, &s->parallel, s->argc, s->argv, &r->processes);
+    if (status) return status;
+    if (lar_recording_inspect(s->recording, &r->recorded, &error)) {
+        r->failure = error.status;
+        return cli_complain_as_other(&cli_replay, r->processes, &error);
+    }
+    options.element = r->recorded.element;
+    options.isa = (lar_isa)s->isa;
+    options.time_step = r->recorded.time_step;
+    options.hands = r->recorded.hands;
+    cli_parallel_set(&s->parallel, &options);
+    status = cli_open_model(&cli_replay, s->scene, &r->model);
+    if (!status)
+        status = cli_processes_start(&cli_replay, r->processes, r->model, &options, &r->parallel);
+    if (status) return status;
+    if (!lar_model_inspect(r->model, &r->info, &error) &&
+        !lar_processes_create(r->processes, r->model, &options, &r->simulation, &error))
+        return CLI_DONE;
+    r->failure = error.status;
+    return cli_complain_as_other(&cli_replay, r->processes, &error);
+}
+
+static int compare(replay *r) {
+    lar_error error, closing;
+    r->interval = r->settings.every > 0 ? r->settings.every : lar_model_output_interval(r->model);
+    if (r->interval <= 0) r->interval = 0.04;
+    lar_step_clock_start(&r->clock, r->simulation, false);
+    lar_status status =
+        lar_replay(r->simulation, r->settings.recording, look, r, &r->report, &error);
+    r->elapsed = lar_step_clock_elapsed(&r->clock);
+    if (r->progress_at > 0) fputs("\r\033[K", stderr);
+    lar_status closed = lar_results_close(r->results, &closing);
+    if (status) return fail_by(r, &error);
+    if (r->written) return fail_by(r, &r->written_error);
+    if (closed) return fail_by(r, &closing);
+    if (r->settings.json)
+        write_json(r);
+    else
+        write_table(r);
+    return stop_asked ? CLI_INTERRUPTED : CLI_DONE;
+}
+
+/* Processor zero hears Ctrl-C too, and ends the replay for all. */
+static int serve(replay *r) {
+    lar_error error;
+    return lar_simulation_serve(r->simulation, &error) ? fail_by(r, &error) : CLI_DONE;
+}
+
+static int replay_recording(const replay_settings *settings) {
+    replay r = {.settings = *settings};
+    catch_signals();
+    int status = prepare(&r);
+    if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compare(&r);
+    bool failed = status && status != CLI_INTERRUPTED;
+    lar_simulation_destroy(r.simulation);
+    lar_model_destroy(r.model);
+    if (failed && !r.failure) r.failure = LAR_ERROR_IO;
+    return cli_processes_end(&cli_replay, r.processes, r.failure, status);
+}
+
+/* ---- the command line ---------------------------------------------------------------------- */
+
+static int replay_main(int argc, char **argv) {
+    replay_settings s = {.parallel = CLI_PARALLEL_NONE, .argc = argc, .argv = argv};
+    const char *arguments[2];
+    const cli_option options[] = {
+        CLI_TEXT("--out", "DIR", "write frames, .pvd and probes.csv there", &s.out),
+        CLI_REAL("--every", "S",
+                 "simulated seconds between frames; without: what the\nscene's output says, 0.04 "
+                 "when it says nothing",
+                 &s.every, 1e-9, 1e9),
+        CLI_CHOICE("--isa", "NAME",
+                   "instruction set: auto (default), c, neon, avx2,\navx512; the results are the "
+                   "same",
+                   &s.isa, cli_isa_names),
+        CLI_PARALLEL(s.parallel),
+        CLI_FLAG("--json", "the summary as one JSON object on standard output", &s.json),
+        CLI_END};
+    int status = cli_parse(&cli_replay, options, argc, argv, arguments, 2);
+    if (status >= 0) return status;
+    s.recording = arguments[0];
+    s.scene = arguments[1];
+    if (s.every > 0 && !s.out)
+        return cli_complain(&cli_replay, CLI_USAGE,
+                            "--every is the time between frames; say with --out where they go");
+    status = cli_parallel_check(&cli_replay, &s.parallel);
+    return status ? status : replay_recording(&s);
+}
+
+const cli_command cli_replay = {
+    .name = "replay",
+    .summary = "play a recorded session again, and compare",
+    .arguments = "RECORDING SCENE",
+    .description =
+        "Plays what a session has recorded, as fast as it goes and on any grid, and compares the\n"
+        "state hashes. The exit status is 0 only when all of them are equal; otherwise the "
+        "message\n"
+        "names the first step that differs. With --out the motion is written as a run's is.",
+    .examples =
+        "  lariat replay session.recording demo/uterus_live.yaml\n"
+        "  lariat replay session.recording demo/uterus_live.yaml --grid 2x1x1 --json\n"
+        "  lariat replay session.recording demo/uterus_live.yaml --out frames --every 0.04\n",
+    .main = replay_main};
