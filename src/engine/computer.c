@@ -306,7 +306,9 @@ static lar_status hear_all(lar_computer *computer, lar_trip *trip, lar_error *er
         status = lar_control_hear(computer->control, p, &answer, &report, error);
         if (status) break;
         if (earlier(&answer->trip, trip)) *trip = answer->trip;
-        if (answer->bytes == sizeof computer->report) lar_report_join(&computer->report, report);
+        lar_report own = {0}; /* a payload is aligned to 8 only */
+        if (answer->bytes == sizeof own) memcpy(&own, report, sizeof own);
+        lar_report_join(&computer->report, &own);
     }
     return status;
 }

@@ -22,11 +22,14 @@
 #include "engine/tools.h"
 #include "mechanics/contact.h"
 
+/* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
+__extension__ typedef __int128 lar_wide;
+
 /* Sum of what a tool felt, in force units (and those times metres), of all steps of an advance. */
 typedef struct lar_tool_sum {
-    int64_t force[3], torque[3]; /* of the tissue on the tool; about the tip */
-    int64_t rest[3];             /* of the torques, in LAR_TORQUE_REST: arms are short */
-    int32_t touching, held;      /* in the last step */
+    lar_wide force[3], torque[3]; /* of the tissue on the tool; about the tip */
+    int64_t rest[3];              /* of the torques, in LAR_TORQUE_REST: arms are short */
+    int32_t touching, held;       /* in the last step */
 } lar_tool_sum;
 
 static const double LAR_TORQUE_REST = 0x1p-20;

@@ -274,6 +274,24 @@ static void forces_are_means_of_the_last_advance(void **unused) {
     finish(simulation, model);
 }
 
+/* A hundred seconds of a firm grip, of four threads: more than 64 bits. */
+static void long_advances_add_up(void **unused) {
+    (void)unused;
+    static lar_acting acting;
+    lar_report sum = {0};
+    acting.touch.sum[1] = (lar_tool_sum){.touching = 2};
+    for (int step = 0; step < 1000; step++) {
+        acting.touch.sum[1].force[0] -= (int64_t)1 << 60;
+        acting.touch.sum[1].torque[2] += (int64_t)1 << 60;
+    }
+    for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &acting);
+    assert_true((double)sum.tool[1].force[0] == -4000 * 0x1p60);
+    assert_true((double)sum.tool[1].torque[2] == 4000 * 0x1p60);
+    assert_int_equal(sum.tool[1].touching, 8);
+    lar_report_begin(&acting);
+    assert_true(acting.touch.sum[1].force[0] == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tools_do_and_feel_the_same_on_every_grid),
@@ -281,6 +299,7 @@ int main(void) {
         cmocka_unit_test(a_tool_moves_evenly_and_rests),
         cmocka_unit_test(senseless_motions_are_refused),
         cmocka_unit_test(forces_are_means_of_the_last_advance),
+        cmocka_unit_test(long_advances_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
