@@ -268,7 +268,7 @@ void lar_device_reset(lar_device *device) {
     if (device->backend->reset) device->backend->reset(device->state);
 }
 
-void lar_device_report_get(const lar_device *device, lar_device_report *report) {
-    *report = (lar_device_report){.name = device->name};
-    if (device->backend->report) device->backend->report(device->state, report);
+void lar_device_status_get(const lar_device *device, lar_device_status *status) {
+    *status = (lar_device_status){.name = device->name};
+    if (device->backend->report) device->backend->report(device->state, status);
 }

@@ -50,22 +50,8 @@ void lar_device_feel(lar_device *device, const lar_device_tick *tick, const lar_
 /* The simulation went back or was loaded: time and tool have jumped. */
 void lar_device_reset(lar_device *device);
 
-/* How it goes. Zero where the kind has no such thing. */
-typedef struct lar_device_report {
-    const char *name;  /* as in the spec: "udp:127.0.0.1:9000"; lives as long as the device */
-    int port;          /* where it listens */
-    bool connected;    /* somebody holds it now */
-    uint64_t received; /* packets taken */
-    uint64_t answered; /* forces sent */
-    uint64_t refused;  /* packets that are none, or of somebody else */
-    uint64_t late;     /* packets that came after a newer one, or twice */
-    uint64_t lost;     /* sequence numbers that never came */
-    uint64_t timeouts; /* times that it fell silent */
-    double answer_p50, answer_p99, answer_p999, answer_max; /* packet in to force out [s] */
-} lar_device_report;
-
-/* Belongs to the thread that polls, between two polls. */
-void lar_device_report_get(const lar_device *device, lar_device_report *report);
+/* Belongs to the thread that polls, between two polls. `name` lives as long as the device. */
+void lar_device_status_get(const lar_device *device, lar_device_status *status);
 
 /* Kinds of devices: index 0..count-1. `missing` is NULL, or says how to get it. */
 typedef struct lar_device_kind {

@@ -37,7 +37,7 @@ typedef struct lar_device_backend {
     void (*feel)(void *state, const lar_device_tick *tick, const lar_tool_force *force,
                  const lar_tool_pose *pose);
     void (*reset)(void *state);                                   /* may be NULL */
-    void (*report)(const void *state, lar_device_report *report); /* may be NULL */
+    void (*report)(const void *state, lar_device_status *status); /* may be NULL */
 } lar_device_backend;
 
 extern const lar_device_backend lar_device_script, lar_device_udp, lar_device_gamepad;

@@ -255,9 +255,9 @@ static void gamepad_reset(void *data) {
     atomic_store_explicit(&state->rumble, 0, memory_order_relaxed);
 }
 
-static void gamepad_report(const void *data, lar_device_report *report) {
+static void gamepad_report(const void *data, lar_device_status *status) {
     const gamepad_state *state = data;
-    report->connected = atomic_load_explicit(&state->sample.attached, memory_order_relaxed);
+    status->connected = atomic_load_explicit(&state->sample.attached, memory_order_relaxed);
 }
 
 const lar_device_backend lar_device_gamepad = {FORM,

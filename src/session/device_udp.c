@@ -289,22 +289,22 @@ static void udp_reset(void *data) {
     state->link.silent = true; /* comes back as after a silence */
 }
 
-static void udp_report(const void *data, lar_device_report *report) {
+static void udp_report(const void *data, lar_device_status *status) {
     const udp_state *state = data;
     const lar_link *link = &state->link;
-    report->port = state->port;
-    report->connected = link->owned && !link->silent;
-    report->received = link->received;
-    report->answered = state->answered;
-    report->refused = link->refused;
-    report->late = link->late;
-    report->lost = link->lost;
-    report->timeouts = link->timeouts;
+    status->port = state->port;
+    status->connected = link->owned && !link->silent;
+    status->received = link->received;
+    status->answered = state->answered;
+    status->refused = link->refused;
+    status->late = link->late;
+    status->lost = link->lost;
+    status->timeouts = link->timeouts;
     const lar_histogram *h = &state->answer_time;
-    report->answer_p50 = 1e-9 * lar_histogram_quantile(h, 0.5);
-    report->answer_p99 = 1e-9 * lar_histogram_quantile(h, 0.99);
-    report->answer_p999 = 1e-9 * lar_histogram_quantile(h, 0.999);
-    report->answer_max = 1e-9 * (double)h->most;
+    status->answer_p50 = 1e-9 * lar_histogram_quantile(h, 0.5);
+    status->answer_p99 = 1e-9 * lar_histogram_quantile(h, 0.99);
+    status->answer_p999 = 1e-9 * lar_histogram_quantile(h, 0.999);
+    status->answer_max = 1e-9 * (double)h->most;
 }
 
 const lar_device_backend lar_device_udp = {.name = "udp",

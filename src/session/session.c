@@ -42,7 +42,8 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
     const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
                                         .hand_force = session->options.hand_force,
                                         .seconds =
-                                            (double)session->tick_steps * session->time_step};
+                                            (double)session->tick_steps * session->time_step,
+                                        .time_step = session->time_step};
     lar_status status = LAR_OK;
     session->tools = lar_simulation_tool_count(session->simulation);
     for (int32_t i = 0; i < session->tools && !status; i++) {

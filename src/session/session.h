@@ -35,20 +35,23 @@ typedef struct lar_session_view {
     struct {
         lar_tool_pose pose;
         lar_tool_force force;
+        lar_device_status device; /* summed up from time to time only */
     } tool[LAR_TOOLS_MOST];
 } lar_session_view;
 
 /* A tool and whoever moves it: the engine's. */
 typedef struct lar_session_tool {
-    lar_mailbox hand;      /* lar_tool_pose, from tool_move */
-    lar_tool_info info;    /* constant */
-    lar_device *device;    /* NULL: it listens to tool_move */
-    bool led;              /* somebody has moved it since the start or the last reset or load */
-    lar_coupling coupling; /* between the hand and it */
-    lar_tool_pose target;  /* where its hand is */
-    lar_tool_pose pose;    /* where it is at the tick's end */
-    lar_tool_pose sent;    /* where the simulation was told to move it */
-    lar_tool_force force;  /* what the hand feels; the tissue's where nobody leads it */
+    lar_mailbox hand;   /* lar_tool_pose, from tool_move */
+    lar_tool_info info; /* constant */
+    lar_device *device; /* NULL: it listens to tool_move */
+    bool led;           /* somebody has moved it since the start or the last reset or load */
+    lar_device_status device_status; /* as last summed up */
+    lar_coupling coupling;           /* between the hand and it */
+    lar_tool_pose target;            /* where its hand is */
+    lar_tool_pose pose;              /* where it is at the tick's end */
+    lar_tool_pose sent;              /* where the simulation was told to move it */
+    lar_tool_force force;            /* what the tissue does to it */
+    lar_tool_force felt;             /* what its device is told, behind the coupling */
 } lar_session_tool;
 
 struct lar_session {

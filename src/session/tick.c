@@ -21,6 +21,9 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     for (int32_t i = 0; i < session->tools; i++) {
         view->tool[i].pose = session->tool[i].pose;
         view->tool[i].force = session->tool[i].force;
+        if (quantiles && session->tool[i].device)
+            lar_device_status_get(session->tool[i].device, &session->tool[i].device_status);
+        view->tool[i].device = session->tool[i].device_status;
     }
     lar_mailbox_send(&session->view);
 }

@@ -19,7 +19,7 @@ void lar_session_take_tools(lar_session *session) {
         lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
         lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
         tool->sent = tool->target = tool->pose;
-        tool->force = (lar_tool_force){0};
+        tool->force = tool->felt = (lar_tool_force){0};
         tool->led = false;
         lar_coupling_reset(&tool->coupling, &tool->pose);
         if (tool->device) lar_device_reset(tool->device);
@@ -79,7 +79,7 @@ static void tell_devices(lar_session *session) {
     const lar_device_tick now = tick_of(session);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
-        if (tool->device) lar_device_feel(tool->device, &now, &tool->force, &tool->pose);
+        if (tool->device) lar_device_feel(tool->device, &now, &tool->felt, &tool->pose);
     }
 }
 
@@ -87,27 +87,27 @@ void lar_session_feel_tools(lar_session *session) {
     lar_history_begin(&session->history);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
-        lar_tool_force tissue = {0};
-        lar_simulation_tool_force(session->simulation, i, &tissue, NULL);
-        if (tool->led)
-            lar_coupling_feel(&tool->coupling, &tissue, &tool->force);
-        else
-            tool->force = tissue;
+        lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
+        if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, &tool->felt);
         lar_history_put(&session->history, i, tool->force.force);
     }
     lar_history_end(&session->history);
     tell_devices(session);
 }
 
+static void shrink(lar_tool_force *force, double share) {
+    for (int k = 0; k < 3; k++) {
+        force->force[k] *= share;
+        force->torque[k] *= share;
+    }
+}
+
 bool lar_session_idle_tools(lar_session *session, double share) {
     bool device = false;
     look_at_hands(session);
     for (int32_t i = 0; i < session->tools; i++) {
-        lar_tool_force *force = &session->tool[i].force;
-        for (int k = 0; k < 3; k++) {
-            force->force[k] *= share;
-            force->torque[k] *= share;
-        }
+        shrink(&session->tool[i].force, share);
+        shrink(&session->tool[i].felt, share);
         device = device || session->tool[i].device;
     }
     tell_devices(session);

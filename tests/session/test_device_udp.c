@@ -17,7 +17,7 @@ static const lar_tool_info PROBE = {.name = "probe",
 
 typedef struct rig {
     lar_device *device;
-    lar_device_report report;
+    lar_device_status report;
     uint64_t now;
     lar_tool_pose pose;
     lar_tool_force force;
@@ -27,7 +27,7 @@ static rig open_rig(const char *spec) {
     rig r = {.now = 1000 * MS, .pose = PROBE.rest, .force = {.force = {0, 0, 2}, .touching = 3}};
     lar_error error = {LAR_OK, ""};
     if (lar_device_open(spec, &PROBE, &r.device, &error)) fail_msg("%s", error.message);
-    lar_device_report_get(r.device, &r.report);
+    lar_device_status_get(r.device, &r.report);
     return r;
 }
 
@@ -35,7 +35,7 @@ static bool tick(rig *r) {
     lar_device_tick tick = {.step = r->now / 100000, .seconds = 0.001, .now = r->now};
     bool here = lar_device_poll(r->device, &tick, &r->pose);
     lar_device_feel(r->device, &tick, &r->force, &r->pose);
-    lar_device_report_get(r->device, &r->report);
+    lar_device_status_get(r->device, &r->report);
     r->now += MS;
     return here;
 }
