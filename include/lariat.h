@@ -469,24 +469,6 @@ typedef struct lar_device_status {
 LAR_API lar_status lar_session_device(const lar_session *session, int32_t tool,
                                       lar_device_status *status, lar_error *error);
 
-/* How a tool's device goes. Zero where its kind has no such thing. */
-typedef struct lar_device_status {
-    const char *name;  /* as it was attached, lives as long as the session; NULL: no device */
-    int port;          /* where it listens */
-    int connected;     /* not 0: somebody holds it now */
-    uint64_t received; /* positions taken */
-    uint64_t answered; /* forces sent */
-    uint64_t refused;  /* packets that are none, or of somebody else */
-    uint64_t late;     /* packets that came after a newer one, or twice */
-    uint64_t lost;     /* sequence numbers that never came */
-    uint64_t timeouts; /* times that it fell silent */
-    double answer_p50, answer_p99, answer_p999, answer_max; /* packet in to force out [s] */
-} lar_device_status;
-
-/* As of the last second. A tool without a device has a status of zeros. */
-LAR_API lar_status lar_session_device(const lar_session *session, int32_t tool,
-                                      lar_device_status *status, lar_error *error);
-
 typedef enum lar_session_state {
     LAR_SESSION_IDLE = 0, /* not started */
     LAR_SESSION_PLAYING,
