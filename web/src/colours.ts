@@ -128,7 +128,9 @@ export class Colours {
         if (this.name === PROCESSOR)
             for (let p = 0; p < Math.min(this.hello.processors, 16); p++) add(processorColour(p), String(p));
         else if (this.hello.materials.length > 1)
-            this.hello.materials.forEach((material, i) => add(organColour(i), material.name || `${i + 1}`));
+            this.hello.materials.forEach((material, i) =>
+                add(organColour(i), material.name || `${i + 1}: ${withUnit(material.shear_modulus, 'Pa')}`),
+            );
     }
 }
 

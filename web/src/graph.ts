@@ -40,7 +40,7 @@ export class ForceHistory {
 /* The least of 1, 2, 5, 10, 20 ... times `from` that is not below `value`. */
 export function niceRange(value: number, from = 0.05): number {
     let range = from;
-    for (let i = 0; range < value && i < 30; i++) range *= i % 3 === 1 ? 2.5 : 2;
+    for (let i = 0; range < value && i < 30; i++) range *= i % 3 === 2 ? 2.5 : 2;
     return Number(range.toPrecision(2));
 }
 

@@ -105,8 +105,7 @@ export class StateLine {
         if (slow)
             write(
                 element('slow-text'),
-                `${number(status.real_time_factor_now, 2)} × real time instead of ${status.pace}: ` +
-                    'the engine cannot keep up',
+                `${number(status.real_time_factor_now, 2)} × real time: the engine cannot keep up`,
             );
     }
 

@@ -22,6 +22,9 @@ export class View {
     private readonly scene = new THREE.Scene();
     private readonly cavity = new Cavity();
     private readonly fine: boolean;
+    private readonly adapts: boolean;
+    private sharpness = 1; // pixels drawn per pixel shown, along a side
+    private slowFor = 0; // pictures in a row
     private organ: THREE.Mesh | null = null;
     private edges: THREE.LineSegments | null = null;
     private edgesShown = false;
@@ -31,12 +34,17 @@ export class View {
     private stale = true;
 
     constructor(readonly canvas: HTMLCanvasElement) {
-        this.fine = fineEnough();
+        const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
+        this.fine = asked ? asked === 'fine' : drawnInHardware();
+        this.adapts = !asked;
         this.tissue = new Tissue(this.fine);
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
         this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group);
-        new ResizeObserver(() => this.resize()).observe(canvas);
+        new ResizeObserver(() => {
+            this.resize();
+            this.draw(0); // at once: an empty canvas would flash
+        }).observe(canvas);
         canvas.addEventListener('webglcontextrestored', () => (this.stale = true));
         this.resize();
     }
@@ -124,17 +132,27 @@ export class View {
         this.cavity.follow(this.endoscope.camera);
         this.renderer.render(this.scene, this.endoscope.camera);
         this.drawn++;
+        this.adapt(seconds);
         return true;
+    }
+
+    /* Fewer pixels where pictures come slower than the 24 per second that movement needs (T 6.5.1). */
+    private adapt(seconds: number): void {
+        if (!this.adapts || this.sharpness <= 0.5) return;
+        this.slowFor = seconds > 1 / 24 ? this.slowFor + 1 : Math.max(0, this.slowFor - 2);
+        if (this.slowFor < 12) return;
+        this.slowFor = 0;
+        this.sharpness = Math.max(0.5, this.sharpness * 0.75);
+        this.resize();
     }
 
     private resize(): void {
         const { clientWidth: width, clientHeight: height } = this.canvas;
         if (!width || !height) return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.fine ? 2 : 1));
+        this.renderer.setPixelRatio(this.sharpness * Math.min(devicePixelRatio, this.fine ? 2 : 1));
         this.renderer.setSize(width, height, false);
         this.endoscope.resize(width / height);
         this.stale = true;
-        this.draw(0);
     }
 
     private dispose(): void {
@@ -149,9 +167,7 @@ export class View {
 
 /* Whether a graphics processor draws. Where the main processor has to, which the engine needs too, the
  * picture is plainer; the address may say otherwise, with #quality=fine or #quality=plain. */
-function fineEnough(): boolean {
-    const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
-    if (asked) return asked === 'fine';
+function drawnInHardware(): boolean {
     const probe = document.createElement('canvas').getContext('webgl2');
     const names = probe?.getExtension('WEBGL_debug_renderer_info');
     const name = probe && names ? String(probe.getParameter(names.UNMASKED_RENDERER_WEBGL)) : '';

@@ -1,24 +1,30 @@
-// Debian's Chromium, without a screen, with a profile of its own that is thrown away.
-import { mkdtempSync, rmSync } from 'node:fs';
+// What browser tests share: Debian's Chromium without a screen and with a profile of its own that is
+// thrown away, and a page whose complaints count as failures.
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 
 const FLAGS = [
-    '--no-sandbox', '--disable-gpu', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-    '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync', '--disable-default-apps', '--disable-extensions', '--mute-audio', '--hide-scrollbars',
+    '--no-sandbox', '--disable-gpu', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-sync',
+    '--disable-background-networking', '--disable-component-update', '--disable-default-apps',
+    '--disable-extensions', '--hide-scrollbars',
 ];
 
 export const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+export const OUT = process.env.LARIAT_TEST_OUT ?? join(tmpdir(), 'lariat-browser-test');
 
-export async function openBrowser(extra = []) {
+export async function openBrowser({ flags = [], ...options } = {}) {
+    mkdirSync(OUT, { recursive: true });
     const profile = mkdtempSync(join(tmpdir(), 'lariat-browser-'));
     const context = await chromium.launchPersistentContext(profile, {
         executablePath: CHROMIUM,
         headless: true,
-        args: [...FLAGS, ...extra],
-        viewport: { width: 1280, height: 800 },
+        args: [...FLAGS, ...flags],
+        viewport: { width: 1000, height: 640 },
+        ...options,
     });
     return {
         context,
@@ -27,4 +33,69 @@ export async function openBrowser(extra = []) {
             rmSync(profile, { recursive: true, force: true });
         },
     };
+}
+
+/* A page with `complaints`: errors, failed requests, breaches of the content security policy. Chromium
+ * itself logs every refused WebSocket; who expects some, because the engine is gone, says so. */
+export async function openPage(browser, url, { drawn = true, expected = [] } = {}) {
+    const page = await browser.context.newPage();
+    const complaints = [];
+    const add = (text) => {
+        if (!/GL Driver Message|GPU stall/.test(text) && !expected.some((e) => e.test(text)))
+            complaints.push(text);
+    };
+    page.on('console', (message) => {
+        if (['error', 'warning'].includes(message.type())) add(`console: ${message.text()}`);
+    });
+    page.on('pageerror', (error) => add(`error: ${error.message}`));
+    page.on('requestfailed', (request) => add(`failed: ${request.url()}`));
+    page.on('response', (response) => {
+        if (response.status() >= 400) add(`${response.status()}: ${response.url()}`);
+    });
+    await page.goto(url);
+    if (drawn) await page.waitForFunction(() => window.lariat?.frames > 1 && window.lariat.pictures > 1);
+    const look = {
+        page,
+        complaints,
+        get: (key) => page.evaluate((k) => window.lariat[k], key),
+        until: (condition, argument, ms = 8000) =>
+            page.waitForFunction(condition, argument, { timeout: ms, polling: 50 }),
+        shot: (name) => page.screenshot({ path: join(OUT, `${name}.png`) }),
+        async close() {
+            await page.close();
+            assert.deepEqual(complaints, []);
+        },
+    };
+    return look;
+}
+
+/* Colours of points of the picture, from a screenshot that the page itself decodes. */
+export async function colours(page, points) {
+    const shot = (await page.screenshot()).toString('base64');
+    return page.evaluate(
+        async ([data, at]) => {
+            const image = new Image();
+            image.src = `data:image/png;base64,${data}`;
+            await image.decode();
+            const canvas = document.createElement('canvas');
+            canvas.width = image.width;
+            canvas.height = image.height;
+            const pen = canvas.getContext('2d', { willReadFrequently: true });
+            pen.drawImage(image, 0, 0);
+            return at.map(([x, y]) => [...pen.getImageData(x, y, 1, 1).data].slice(0, 3));
+        },
+        [shot, points],
+    );
+}
+
+export const difference = (a, b) => Math.max(...a.map((v, i) => Math.abs(v - b[i])));
+
+/* Presses at a place, drags by some pixels within several moves, and holds. */
+export async function drag(page, x, y, dx, dy, moves = 6) {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let i = 1; i <= moves; i++) {
+        await page.mouse.move(x + (dx * i) / moves, y + (dy * i) / moves);
+        await page.waitForTimeout(30);
+    }
 }

@@ -42,7 +42,7 @@ function pear(n = 14) {
     return { x, f, m: f.filter((_, i) => i % 4 === 0).map((_, i) => (i % 6 === 0 ? 1 : 0)) };
 }
 
-export function mock({ port = 0, surface = null, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, token = null, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     const n = mesh.x.length / 3;
     const faces = mesh.f.length / 4;
@@ -55,7 +55,7 @@ export function mock({ port = 0, surface = null, dist = join(here, '../dist') } 
 
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, message: '', saved: [],
-        slow: false, handStolen: false,
+        slow: false, refuse: false, mute: false, connections: 0,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -223,7 +223,10 @@ export function mock({ port = 0, surface = null, dist = join(here, '../dist') } 
     });
     const sockets = new WebSocketServer({ server, path: '/socket', handleProtocols: (p) => (p.has('lariat.1') ? 'lariat.1' : false) });
     const faults = []; // what a real server would have cut the viewer off for
-    sockets.on('connection', (socket) => {
+    sockets.on('connection', (socket, request) => {
+        if (token && new URL(request.url, 'http://x').searchParams.get('token') !== token)
+            return socket.close(4001, 'The token is missing or wrong.');
+        state.connections++;
         const say = (message) => socket.send(JSON.stringify(message));
         say(hello());
         socket.send(surfaceMessage());
@@ -243,7 +246,7 @@ export function mock({ port = 0, surface = null, dist = join(here, '../dist') } 
             messages++;
             const m = JSON.parse(data);
             const acts = {
-                frame: () => socket.send(frameMessage(m.field)),
+                frame: () => !state.mute && socket.send(frameMessage(m.field)),
                 forces: () => socket.send(forcesMessage(m.tool, m.after)),
                 grab() {
                     const node = nearest(m.point);

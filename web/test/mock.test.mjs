@@ -1,0 +1,148 @@
+// The page against the stand-in for the server: what the engine does too rarely to test with it.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { mock } from './mock.mjs';
+
+const REFUSED = [/WebSocket connection to/];
+let browser;
+let server;
+
+before(async () => {
+    browser = await openBrowser();
+    server = await mock();
+});
+after(async () => {
+    await browser?.close();
+    await server?.close();
+});
+
+test('slow motion is announced so that nobody misses it, and only while it lasts', async () => {
+    const v = await openPage(browser, server.url);
+    assert.equal(await v.page.locator('#slow').isVisible(), false);
+    server.state.slow = true;
+    await v.page.locator('#slow').waitFor({ state: 'visible', timeout: 2000 });
+    assert.match(await v.page.locator('#slow').innerText(), /slow motion\s+0\.40 × real time/i);
+    const box = await v.page.locator('#slow').boundingBox();
+    assert.ok(box.width * box.height > 10000, 'the banner is large');
+    assert.equal(await v.page.locator('#state-text').innerText(), 'slow motion');
+    await v.shot('slow-motion');
+    server.state.slow = false;
+    await v.page.locator('#slow').waitFor({ state: 'hidden', timeout: 4000 });
+    await v.close();
+});
+
+test('a stop of the engine is shown with its reason and a way out', async () => {
+    const v = await openPage(browser, server.url);
+    server.state.state = 'stopped';
+    server.state.message = 'element 1204 at (0.01, 0.02, 0.07) is turned inside out';
+    const title = v.page.getByRole('heading', { name: 'The simulation has stopped' });
+    await title.waitFor({ timeout: 3000 });
+    assert.match(await v.page.locator('#trouble-text').innerText(), /element 1204/);
+    assert.ok(await v.page.locator('#picture.gone').isVisible(), 'the picture is greyed');
+    assert.equal(await v.page.locator('#play').isDisabled(), true);
+    await v.shot('stopped');
+    await v.page.locator('#trouble-do').click();
+    await v.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 3000 });
+    assert.equal(server.state.message, '');
+    assert.equal(server.state.state, 'playing');
+    await v.close();
+});
+
+test('when all hands are taken, or nothing is within reach, a sentence says so', async () => {
+    const v = await openPage(browser, server.url);
+    server.state.refuse = true;
+    await drag(v.page, 500, 320, 40, -40);
+    await v.page.getByText('Other viewers have all hands').waitFor({ timeout: 3000 });
+    assert.equal(await v.get('hand'), 'free');
+    await v.page.mouse.up();
+    server.state.refuse = false;
+    await v.close();
+});
+
+test('a wrong token is answered with what to do, and not tried again', async () => {
+    const locked = await mock({ token: 'right-token' });
+    const v = await openPage(browser, `${locked.url}#token=wrong-token`, { drawn: false });
+    await v.page.getByText('The engine asks for a token').waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(1500);
+    assert.equal(locked.state.connections, 0);
+    await v.close();
+    const w = await openPage(browser, `${locked.url}#token=right-token`);
+    assert.equal(await w.get('connected'), true);
+    await w.close();
+    await locked.close();
+});
+
+test('when the engine ends the page says so within 3 s, greys, and finds a new one by itself', async () => {
+    const first = await mock();
+    const v = await openPage(browser, first.url, { expected: [...REFUSED, /failed: /] });
+    await first.close();
+    await v.page.getByText('No connection to the engine').waitFor({ timeout: 3000 });
+    assert.ok(await v.page.locator('#picture.gone').isVisible());
+    assert.equal(await v.page.locator('#play').isDisabled(), true);
+    const second = await mock({ port: first.port });
+    await v.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 6000 });
+    const frames = await v.get('frames');
+    await v.until((n) => window.lariat.frames > n + 2, frames);
+    await v.close();
+    await second.close();
+});
+
+test('frames are asked for one at a time, and never too many messages are sent', async () => {
+    const v = await openPage(browser, server.url);
+    server.state.mute = true; // no answer: no further question
+    await v.page.waitForTimeout(300);
+    const frames = await v.get('frames');
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.get('frames'), frames);
+    server.state.mute = false;
+    await v.close();
+    const w = await openPage(browser, server.url);
+    await drag(w.page, 500, 320, 60, -40, 40);
+    await w.page.mouse.up();
+    await w.close();
+    assert.deepEqual(server.faults, []);
+});
+
+test('pressure has a map with zero in its middle; processors have colours of their own', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.getByRole('radio', { name: 'pressure' }).click();
+    await v.until(() => window.lariat.field === 8);
+    await drag(v.page, 500, 250, 0, -70);
+    await v.page.waitForTimeout(700);
+    const least = await v.page.locator('#legend-least').innerText();
+    const most = await v.page.locator('#legend-most').innerText();
+    assert.equal(least, `−${most}`);
+    await v.page.mouse.up();
+    await v.page.getByRole('radio', { name: 'processor' }).click();
+    assert.equal(await v.page.locator('#keys-of-colours li').count(), 4);
+    await v.page.waitForTimeout(400);
+    const [left, right] = await colours(v.page, [[430, 260], [570, 260]]);
+    assert.ok(difference(left, right) > 25, 'the halves differ');
+    await v.shot('processors');
+    await v.close();
+});
+
+test('a browser without WebGL gets a sentence instead of an empty page', async () => {
+    const blind = await openBrowser({ flags: ['--disable-3d-apis'] });
+    const v = await openPage(blind, server.url, { drawn: false });
+    await v.page.getByText('shows no 3D pictures').waitFor({ timeout: 3000 });
+    await v.close();
+    await blind.close();
+});
+
+test('memory stays level while frames come', async () => {
+    const v = await openPage(browser, server.url);
+    const devtools = await browser.context.newCDPSession(v.page);
+    const used = async () => {
+        await devtools.send('HeapProfiler.collectGarbage');
+        return (await devtools.send('Runtime.getHeapUsage')).usedSize;
+    };
+    const frames = await v.get('frames');
+    await v.until((n) => window.lariat.frames > n + 20, frames);
+    const before = await used();
+    await v.until((n) => window.lariat.frames > n + 70, frames, 20000);
+    const grown = (await used()) - before;
+    assert.ok(grown < 400e3, `grew by ${grown} bytes in 50 frames`);
+    await v.close();
+});

@@ -1,0 +1,175 @@
+// Parts of the viewer that need no browser, compiled as they are.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { build } from 'esbuild';
+
+const source = join(dirname(fileURLToPath(import.meta.url)), '../src');
+const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
+const parts = {};
+
+before(async () => {
+    const names = ['surface', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain'];
+    await build({
+        entryPoints: names.map((name) => join(source, `${name}.ts`)),
+        bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
+    });
+    for (const name of names) parts[name] = await import(join(folder, `${name}.mjs`));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+/* A cube of n x n quads per side, blown up to a ball of radius 1 or left as it is. */
+function cube(n, ball) {
+    const known = new Map();
+    const x = [];
+    const quads = [];
+    const node = (a, b, c) => {
+        const key = `${a},${b},${c}`;
+        if (!known.has(key)) {
+            const p = [a, b, c].map((v) => (v / n) * 2 - 1);
+            const size = ball ? Math.hypot(...p) : 1;
+            known.set(key, x.length / 3);
+            x.push(...p.map((v) => v / size));
+        }
+        return known.get(key);
+    };
+    for (let i = 0; i < n; i++)
+        for (let j = 0; j < n; j++) {
+            quads.push(node(i, j, 0), node(i, j + 1, 0), node(i + 1, j + 1, 0), node(i + 1, j, 0));
+            quads.push(node(i, j, n), node(i + 1, j, n), node(i + 1, j + 1, n), node(i, j + 1, n));
+            quads.push(node(i, 0, j), node(i + 1, 0, j), node(i + 1, 0, j + 1), node(i, 0, j + 1));
+            quads.push(node(i, n, j), node(i, n, j + 1), node(i + 1, n, j + 1), node(i + 1, n, j));
+            quads.push(node(0, i, j), node(0, i, j + 1), node(0, i + 1, j + 1), node(0, i + 1, j));
+            quads.push(node(n, i, j), node(n, i + 1, j), node(n, i + 1, j + 1), node(n, i, j + 1));
+        }
+    return { x: Float32Array.from(x), quads: Uint32Array.from(quads) };
+}
+
+const radius = (p, i) => Math.hypot(p[3 * i], p[3 * i + 1], p[3 * i + 2]);
+
+test('rounding leaves nodes of the mesh where they are and comes close to a ball', () => {
+    const { x, quads } = cube(4, true);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    assert.equal(surface.quads.length, quads.length * 16, 'twice rounded');
+    assert.deepEqual(surface.positions.slice(0, x.length), x);
+    let worst = 0;
+    for (let i = 0; i < surface.nodes; i++) worst = Math.max(worst, Math.abs(radius(surface.positions, i) - 1));
+    assert.ok(worst < 0.012, `${worst} off the ball; straight edges would be off by 0.05`);
+    for (let i = 0; i < surface.nodes; i++) {
+        assert.ok(Math.abs(radius(surface.normals, i) - 1) < 1e-5, 'unit normals');
+        const outward = [0, 1, 2].reduce((s, k) => s + surface.normals[3 * i + k] * surface.positions[3 * i + k], 0);
+        assert.ok(outward > 0.98, 'normals point outwards');
+    }
+});
+
+test('blocks stay blocks', () => {
+    const { x, quads } = cube(3, false);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    for (const v of surface.positions) assert.ok(Math.abs(v) <= 1 + 1e-6, `${v} sticks out`);
+});
+
+test('large surfaces are rounded less, or not at all', () => {
+    const { x, quads } = cube(4, true);
+    assert.equal(new parts.surface.Surface(x, quads, 1000).quads.length, quads.length * 4);
+    assert.equal(new parts.surface.Surface(x, quads, 100).quads.length, quads.length);
+});
+
+test('edges of the mesh are drawn all along', () => {
+    const { x, quads } = cube(2, true);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    assert.equal(surface.lines.length, 48 * 4 * 2, '48 edges of four segments');
+    for (let i = 0; i < surface.lines.length; i += 2) {
+        const [a, b] = [surface.lines[i] * 3, surface.lines[i + 1] * 3];
+        const gap = Math.hypot(...[0, 1, 2].map((k) => surface.positions[a + k] - surface.positions[b + k]));
+        assert.ok(gap > 0.1 && gap < 0.35, `a segment of ${gap}`);
+    }
+});
+
+test('values are continued between nodes', () => {
+    const { x, quads } = cube(3, false);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    const values = new Float32Array(surface.nodes);
+    for (let i = 0; i < surface.meshNodes; i++) values[i] = x[3 * i] + 2 * x[3 * i + 1];
+    surface.spread(values, 1);
+    for (let i = 0; i < surface.nodes; i++)
+        assert.ok(Math.abs(values[i] - surface.positions[3 * i] - 2 * surface.positions[3 * i + 1]) < 1e-5);
+});
+
+test('the nearest outside of the surface is picked, and followed when it moves', () => {
+    const { x, quads } = cube(4, true);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    const hit = parts.pick.pick(surface, { x: 0.1, y: -5, z: 0.2 }, { x: 0, y: 1, z: 0 });
+    assert.ok(Math.abs(hit.distance - (5 - Math.sqrt(1 - 0.05))) < 0.013, `${hit.distance}`);
+    assert.equal(parts.pick.pick(surface, { x: 2, y: -5, z: 0 }, { x: 0, y: 1, z: 0 }), null);
+    assert.equal(parts.pick.pick(surface, { x: 0, y: 0, z: 0 }, { x: 0, y: 1, z: 0 }), null, 'from inside');
+    surface.update(x.map((v, i) => (i % 3 === 2 ? v + 0.5 : v)));
+    const now = {};
+    surface.follow(hit, now);
+    assert.ok(Math.abs(now.z - 0.7) < 1e-5 && Math.abs(now.x - 0.1) < 1e-5);
+});
+
+test('20,000 nodes are rounded and lit within a fifth of a picture at 60 Hz', () => {
+    const { x, quads } = cube(14, true);
+    const surface = new parts.surface.Surface(x, quads, 24000);
+    assert.ok(surface.nodes > 18000, `${surface.nodes}`);
+    let best = Infinity;
+    for (let i = 0; i < 40; i++) {
+        const start = performance.now();
+        surface.update(x);
+        best = Math.min(best, performance.now() - start);
+    }
+    assert.ok(best < 3.4, `${best.toFixed(2)} ms`);
+});
+
+test('the range of the force is a round number not below the peak', () => {
+    const { niceRange } = parts.graph;
+    assert.deepEqual([0.01, 0.05, 0.06, 0.3, 0.51, 1.2, 3, 7].map((v) => niceRange(v)), [0.05, 0.05, 0.1, 0.5, 1, 2, 5, 10]);
+});
+
+test('the history keeps the last ticks in order, beyond its size too', () => {
+    const history = new parts.graph.ForceHistory();
+    for (let i = 0; i < 10000; i++) history.add(Float32Array.of(0, i, 0), 0.001);
+    assert.equal(history.ago(0), 9999);
+    assert.equal(history.ago(4999), 5000);
+    assert.equal(history.ago(9000), 0, 'forgotten');
+    assert.equal(history.peak(), 9999);
+    assert.equal(history.shown, 5000);
+});
+
+test('the map for values grows evenly lighter; that around zero is lightest in its middle', () => {
+    const lightness = ([r, g, b]) =>
+        0.2104542553 * Math.cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b) +
+        0.793617785 * Math.cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b) -
+        0.0040720468 * Math.cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+    const rising = parts.palette.colourMap('rising').map(lightness);
+    for (let i = 1; i < rising.length; i++) {
+        const step = (rising[i] - rising[i - 1]) * 255;
+        assert.ok(step > 0.3 && step < 0.9, `step ${i}: ${step}`);
+    }
+    const signed = parts.palette.colourMap('signed').map(lightness);
+    assert.ok(signed[127] > 0.85 && signed[0] < 0.5 && signed[255] < 0.55);
+});
+
+test('organs differ in lightness, for people who confuse hues', () => {
+    const grey = (c) => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    const values = [0, 1, 2, 3].map((i) => grey(parts.palette.organColour(i))).sort((a, b) => a - b);
+    for (let i = 1; i < values.length; i++) assert.ok(values[i] / values[i - 1] > 1.1);
+});
+
+test('numbers are written with three digits and a unit', () => {
+    const { withUnit } = parts.dom;
+    assert.equal(withUnit(0.00342, 'm'), '3.42 mm');
+    assert.equal(withUnit(-1250, 'Pa'), '−1.25 kPa');
+    assert.equal(withUnit(0, 'Pa'), '0 Pa');
+    assert.equal(withUnit(999.9, 'Pa'), '1.00 kPa');
+});
+
+test('messages of a wrong length are refused', () => {
+    const message = new ArrayBuffer(72);
+    new DataView(message).setUint32(4, 5, true);
+    assert.throws(() => parts.protocol.readFrame(message, parts.protocol.emptyFrame()), /wrong length/);
+    assert.throws(() => parts.protocol.readSurface(new ArrayBuffer(20)), /wrong length/);
+});
