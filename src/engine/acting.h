@@ -19,4 +19,11 @@ static inline void lar_acting_destroy(lar_acting *acting) {
     lar_collide_destroy(&acting->collide);
 }
 
+/* The state has been replaced by another one: what contact knew of it, and had counted, is void. */
+static inline void lar_acting_forget(lar_acting *acting) {
+    lar_touch_forget(&acting->touch);
+    lar_collide_forget(&acting->collide);
+    acting->touch.seen = acting->collide.info = (lar_contact_info){0};
+}
+
 #endif

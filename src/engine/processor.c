@@ -281,7 +281,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.step = state->step;
         worker->state.external = worker->state.damped = worker->state.contact = 0;
         worker->trip = (lar_trip){0};
-        lar_touch_forget(&worker->acting.touch);
+        lar_acting_forget(&worker->acting);
         memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
     }
     p->ahead = (int64_t)(state->step - p->worker[0].round);

@@ -85,9 +85,10 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     state->step = 0;
     state->damped = state->external = state->contact = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
-    lar_touch_forget(&simulation->domain.acting.touch);
+    lar_acting_forget(&simulation->domain.acting);
     set_initial_displacements(simulation);
     set_initial_velocities(simulation);
+    lar_acting_forget(&simulation->domain.acting);
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,

@@ -43,7 +43,7 @@ lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
         status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
     if (status) return status;
     lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
-    lar_touch_forget(&simulation->domain.acting.touch);
+    lar_acting_forget(&simulation->domain.acting);
     return lar_simulation_take_up(simulation, error);
 }
 

@@ -72,7 +72,10 @@ static void a_loaded_run_goes_on_as_if_never_stopped(void **unused) {
 
         int to = (from + 1) % GRIDS;
         lar_simulation *other = start_with(model, setting(to));
-        if (from % 2) act(other, 0, 3); /* wherever it has been before */
+        if (from % 2) { /* wherever it has been before, in the same step too */
+            act(other, 0, 5);
+            advance(other, 3 * TICK_STEPS);
+        }
         load(other, PATH);
         assert_int_equal(lar_simulation_steps(other), 8 * TICK_STEPS);
         assert_int_equal(lar_simulation_hash(other), c.middle);
@@ -111,6 +114,13 @@ static void time_may_go_back_again_and_again(void **unused) {
             assert_int_equal(lar_simulation_steps(simulation), 0);
             assert_int_equal(lar_simulation_hash(simulation), c.start);
             for (int32_t t = 0; t < TEST_TOOLS; t++) check_rest(simulation, t);
+            lar_contact_info contact;
+            lar_simulation_contact(simulation, &contact);
+            assert_true(contact.steps == 0 && contact.tested == 0 && contact.touching == 0);
+            advance(simulation, 1);
+            lar_simulation_contact(simulation, &contact);
+            assert_int_equal(contact.steps, 1);
+            reset(simulation);
         }
         act(simulation, 0, 8);
         assert_int_equal(lar_simulation_hash(simulation), c.middle);
