@@ -126,6 +126,10 @@ static int attach(view *v, const char *device) {
             memcmp(tool.name, device, length) != 0)
             continue;
         if (lar_session_attach(v->session, i, equals + 1, &error)) return fail_by(v, &error);
+        lar_device_status status;
+        if (!lar_session_device(v->session, i, &status, NULL) && status.port > 0)
+            cli_complain(&cli_view, CLI_DONE, "note: the device of %s is expected at port %d",
+                         tool.name, status.port);
         return CLI_DONE;
     }
     return unknown_tool(v, device);
@@ -242,6 +246,22 @@ static void announce(view *v, const lar_session_status *s, double at) {
     v->state = s->state;
 }
 
+/* At most VIEW_DEVICES: as many as there can be tools. */
+static void note_devices(view *v) {
+    view_report *r = &v->report;
+    for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation); i++) {
+        view_device *device = &r->device[r->devices];
+        lar_tool_info tool;
+        if (r->devices == VIEW_DEVICES ||
+            lar_session_device(v->session, i, &device->status, NULL) || !device->status.name ||
+            lar_simulation_tool(v->simulation, i, &tool, NULL))
+            continue;
+        device->tool = tool.name;
+        snprintf(device->name, sizeof device->name, "%s", device->status.name);
+        r->devices++;
+    }
+}
+
 static void look_after(view *v) {
     const struct timespec nap = {0, 50000000};
     double begin = now();
@@ -259,6 +279,7 @@ static void look_after(view *v) {
     clear_progress(v);
     v->report.elapsed = now() - begin;
     lar_session_status_get(v->session, &v->report.status);
+    note_devices(v);
 }
 
 /* ---- the command --------------------------------------------------------------------------------

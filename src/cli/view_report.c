@@ -17,6 +17,46 @@ static void write_times(json_writer *json, const char *name, double p50, double 
     json_close(json);
 }
 
+/* VIEW_DEVICES at most. Packets are counted for devices on the network only. */
+static void write_devices(json_writer *json, const view_report *report) {
+    json_open(json, "devices", '[');
+    for (int32_t i = 0; i < report->devices; i++) {
+        const lar_device_status *d = &report->device[i].status;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", report->device[i].tool);
+        json_text(json, "device", report->device[i].name);
+        json_integer(json, "port", d->port);
+        json_boolean(json, "connected", d->connected != 0);
+        json_integer(json, "received", (int64_t)d->received);
+        json_integer(json, "answered", (int64_t)d->answered);
+        json_integer(json, "refused", (int64_t)d->refused);
+        json_integer(json, "late", (int64_t)d->late);
+        json_integer(json, "lost", (int64_t)d->lost);
+        json_integer(json, "timeouts", (int64_t)d->timeouts);
+        write_times(json, "answer_us", d->answer_p50, d->answer_p99, d->answer_p999, d->answer_max);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void print_devices(const view_report *report, FILE *out) {
+    for (int32_t i = 0; i < report->devices; i++) {
+        const lar_device_status *d = &report->device[i].status;
+        fprintf(out, "%-17s%s: %s\n", "device", report->device[i].tool, report->device[i].name);
+        if (d->port == 0) continue;
+        fprintf(out,
+                "%-17s%" PRIu64 " positions, %" PRIu64 " forces; %" PRIu64 " lost, %" PRIu64
+                " late, %" PRIu64 " refused, silent %" PRIu64 " times\n",
+                "", d->received, d->answered, d->lost, d->late, d->refused, d->timeouts);
+        if (d->answered)
+            fprintf(out,
+                    "%-17sanswered within %.4g us (median), 99 %% below %.4g, 99.9 %% below %.4g, "
+                    "longest %.4g\n",
+                    "", 1e6 * d->answer_p50, 1e6 * d->answer_p99, 1e6 * d->answer_p999,
+                    1e6 * d->answer_max);
+    }
+}
+
 void view_report_json(const view_report *report, FILE *out) {
     const lar_session_status *s = &report->status;
     char hash[17];
@@ -48,6 +88,7 @@ void view_report_json(const view_report *report, FILE *out) {
     json_integer(&json, "slow_motion", report->slow_times);
     json_number(&json, "skipped", s->skipped);
     json_integer(&json, "viewers", report->viewers_most);
+    write_devices(&json, report);
     json_text(&json, "state_hash", hash);
     json_end(&json);
 }
@@ -76,6 +117,7 @@ void view_report_table(const view_report *report, FILE *out) {
                 "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
                 1e6 * s->step_max);
     }
+    print_devices(report, out);
     fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
 }

@@ -8,6 +8,15 @@
 #include "lariat.h"
 #include "study/parallel.h"
 
+enum { VIEW_DEVICES = 16 };
+
+/* A tool that has a device. */
+typedef struct view_device {
+    const char *tool;         /* the simulation's */
+    char name[128];           /* as it was attached */
+    lar_device_status status; /* of the end; its own name has gone with the session */
+} view_device;
+
 typedef struct view_report {
     const char *scene, *url;
     lar_model_info info;
@@ -17,6 +26,8 @@ typedef struct view_report {
     double tick, pace, elapsed;       /* [s] simulated, factor asked for at the start, [s] */
     int64_t slow_times;               /* that slow motion began */
     int32_t viewers_most;             /* at once */
+    int32_t devices;
+    view_device device[VIEW_DEVICES];
 } view_report;
 
 void view_report_json(const view_report *report, FILE *out);
