@@ -76,7 +76,8 @@ static void add_stops(const lar_domain *domain, const lar_state *state, const do
         int32_t value = planes->node[entry].value;
         double free[3], ahead[3], mass = domain->mass[value / 4];
         for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
-            bool held = planes->node[entry].slide[i] == 0 && planes->node[entry].normal[i] != 0;
+            const lar_plane_way *way = &planes->way[planes->node[entry].way];
+            bool held = way->slide[i] == 0 && way->normal[i] != 0;
             free[i] = held ? state->v[value + i] : next_velocity(domain, state, value + i, gravity);
             ahead[i] = free[i];
         }

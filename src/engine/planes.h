@@ -22,25 +22,36 @@
 
 #include "engine/conditions.h"
 
-/* A node before a plane. */
-typedef struct lar_plane_node {
-    int32_t value;    /* 4 * local node */
-    int32_t plane;    /* of the model's contacts */
-    double offset;    /* height above the plane at rest [m] */
+/* How nodes with the same supports stop at a plane. */
+typedef struct lar_plane_way {
     double normal[3]; /* unit, to where bodies may be */
     double slide[3];  /* the change of velocity per change of its part along the normal: the normal
                          itself, but for axes that supports hold */
+} lar_plane_way;
+
+/* A node before a plane. */
+typedef struct lar_plane_node {
+    int32_t value; /* 4 * local node */
+    int32_t way;
+    double offset; /* height above the plane at rest [m] */
 } lar_plane_node;
 
+/* One that may touch, with all that a stop needs in one place: the rest of a step leaves nothing of
+ * it in the core's caches. */
+typedef struct lar_plane_near {
+    lar_plane_node node;
+    double weight;    /* as the context has it */
+    double before[3]; /* velocity before it moved [m/s] */
+} lar_plane_near;
+
 typedef struct lar_planes {
-    int32_t count;
+    int32_t count, way_count, near_count;
     lar_plane_node *node; /* [count] all planes of a node one after the other */
-    int32_t near_count;
-    int32_t *near;       /* [near_count] into `node`, ascending: those that may touch */
-    double (*before)[3]; /* [near_count] their velocities before they moved */
-    double travel;       /* at most this far has any node gone since the search [m] */
-    double reach;        /* how far `near` looks [m] */
-    bool known;          /* `near` belongs to the state */
+    lar_plane_way *way;   /* [way_count] */
+    lar_plane_near *near; /* [near_count] in the same order */
+    double travel;        /* at most this far has any node gone since the search [m] */
+    double reach;         /* how far `near` looks [m] */
+    bool known;           /* `near` belongs to the state */
 } lar_planes;
 
 /* `local` and `share` as for lar_conditions_create. */

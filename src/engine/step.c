@@ -74,7 +74,9 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
                        const lar_condition_context *context, double time, lar_state *state,
                        lar_trip *trip) {
     /* Where contact is predicted from the fastest node, that is none of these. */
-    uint64_t park_interval = acting->collide.surface ? 4 : LAR_WATCH_INTERVAL;
+    bool predicts =
+        acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
+    uint64_t park_interval = predicts ? 4 : LAR_WATCH_INTERVAL;
     const lar_model *model = domain->model;
     lar_motion motion = domain->motion;
     if (acting->conditions.gravity_varies) {
