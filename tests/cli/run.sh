@@ -10,12 +10,15 @@ scene=$demo/uterus.yaml
 expect 0 "$LARIAT" info "$scene"
 says '^mesh  *1840 elements'
 says 'fundus: .* nodes'
-says '^contact  *[0-9]* faces with each other'
 says 'grasper: grasper, radius 0.0015 m, length 0.02 m, spread 50 degrees, at '
+expect 0 "$LARIAT" info "$demo/uterus_live.yaml"
+says '^contact  *[0-9]* faces with each other'
+expect 0 "$LARIAT" info "$demo/uterus_live.yaml" --json
+has_keys contacts.0.kind contacts.0.through contacts.0.normal --numbers contacts.0.faces \
+    contacts.0.against
 expect 0 "$LARIAT" info "$scene" --json
-has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts.0.kind \
-    contacts.0.through contacts.0.normal tools.0.name tools.0.shape tools.0.at tools.0.towards \
-    notices --numbers contacts.0.faces contacts.0.against tools.0.radius tools.0.length \
+has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts tools.0.name tools.0.shape tools.0.at tools.0.towards \
+    notices --numbers tools.0.radius tools.0.length \
     tools.0.spread nodes \
     elements fixed_nodes volume mass shortest_edge scaled_jacobian.min scaled_jacobian.mean \
     scaled_jacobian.worst_element stable_step stable_step_element time_step duration \

@@ -7,6 +7,8 @@
 /* ---- uterus.yaml: pulled by a force -----------------------------------------------------------
  */
 
+/* The moduli are chosen for the explicit scheme: the stable step is that of a pressure wave across
+ * the smallest element, and 1840 elements in 12 cm leave them about 4 mm. */
 static const char pulled_head[] =
     "# The demonstration organ of Lariat: a uterus with tubes, ovaries and ligaments, about 12 cm\n"
     "# from left to right, 1840 hexahedra. Try\n"
@@ -14,7 +16,7 @@ static const char pulled_head[] =
     "#     lariat info uterus.yaml\n"
     "#     lariat run uterus.yaml --out results\n"
     "#\n"
-    "# To take hold of it yourself: uterus_live.yaml.\n" UNITS "lariat: 1\n"
+    "# To take hold of it: lariat view uterus_live.yaml\n" UNITS "lariat: 1\n"
     "title: Uterus\n"
     "mesh: uterus.vtu\n"
     "\n"
@@ -25,6 +27,20 @@ static const char pulled_head[] =
     "time_step: auto          # about 0.1 milliseconds\n"
     "damping: 4.0             # 1/s; motion dies away within a second\n"
     "duration: 0.6            # s; a run lasts so long unless --time says otherwise\n"
+    "\n"
+    "# Approximate shear moduli; magnetic resonance elastography of living women finds 2 to 3\n"
+    "# kPa for the uterus, here it is softer, so that the stable step stays above 0.1 ms\n"
+    "# (doubling both moduli divides it by 1.4). Nearly incompressible: bulk / shear modulus = "
+    "200.\n"
+    "materials:\n"
+    "  - { cells: uterus,    law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: tubes,     law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.4e3, bulk_modulus: 2.8e5 }\n"
+    "  - { cells: ovaries,   law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: ligaments, law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 1.2e3, bulk_modulus: 2.4e5 }\n"
     "\n";
 
 static const char pulled_end[] =
@@ -45,20 +61,39 @@ static const char pulled_end[] =
 /* ---- uterus_live.yaml: pulled by a person ------------------------------------------------------
  */
 
-/* The slowest motion, the fundus swaying back and forth, takes about 0.6 s: 14 1/s is 0.7 of what
+/* The slowest motion, the fundus swaying back and forth, takes about 0.4 s: 20 1/s is 0.7 of what
  * would just keep it from swaying. */
 static const char live_head[] =
     "# The demonstration organ of Lariat to take hold of: no load but your hand and two tools.\n"
+    "#\n"
+    "#     lariat view uterus_live.yaml\n"
+    "#\n"
     "# uterus.yaml is the same organ, pulled by a force.\n" UNITS "lariat: 1\n"
     "title: Uterus\n"
     "mesh: uterus.vtu\n"
     "\n"
     "gravity: [0, 0, 0]       # held up by its neighbours\n"
     "time_step: auto          # about 0.1 milliseconds\n"
-    "damping: 14.0            # 1/s; let go, it is back within half a second and sways once\n"
+    "damping: 20.0            # 1/s; let go, it is back within half a second and sways once\n"
+    "\n"
+    "# Approximate shear moduli: magnetic resonance elastography of living women finds 2 to 3 kPa\n"
+    "# for the uterus. Tubes and ligaments are firmer, so that one can pull at them. The stable\n"
+    "# step depends on the bulk moduli: with 4 times as much it is half as long.\n"
+    "materials:\n"
+    "  - { cells: uterus,    law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 3.0e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: ovaries,   law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 3.0e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: tubes,     law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 5.0e3, bulk_modulus: 3.0e5 }\n"
+    "  - { cells: ligaments, law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 5.0e3, bulk_modulus: 3.0e5 }\n"
     "\n";
 
 static const char live_end[] = "\n"
+                               "# The organ does not pass through itself.\n"
+                               "contact: [ { self: true } ]\n"
+                               "\n"
                                "output:\n"
                                "  every: 0.02\n"
                                "  fields: [displacement, von_mises]\n"
@@ -66,23 +101,7 @@ static const char live_end[] = "\n"
 
 /* ---- both ------------------------------------------------------------------------------------ */
 
-/* The moduli are chosen for the explicit scheme: the stable step is that of a pressure wave across
- * the smallest element, and 1840 elements in 12 cm leave them about 4 mm. */
-static const char body[] =
-    "# Approximate shear moduli; magnetic resonance elastography of living women finds 2 to 3\n"
-    "# kPa for the uterus, here it is softer, so that the stable step stays above 0.1 ms\n"
-    "# (doubling both moduli divides it by 1.4). Nearly incompressible: bulk / shear modulus = "
-    "200.\n"
-    "materials:\n"
-    "  - { cells: uterus,    law: neo-hookean, density: 1050,\n"
-    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
-    "  - { cells: tubes,     law: neo-hookean, density: 1050,\n"
-    "      shear_modulus: 1.4e3, bulk_modulus: 2.8e5 }\n"
-    "  - { cells: ovaries,   law: neo-hookean, density: 1050,\n"
-    "      shear_modulus: 1.5e3, bulk_modulus: 3.0e5 }\n"
-    "  - { cells: ligaments, law: neo-hookean, density: 1050,\n"
-    "      shear_modulus: 1.2e3, bulk_modulus: 2.4e5 }\n"
-    "\n"
+static const char middle[] =
     "# Named sets come with the mesh. Nodes: cervix, ligament_ends (and ligament_end_left,\n"
     "# ligament_end_right), fundus, posterior, ovary_left, ovary_right. Cells: uterus, tubes,\n"
     "# ovaries, ligaments.\n"
@@ -90,14 +109,12 @@ static const char body[] =
     "  - { nodes: cervix, axes: xyz }\n"
     "  - { nodes: ligament_ends, axes: xyz }      # the round ligaments end at the body wall\n"
     "\n"
-    "# Nothing passes through the organ: not the organ itself, and not these instruments, which\n"
-    "# wait in front of it until a device or the mouse moves them.\n"
-    "contact: [ { self: true } ]\n"
+    "# Instruments, which wait in front of the organ until a device or the mouse moves them.\n"
     "tools:\n"
     "  - { name: probe, shape: sphere, radius: 0.005, at: [0.045, -0.045, 0.075] }\n"
     "  - { name: grasper, shape: grasper, radius: 0.0015, length: 0.02, spread: 50,\n"
     "      at: [-0.035, -0.055, 0.09], towards: [0.35, 0.75, -0.5] }\n";
 
 const lar_demo_scene lar_demo_scene_of[LAR_DEMO_SCENES] = {
-    {"uterus.yaml", {pulled_head, body, pulled_end}},
-    {"uterus_live.yaml", {live_head, body, live_end}}};
+    {"uterus.yaml", {pulled_head, middle, pulled_end}},
+    {"uterus_live.yaml", {live_head, middle, live_end}}};
