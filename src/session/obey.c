@@ -1,6 +1,7 @@
 /* What is asked of a session, done by the engine's thread between two ticks. */
 #include <string.h>
 
+#include "base/clock.h"
 #include "session/session.h"
 
 /* ---- the recording ------------------------------------------------------------------------- */
@@ -57,7 +58,7 @@ static void arrive(lar_session *session) {
     session->status.message[0] = '\0';
     session->good_step = session->hashed = lar_simulation_steps(session->simulation);
     if (session->status.state == LAR_SESSION_STOPPED) lar_session_go_on(session);
-    lar_pace_restart(&session->pace);
+    lar_pace_restart(&session->pace, lar_clock_ns());
 }
 
 static lar_status reset(lar_session *session, lar_error *error) {
@@ -115,7 +116,8 @@ static void step(lar_session *session, uint64_t steps) {
 
 static void go(lar_session *session, const lar_request *request) {
     bool broken = session->status.state == LAR_SESSION_STOPPED;
-    if (request->kind == LAR_REQUEST_PACE) lar_pace_set(&session->pace, request->pace);
+    if (request->kind == LAR_REQUEST_PACE)
+        lar_pace_set(&session->pace, request->pace, lar_clock_ns());
     if (request->kind == LAR_REQUEST_END) session->ended = true;
     if (broken) return;
     if (request->kind == LAR_REQUEST_PAUSE) lar_session_rest(session);

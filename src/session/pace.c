@@ -21,28 +21,24 @@ static void set_factor(lar_pace *pace) {
     if (pace->total.played > 0) pace->factor = pace->total.simulated / pace->total.played;
 }
 
-void lar_pace_restart(lar_pace *pace) {
-    int64_t now = lar_clock_ns();
-    if (pace->running) {
-        pace->before = played(pace, pace->due < now ? pace->due : now);
-        pace->since = now;
-    }
-    pace->due = now;
+void lar_pace_restart(lar_pace *pace, int64_t now) {
+    if (pace->pace > 0 && pace->due > now) return;
+    pace->before = played(pace, pace->pace > 0 ? pace->due : now);
+    pace->since = pace->due = now;
     pace->fraction = 0;
 }
 
-void lar_pace_start(lar_pace *pace) {
+void lar_pace_start(lar_pace *pace, int64_t now) {
     if (pace->running) return;
     pace->running = true;
-    pace->since = pace->due = lar_clock_ns();
+    pace->since = pace->due = now;
     pace->fraction = 0;
     pace->given_up_at = 0;
     pace->moments = 0; /* rates do not look across a pause */
 }
 
-void lar_pace_stop(lar_pace *pace) {
+void lar_pace_stop(lar_pace *pace, int64_t now) {
     if (!pace->running) return;
-    int64_t now = lar_clock_ns();
     pace->before = played(pace, pace->pace > 0 && pace->due > now ? pace->due : now);
     pace->running = false;
     pace->total.played = pace->before;
@@ -51,10 +47,10 @@ void lar_pace_stop(lar_pace *pace) {
     pace->moments = 0;
 }
 
-void lar_pace_set(lar_pace *pace, double wanted) {
+void lar_pace_set(lar_pace *pace, double wanted, int64_t now) {
     if (wanted == pace->pace) return;
+    lar_pace_restart(pace, now);
     pace->pace = wanted;
-    lar_pace_restart(pace);
 }
 
 void lar_pace_wait(lar_pace *pace) {
@@ -70,10 +66,7 @@ static void give_up(lar_pace *pace, int64_t now) {
     pace->given_up_at = now;
 }
 
-void lar_pace_begin(lar_pace *pace, uint64_t steps, double seconds) {
-    int64_t now = lar_clock_ns();
-    (void)steps;
-    pace->begun = now;
+void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
     pace->period = pace->pace > 0 ? 1e9 * seconds / pace->pace : 0;
     if (pace->pace > 0)
         give_up(pace, now);
@@ -90,9 +83,8 @@ void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine) {
     pace->total.steps += steps;
 }
 
-void lar_pace_answered(lar_pace *pace) {
-    int64_t now = lar_clock_ns();
-    lar_histogram_add(&pace->ticks, (uint64_t)(now - pace->due));
+void lar_pace_answered(lar_pace *pace, int64_t now) {
+    lar_histogram_add(&pace->ticks, (uint64_t)(now > pace->due ? now - pace->due : 0));
     pace->total.ticks++;
     if (pace->pace <= 0) return;
     double next = pace->fraction + pace->period;
@@ -101,8 +93,7 @@ void lar_pace_answered(lar_pace *pace) {
     if (now > pace->due) pace->misses++;
 }
 
-bool lar_pace_look(lar_pace *pace) {
-    int64_t now = lar_clock_ns();
+bool lar_pace_look(lar_pace *pace, int64_t now) {
     if (pace->moments > 0 && now - pace->window[pace->moments - 1].at < WINDOW_STEP) return false;
     if (pace->moments == LAR_PACE_WINDOW) {
         memmove(pace->window, pace->window + 1, (LAR_PACE_WINDOW - 1) * sizeof pace->window[0]);
@@ -137,8 +128,8 @@ static void report_quantiles(const lar_pace *pace, lar_session_status *status) {
     status->tick_p999 = 1e-9 * lar_histogram_quantile(&pace->ticks, 0.999);
 }
 
-void lar_pace_report(const lar_pace *pace, bool quantiles, lar_session_status *status) {
-    int64_t now = lar_clock_ns();
+void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
+                     lar_session_status *status) {
     status->real_time_factor = pace->factor;
     status->ticks = pace->total.ticks;
     status->misses = pace->misses;

@@ -10,6 +10,8 @@
  *
  * Real-time factor: simulated time per time of the clock in which it was meant to go on; pauses and
  * waiting for a file do not belong to it, time that was given up does.
+ *
+ * `now` is base/clock.h's, as a number that the caller gives: a test can play every lateness.
  */
 #ifndef LAR_SESSION_PACE_H
 #define LAR_SESSION_PACE_H
@@ -34,7 +36,6 @@ typedef struct lar_pace_moment {
 typedef struct lar_pace {
     double pace;         /* simulated per clock second; 0: as fast as it goes */
     int64_t due;         /* when the tick under way, or the next one, is due [ns] */
-    int64_t begun;       /* when it began */
     double period;       /* of the tick under way [ns]; 0 without pace */
     double fraction;     /* of a nanosecond, what `due` leaves out */
     bool running;        /* between lar_pace_start and lar_pace_stop */
@@ -52,28 +53,28 @@ typedef struct lar_pace {
 } lar_pace;
 
 /* Play begins now, or goes on after a pause; the next tick is due now. Twice is once. */
-void lar_pace_start(lar_pace *pace);
+void lar_pace_start(lar_pace *pace, int64_t now);
 /* A pause: it begins when the next tick would be due. */
-void lar_pace_stop(lar_pace *pace);
-/* Nothing that lies behind is made up for: the next tick is due now. */
-void lar_pace_restart(lar_pace *pace);
-void lar_pace_set(lar_pace *pace, double wanted);
+void lar_pace_stop(lar_pace *pace, int64_t now);
+/* What lies behind is neither made up for nor counted: a late tick is due now. */
+void lar_pace_restart(lar_pace *pace, int64_t now);
+void lar_pace_set(lar_pace *pace, double wanted, int64_t now);
 
 /* Waits until the next tick is due. */
 void lar_pace_wait(lar_pace *pace);
-/* A tick of `steps` steps that last `seconds` (simulated) begins. */
-void lar_pace_begin(lar_pace *pace, uint64_t steps, double seconds);
+/* A tick that lasts `seconds` (simulated) begins. */
+void lar_pace_begin(lar_pace *pace, double seconds, int64_t now);
 /* The steps are done: `engine` is the time that they took [ns]. */
 void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine);
 /* The forces are out. */
-void lar_pace_answered(lar_pace *pace);
+void lar_pace_answered(lar_pace *pace, int64_t now);
 
 /* Once in a while: the window of rates. True when a tenth of a second has passed since it last
  * was. */
-bool lar_pace_look(lar_pace *pace);
+bool lar_pace_look(lar_pace *pace, int64_t now);
 
 /* Fills in what is counted, and with `quantiles` also what has to be summed up: some ten
  * microseconds. */
-void lar_pace_report(const lar_pace *pace, bool quantiles, lar_session_status *status);
+void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now, lar_session_status *status);
 
 #endif

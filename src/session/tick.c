@@ -15,7 +15,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_session_status *status = &session->status;
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
-    lar_pace_report(&session->pace, quantiles, status);
+    lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
     for (int32_t i = 0; i < session->tools; i++) {
@@ -44,7 +44,7 @@ void lar_session_stop(lar_session *session, const lar_error *error) {
     session->status.state = LAR_SESSION_STOPPED;
     session->stepping = false;
     memcpy(session->status.message, error->message, sizeof session->status.message);
-    lar_pace_stop(&session->pace);
+    lar_pace_stop(&session->pace, lar_clock_ns());
     lar_session_idle_tools(session, 0);
     lar_session_publish(session, true);
 }
@@ -52,20 +52,20 @@ void lar_session_stop(lar_session *session, const lar_error *error) {
 void lar_session_rest(lar_session *session) {
     session->status.state = LAR_SESSION_PAUSED;
     session->stepping = false;
-    lar_pace_stop(&session->pace);
+    lar_pace_stop(&session->pace, lar_clock_ns());
     lar_session_publish(session, true);
 }
 
 void lar_session_go_on(lar_session *session) {
     session->status.state = LAR_SESSION_PLAYING;
-    lar_pace_start(&session->pace);
+    lar_pace_start(&session->pace, lar_clock_ns());
 }
 
 static void tick(lar_session *session) {
     lar_error error;
     uint64_t steps = session->tick_steps;
     if (session->stepping && session->steps_left < steps) steps = session->steps_left;
-    lar_pace_begin(&session->pace, steps, (double)steps * session->time_step);
+    lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
     lar_status status = lar_session_move_tools(session, &error);
     int64_t begin = lar_clock_ns();
     if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
@@ -76,8 +76,8 @@ static void tick(lar_session *session) {
     lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
     lar_session_feel_tools(session);
     session->pace.total.exchanges++;
-    lar_pace_answered(&session->pace);
-    lar_session_publish(session, lar_pace_look(&session->pace));
+    lar_pace_answered(&session->pace, lar_clock_ns());
+    lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
     session->good_step = session->status.step;
     serve_snapshots(session);
     if (session->recorder && session->good_step - session->hashed >= session->options.hash_every)
@@ -110,7 +110,7 @@ static void rest(lar_session *session, double *fade) {
     int64_t wake = lar_clock_ns() + (int64_t)(1e9 * fmin(seconds, FADE));
     bool device = lar_session_idle_tools(session, *fade > 0 ? left / *fade : 0);
     if (device) session->pace.total.exchanges++;
-    bool look = lar_pace_look(&session->pace);
+    bool look = lar_pace_look(&session->pace, lar_clock_ns());
     if (*fade > 0 || (device && look)) lar_session_publish(session, look);
     if (*fade <= 0 && !device) wake += LONG;
     *fade = left;
@@ -134,6 +134,6 @@ void *lar_session_run(void *argument) {
             rest(session, &fade);
         }
     }
-    lar_pace_stop(&session->pace);
+    lar_pace_stop(&session->pace, lar_clock_ns());
     return NULL;
 }

@@ -14,18 +14,17 @@
 #define STATE LAR_TEST_BUILD "/session.checkpoint"
 #define BAD   LAR_TEST_BUILD "/bad.recording"
 
-/* Leads the first hand along a circle for a while. */
-static void lead(const bench *b, double seconds) {
-    for (double t = 0; t < seconds; t += 0.002) {
-        const lar_tool_pose pose = {.position = {0.03 + 0.01 * t, 0.02 * t, 0.02},
-                                    .orientation = {1, 0, 0, 0},
-                                    .opening = t < 0.01 ? 1 : 0};
-        DONE(lar_session_tool_move(b->session, 0, &pose, &failure));
+/* Leads the first hand along a line for so many steps: closed from the third place on. */
+static void lead(const bench *b, uint64_t steps) {
+    uint64_t end = status_of(b).step + steps;
+    for (int i = 0; status_of(b).step < end; i++) {
+        const lar_tool_pose pose = pose_at(0.03 + 1e-4 * i, 0.02, 0.02 + 2e-5 * i, i < 3);
+        DONE(lar_session_tool_move(b->session, HAND, &pose, &failure));
         nap(0.002);
     }
 }
 
-/* A session of some tenths of a second in which everything happens. */
+/* A short session in which everything happens. */
 static uint64_t record(const char *grid, int threads) {
     lar_session_options options = lar_session_options_default();
     options.record = PATH;
@@ -33,18 +32,17 @@ static uint64_t record(const char *grid, int threads) {
     bench b = open_bench(grid, threads, &options);
     DONE(lar_session_start(b.session, &failure));
     assert_int_equal(status_of(&b).recording, 1);
-    lead(&b, 0.05);
+    lead(&b, 500);
     DONE(lar_session_save(b.session, STATE, &failure));
-    lead(&b, 0.03);
+    lead(&b, 300);
     lar_session_pause(b.session);
-    await_state(&b, LAR_SESSION_PAUSED);
+    await(&b, LAR_SESSION_PAUSED, 0);
     lar_session_step(b.session, 3);
-    nap(0.01);
     lar_session_play(b.session);
     DONE(lar_session_reset(b.session, &failure));
-    lead(&b, 0.03);
+    lead(&b, 300);
     DONE(lar_session_load(b.session, STATE, &failure));
-    lead(&b, 0.03);
+    lead(&b, 300);
     uint64_t step = status_of(&b).step;
     close_bench(&b);
     return step;
@@ -54,11 +52,7 @@ static lar_status replay(const char *path, const char *grid, int threads,
                          lar_replay_report *report) {
     lar_model *model = hanging_block();
     lar_simulation *simulation = NULL;
-    lar_options options = lar_options_default();
-    options.time_step = 1e-4;
-    options.grid = grid;
-    options.threads = threads;
-    options.hands = 2;
+    const lar_options options = block_options(grid, threads);
     DONE(lar_simulation_create(model, &options, &simulation, &failure));
     lar_status status = lar_replay(simulation, path, NULL, NULL, report, &failure);
     lar_simulation_destroy(simulation);
@@ -195,7 +189,7 @@ static void forged_files_are_refused(void **unused) {
     } forged[] = {
         {LAR_RECORD_MOVE, 3, 0, 0, "back in time"},
         {LAR_RECORD_MOVE, 3, 0, UINT64_MAX, "beyond all range"},
-        {LAR_RECORD_MOVE, 3, 1, 2, "a tool that the recording does not have"},
+        {LAR_RECORD_MOVE, 3, 1, 3, "a tool that the recording does not have"},
         {LAR_RECORD_MOVE, 3, 2, 0, "where none can be"},
         {LAR_RECORD_MOVE, 3, 3, 0x7ff8000000000000, "where none can be"},
         {LAR_RECORD_MOVE, 3, 10, 0x4000000000000000, "where none can be"},
@@ -268,7 +262,7 @@ static void killed_writers_leave_a_beginning(void **unused) {
         options.record = PATH;
         bench b = open_bench(NULL, 0, &options);
         if (lar_session_start(b.session, &failure)) _exit(1);
-        lead(&b, 60);
+        lead(&b, 1000000);
         _exit(1);
     }
     assert_true(child > 0);
@@ -317,7 +311,7 @@ static void full_disks_are_told(void **unused) {
     small.rlim_cur = 4096;
     setrlimit(RLIMIT_FSIZE, &small);
     DONE(lar_session_record(b.session, PATH, &failure));
-    lead(&b, 0.1);
+    lead(&b, 500);
     lar_status status = lar_session_record(b.session, NULL, &failure);
     setrlimit(RLIMIT_FSIZE, &before);
     assert_int_equal(status, LAR_ERROR_IO);

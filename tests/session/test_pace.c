@@ -1,0 +1,179 @@
+/* The clock of a session: when ticks are due, what is late, what is given up, and what it comes
+ * to. Time is played. */
+#include "base/clock.h"
+#include "session/pace.h"
+#include "testing.h"
+
+enum { MS = 1000000 }; /* [ns] */
+
+static lar_pace pace;
+static int64_t now;
+
+static void begin_with(double wanted) {
+    pace = (lar_pace){.pace = wanted};
+    now = 1000 * MS;
+    lar_pace_start(&pace, now);
+}
+
+/* A tick of `seconds` whose steps take `engine` ns: begins when it is due, or at once. */
+static void tick(double seconds, int64_t engine) {
+    if (pace.pace > 0 && now < pace.due) now = pace.due;
+    lar_pace_begin(&pace, seconds, now);
+    now += engine;
+    lar_pace_computed(&pace, 10, engine);
+    lar_pace_answered(&pace, now);
+}
+
+static lar_session_status report(void) {
+    lar_session_status status = {0};
+    lar_pace_report(&pace, true, now, &status);
+    return status;
+}
+
+static void near(double value, double wanted, double share) {
+    assert_below(fabs(value - wanted), share * wanted);
+}
+
+static void ticks_come_when_they_are_due(void **unused) {
+    (void)unused;
+    begin_with(0.5);
+    lar_pace_start(&pace, now + 7); /* once is enough */
+    for (int i = 0; i < 200; i++) {
+        assert_int_equal(pace.due, (1000 + 4 * i) * MS);
+        tick(0.002, 200000);
+    }
+    lar_pace_stop(&pace, now);
+    lar_session_status status = report();
+    assert_int_equal(status.ticks, 200);
+    assert_int_equal(status.misses, 0);
+    near(status.real_time_factor, 0.5, 1e-12);
+    near(status.step_p50, 2e-5, 0.02);
+    near(status.tick_p99, 2e-4, 0.02);
+    assert_true(status.tick_max == 2e-4);
+}
+
+static void waiting_ends_when_a_tick_is_due(void **unused) {
+    (void)unused;
+    begin_with(1);
+    pace.due = lar_clock_ns() + 3 * MS;
+    lar_pace_wait(&pace);
+    assert_true(lar_clock_ns() >= pace.due);
+    pace.pace = 0;
+    pace.due = lar_clock_ns() + (int64_t)3600000 * MS;
+    lar_pace_wait(&pace);
+}
+
+/* 3 ticks per 10 us of the clock are 300,000 a second. */
+static void fractions_are_not_lost(void **unused) {
+    (void)unused;
+    begin_with(3);
+    int64_t first = pace.due;
+    for (int i = 0; i < 300000; i++) tick(1e-5, 1000);
+    assert_below(fabs((double)(pace.due - first - 1000 * MS)), 2);
+}
+
+static void late_ticks_are_misses(void **unused) {
+    (void)unused;
+    begin_with(1);
+    tick(0.001, 1000000); /* just in time */
+    assert_int_equal(report().misses, 0);
+    tick(0.001, 10 * MS);
+    assert_int_equal(report().misses, 1);
+    near(report().lag, 0.009, 1e-9);
+    for (int i = 0; i < 20; i++) tick(0.001, 100000); /* catches up */
+    assert_int_equal(report().misses, 10);
+    assert_true(report().lag == 0);
+    assert_true(report().skipped == 0);
+    assert_false(report().slow_motion);
+}
+
+static void too_much_is_given_up(void **unused) {
+    (void)unused;
+    begin_with(1);
+    tick(0.001, 151 * MS);
+    tick(0.001, 0);
+    lar_session_status status = report();
+    near(status.skipped, 0.05, 1e-9);
+    assert_true(status.slow_motion);
+    near(status.lag, 0.099, 1e-9);
+    for (int i = 0; i < 1000; i++) tick(0.001, 2 * MS); /* half as fast as asked for */
+    status = report();
+    assert_true(status.slow_motion);
+    near(status.skipped, 0.05 + 0.998, 0.01);
+    assert_below(status.lag, 0.101 + 1e-9); /* of the next tick */
+    assert_below(status.real_time_factor, 0.5);
+    for (int i = 0; i < 1200; i++) tick(0.001, 100000);
+    assert_false(report().slow_motion);
+}
+
+static void pauses_do_not_count(void **unused) {
+    (void)unused;
+    begin_with(1);
+    for (int i = 0; i < 3; i++) {
+        lar_pace_start(&pace, now);
+        tick(0.010, 100000);
+        lar_pace_stop(&pace, now);
+        lar_pace_stop(&pace, now + 50 * MS);
+        assert_true(report().lag == 0);
+        now += 500 * MS;
+    }
+    near(report().real_time_factor, 1, 1e-9);
+    lar_pace_start(&pace, now);
+    tick(0.010, 100000);
+    now += 300 * MS; /* a state was loaded */
+    lar_pace_restart(&pace, now);
+    assert_true(report().lag == 0);
+    tick(0.010, 100000);
+    lar_pace_stop(&pace, now);
+    near(report().real_time_factor, 1, 1e-9);
+    assert_true(report().skipped == 0);
+}
+
+static void without_pace_nothing_is_due(void **unused) {
+    (void)unused;
+    begin_with(0);
+    for (int i = 0; i < 100; i++) tick(1, 20 * MS);
+    lar_pace_stop(&pace, now);
+    lar_session_status status = report();
+    assert_int_equal(status.misses, 0);
+    assert_true(status.lag == 0 && status.skipped == 0);
+    near(status.real_time_factor, 50, 1e-9);
+    near(status.tick_p50, 0.02, 0.02);
+    lar_pace_set(&pace, 1, now);
+    lar_pace_start(&pace, now);
+    tick(1, MS);
+    assert_int_equal(pace.due, now - MS + 1000 * MS);
+}
+
+static void rates_are_of_the_last_second(void **unused) {
+    (void)unused;
+    begin_with(1);
+    assert_true(lar_pace_look(&pace, now));
+    assert_false(lar_pace_look(&pace, now + 99 * MS));
+    assert_true(report().engine_rate == 0);
+    for (int i = 0; i < 30; i++) {
+        now += 100 * MS;
+        pace.total.steps += i < 19 ? 5 : 100;
+        pace.total.exchanges += 50;
+        pace.total.snapshots += 3;
+        pace.total.simulated += 0.05;
+        assert_true(lar_pace_look(&pace, now));
+    }
+    lar_session_status status = report();
+    near(status.engine_rate, 1000, 1e-9);
+    near(status.haptic_rate, 500, 1e-9);
+    near(status.snapshot_rate, 30, 1e-9);
+    near(status.real_time_factor_now, 0.5, 1e-9);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ticks_come_when_they_are_due),
+                                       cmocka_unit_test(waiting_ends_when_a_tick_is_due),
+                                       cmocka_unit_test(fractions_are_not_lost),
+                                       cmocka_unit_test(late_ticks_are_misses),
+                                       cmocka_unit_test(too_much_is_given_up),
+                                       cmocka_unit_test(pauses_do_not_count),
+                                       cmocka_unit_test(without_pace_nothing_is_due),
+                                       cmocka_unit_test(rates_are_of_the_last_second)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
