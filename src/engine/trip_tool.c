@@ -5,9 +5,11 @@
 
 #include "engine/step.h"
 
-/* A tool that is no farther from a broken element than so many of its edges had a part in it;
- * pulled elements may be some layers below the held surface. */
-static const double TOUCHING = 1.5, PULLING = 6;
+/* A tool that is no farther from a broken element than so many of its edges had a part in it. One
+ * that moves, or has just come to rest, may be farther off: what it has bent springs back when it
+ * slips off, and what it pulls may break some layers below. */
+static const double TOUCHING = 1.5, MOVING = 8, PULLING = 6;
+enum { JUST = 1000 };
 
 /* The middle of an element at rest, and about how long its edges are. */
 static double element_at_rest(const lar_domain *domain, lar_gid e, double place[3]) {
@@ -59,8 +61,11 @@ void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
         double velocity[3];
         lar_tool_at(&touch->tools->motion[t], trip->step, domain->time_step, &pose, velocity);
         double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
+        const lar_tool_motion *motion = &touch->tools->motion[t];
+        bool moving = motion->end > 0 && trip->step < motion->end + JUST;
         if (tool->shape != LAR_TOOL_HAND)
-            touching = touching_distance(tool, &pose, trip->place) / (TOUCHING * edge);
+            touching =
+                touching_distance(tool, &pose, trip->place) / ((moving ? MOVING : TOUCHING) * edge);
         if (!(fmin(holding, touching) < closest)) continue;
         closest = fmin(holding, touching);
         trip->tool = t + 1;

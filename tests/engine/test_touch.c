@@ -260,6 +260,79 @@ static void the_hash_is_the_same_everywhere(void **unused) {
     lar_model_destroy(model);
 }
 
+/* ---- tools that are pushed without mercy ------------------------------------------------------
+ */
+
+enum { WAYS = 5 };
+
+/* From, to, and back. Through the block, along its top, out of its side, into its edge, past it. */
+static const double ways[WAYS][2][3] = {{{0.025, 0.015, 0.05}, {0.025, 0.015, -0.02}},
+                                        {{-0.02, 0.015, 0.027}, {0.07, 0.015, 0.027}},
+                                        {{-0.02, 0.013, 0.018}, {0.07, 0.016, 0.02}},
+                                        {{0.025, -0.02, 0.045}, {0.027, 0.05, 0.01}},
+                                        {{-0.02, 0.0305, 0.035}, {0.07, 0.0305, 0.01}}};
+
+/* There and back. Returns what the run says. */
+static lar_status push(const brick *b, const lar_tool *tool, int way, double speed,
+                       double *most_force, lar_error *error) {
+    lar_model *model = brick_model(b);
+    fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_ALL);
+    touch_tool(model, "probe", *tool, ways[way][0]);
+    lar_simulation *simulation = start(model);
+    double length = 0, time_step = lar_simulation_time_step(simulation);
+    for (int i = 0; i < 3; i++) length += pow(ways[way][1][i] - ways[way][0][i], 2);
+    uint64_t steps = (uint64_t)(sqrt(length) / speed / time_step) + 1;
+    lar_status status = LAR_OK;
+    *most_force = 0;
+    for (int leg = 0; leg < 2 && !status; leg++) {
+        place(simulation, 0, ways[way][!leg], upright, 1, steps);
+        for (uint64_t i = 0; i < steps + 200 && !status; i += 20) {
+            lar_tool_force force;
+            status = lar_simulation_advance(simulation, 20, error);
+            assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, NULL), LAR_OK);
+            for (int k = 0; k < 3; k++) {
+                assert_true(isfinite(force.force[k]));
+                *most_force = fmax(*most_force, fabs(force.force[k]));
+            }
+        }
+    }
+    for (int32_t n = 0; n < model->mesh.node_count && !status; n++)
+        for (int k = 0; k < 3; k++) assert_below(fabs(node_u(simulation, n)[k]), 0.1);
+    finish(simulation, model);
+    return status;
+}
+
+static void a_tool_pushed_through_holds_or_stops_and_says_why(void **unused) {
+    (void)unused;
+    static const brick blocks[2] = {{{10, 6, 5}, 0.005, 0.05, LAR_LAW_neo_hookean, 2e3, 2e5, 1000},
+                                    {{10, 6, 5}, 0.005, 0.05, LAR_LAW_neo_hookean, 8e3, 8e4, 1000}};
+    static const lar_tool shapes[3] = {
+        {.shape = LAR_TOOL_SPHERE, .radius = 0.005},
+        {.shape = LAR_TOOL_CAPSULE, .radius = 0.003, .length = 0.08},
+        {.shape = LAR_TOOL_GRASPER, .radius = 0.002, .length = 0.015, .spread = 0.9}};
+    int held = 0, stopped = 0;
+    for (int way = 0; way < WAYS; way++)
+        for (int fast = 0; fast < 2; fast++) {
+            int shape = (way + fast) % 3;
+            double force, speed = fast ? 1 : 0.25;
+            lar_error error = {0};
+            lar_status status = push(&blocks[way % 2], &shapes[shape], way, speed, &force, &error);
+            print_message("way %d, shape %d, %.2f m/s, up to %.2f N: %s\n", way, shape, speed,
+                          force, status ? error.message : "holds");
+            assert_true(force > 0.01);
+            held += !status;
+            stopped += status == LAR_ERROR_UNSTABLE;
+            if (!status) continue;
+            assert_int_equal(status, LAR_ERROR_UNSTABLE);
+            assert_non_null(strstr(error.message, "tool probe moves at"));
+            assert_non_null(strstr(error.message, "element"));
+            assert_non_null(strstr(error.message, "near ("));
+            assert_non_null(strstr(error.message, "move it slower"));
+        }
+    assert_int_equal(held + stopped, 2 * WAYS);
+    assert_true(held > 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dropped_body_gains_no_energy),
@@ -268,6 +341,7 @@ int main(void) {
         cmocka_unit_test(what_tools_feel_is_what_the_body_feels),
         cmocka_unit_test(every_joule_of_a_tool_is_accounted_for),
         cmocka_unit_test(the_hash_is_the_same_everywhere),
+        cmocka_unit_test(a_tool_pushed_through_holds_or_stops_and_says_why),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
