@@ -6,17 +6,17 @@
 #include "base/quaternion.h"
 
 /* A device like a PHANToM (Massie and Salisbury 1994) gives 8.5 N at most and weighs 75 g. */
-static const double STIFFNESS = 1000, MASS = 0.02;   /* [N/m] [kg] */
-static const double FEEL_MOST = 8;                   /* [N] */
-static const double TORQUE_MOST = 0.2;               /* [N m] */
-static const double TURN_MOST = 20;                  /* [rad/s] */
-static const double LEVER_LEAST = 0.05;              /* [m] */
-static const double ACCELERATION = 100;              /* of a hand, at most [m/s^2] */
-static const double SMOOTH = 0.003;                  /* of the hand's velocity [s] */
-static const double JUMP = 0.005;                    /* no hand goes so far in a tick [m] */
-static const double FORGET = 0.05;                   /* how stiff the tissue was [s] */
-static const double DEBT_MOST = 0.02, FORGIVE = 0.5; /* [J] [s] */
-static const double STIFFEST = 1e5;                  /* [N/m] */
+static const double STIFFNESS = 1000, MASS = 0.02; /* [N/m] [kg] */
+static const double FEEL_MOST = 8;                 /* [N] */
+static const double TORQUE_MOST = 0.2;             /* [N m] */
+static const double TURN_MOST = 20;                /* [rad/s] */
+static const double LEVER_LEAST = 0.05;            /* [m] */
+static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
+static const double SMOOTH = 0.003;                /* of the hand's velocity [s] */
+static const double JUMP = 0.005;                  /* no hand goes so far in a tick [m] */
+static const double FORGET = 0.05;                 /* how stiff the tissue was [s] */
+static const double CREDIT = 2e-4, REFILL = 2e-4;  /* [J] [W] */
+static const double STIFFEST = 1e5;                /* [N/m] */
 static const double REACH = 0.5; /* of its radius, a tool's way in a step (lariat.h) */
 static const double CLOSES = 0.25;
 
@@ -42,7 +42,6 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
     double engine = REACH * tool->radius / limits->time_step;
     double speed = fmin(limits->tool_speed, 0.4 * engine), lever = fmax(tool->length, LEVER_LEAST);
     double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
-    double leak = ACCELERATION * limits->seconds * limits->seconds;
     *coupling = (lar_coupling){.shape = tool->shape,
                                .mass = MASS,
                                .stiffness = STIFFNESS,
@@ -54,7 +53,7 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                                .drag = pull / speed,
                                .feel_torque = TORQUE_MOST,
                                .seconds = limits->seconds,
-                               .credit = 0.5 * STIFFNESS * leak * leak};
+                               .credit = CREDIT};
     lar_coupling_reset(coupling, &tool->rest);
 }
 
@@ -63,7 +62,8 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
     c->begun = false;
     c->held = 0;
     c->energy = c->credit;
-    c->tissue_stiffness = 0;
+    c->share = 1;
+    c->given = c->tissue_stiffness = 0;
     for (int i = 0; i < 3; i++)
         c->hand_velocity[i] = c->tool_velocity[i] = c->tissue[i] = c->way[i] = c->spring[i] =
             c->felt[i] = c->step[i] = 0;
@@ -74,11 +74,14 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
 
 /* The hand has moved: what it has put in, and how fast it is. */
 static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
-    double share = c->seconds / (SMOOTH + c->seconds);
+    double share = c->seconds / (SMOOTH + c->seconds), change[3];
     for (int i = 0; i < 3; i++) {
         c->step[i] = c->begun ? hand->position[i] - c->hand.position[i] : 0;
-        c->hand_velocity[i] += share * (c->step[i] / c->seconds - c->hand_velocity[i]);
+        change[i] = share * (c->step[i] / c->seconds - c->hand_velocity[i]);
     }
+    /* Positions that come late come in bunches: that is a jump, not a blow. */
+    shorten(change, ACCELERATION * c->seconds);
+    for (int i = 0; i < 3; i++) c->hand_velocity[i] += change[i];
     if (length_of(c->step) > JUMP)
         for (int i = 0; i < 3; i++) c->step[i] = 0;
     c->energy -= dot(c->felt, c->step);
@@ -163,31 +166,34 @@ static double income(const lar_coupling *c, const double felt[3]) {
     return -dot(felt, c->step) - length_of(felt) * ACCELERATION * c->seconds * c->seconds;
 }
 
+/* The tissue has done this work on the tool, or the tool on the tissue. What the hand has felt only
+ * a share of, it has paid only that share of; the rest was given, and comes back to nobody. */
+static void settle(lar_coupling *c, double work) {
+    if (work < 0) {
+        c->energy += c->share * work;
+        c->given -= (1 - c->share) * work;
+    } else {
+        double back = fmin(work, c->given);
+        c->given -= back;
+        c->energy += work - back;
+    }
+    c->given *= 1 - c->seconds / (FORGET + c->seconds); /* tissue damps */
+}
+
 /* No more than what the hand and the tissue have put in: see the head of coupling.h. */
 static void pay(lar_coupling *c) {
     double stored = 0.5 * dot(c->spring, c->spring) / c->stiffness +
                     0.5 * c->mass * dot(c->tool_velocity, c->tool_velocity);
-    c->energy = fmin(c->energy, stored + c->credit);
+    if (c->energy < c->credit) c->energy += REFILL * c->seconds;
+    c->energy = fmax(-c->credit, fmin(c->energy, stored + c->credit));
     double earned = income(c, c->felt);
-    if (c->energy > 0) {
-        double share = c->energy + earned >= 0 ? 1 : c->energy / -earned;
-        for (int i = 0; i < 3; i++) c->felt[i] *= share;
-        return;
-    }
-    /* In debt, for a hard blow or a hand that trembles: it pays by moving against a damper. What
-     * it owes is forgotten in time, or a hand at rest would feel nothing for ever. */
-    c->energy = fmax(c->energy, -DEBT_MOST);
-    c->energy += (c->credit - c->energy) * c->seconds / FORGIVE;
-    double strength = fmin(c->feel, length_of(c->spring));
-    for (int i = 0; i < 3; i++) c->felt[i] = -c->damping * c->step[i] / c->seconds;
-    shorten(c->felt, strength);
-    if (income(c, c->felt) < 0)
-        for (int i = 0; i < 3; i++) c->felt[i] = 0;
+    c->share = c->energy + earned >= 0 ? 1 : fmax(0, c->energy / -earned);
+    for (int i = 0; i < 3; i++) c->felt[i] *= c->share;
 }
 
 void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_tool_force *felt) {
     lar_coupling *c = coupling;
-    c->energy += dot(force->force, c->way);
+    settle(c, dot(force->force, c->way));
     see_stiffness(c, force->force);
     memcpy(c->tissue, force->force, sizeof c->tissue);
     c->held = force->held;

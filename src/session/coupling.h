@@ -21,12 +21,13 @@
  * world, so that it still damps; it then lets the tool go just at the speed limit.
  *
  * Passivity. A force that is held for a tick works on a hand that meanwhile moves on: a sampled
- * spring gives back more than it got, k (v T)^2 / 2 a tick. So the energy that went in at both ends
- * is counted (Hannaford and Ryu 2002), what the damper ate is struck off, and the hand gets only as
- * much force as the rest pays for in the next tick, for a hand that changes its speed by no more
- * than ACCELERATION (Franken and others 2011). At the beginning there is credit for just the force
- * that a hand at rest would get anyway, k (a T^2)^2 / 2 = 5 uJ; debts are forgotten at ten
- * microwatts. No hand feels that.
+ * spring gives back more than it got, k (v T)^2 / 2 a tick, and a damper of samples feeds a
+ * tremble. The damper makes up for it as long as the hand moves smoothly. For all others the energy
+ * that went in at both ends is counted (Hannaford and Ryu 2002), what the damper ate is struck off,
+ * and the hand gets only as much force as the rest pays for in the next tick, for a hand that
+ * changes its speed by no more than ACCELERATION (Franken and others 2011). There is a credit of
+ * CREDIT, which refills by REFILL, so that positions that come a little early and late, as on every
+ * network, do not use it up.
  */
 #ifndef LAR_SESSION_COUPLING_H
 #define LAR_SESSION_COUPLING_H
@@ -60,6 +61,8 @@ typedef struct lar_coupling {
     int32_t held;
     double felt[3];        /* what the hand feels now [N] */
     double credit, energy; /* at the beginning; that went in and was not given back [J] */
+    double share;          /* of the spring that the hand feels, 0..1 */
+    double given;          /* to the tissue, and paid by nobody [J] */
     bool begun;            /* the hand has been seen since the reset */
 } lar_coupling;
 

@@ -84,10 +84,13 @@ static double move(double at, double *velocity, double target, double accelerati
 /* ---- energy -----------------------------------------------------------------------------------
  */
 
-/* Whatever a hand does to a stiff wall: it never gets back more than it put in. */
+/* What one tick of a held spring feeds a hand that accelerates as it may, k (a T^2)^2 / 2 [J]. */
+static const double LEAK = 5e-6;
+
+/* Whatever a smooth hand does to a stiff wall: it never gets back more than it put in. */
 static void test_hand_never_gets_more_than_it_gave(void **state) {
     (void)state;
-    double least = 0, credit = couple(&PROBE, 1, 5).credit;
+    double least = 0;
     for (int run = 0; run < 300; run++) {
         seed = (uint64_t)run + 1;
         world w = start(&PROBE, pow(10, 2 + 3 * any()), 0.01);
@@ -99,8 +102,8 @@ static void test_hand_never_gets_more_than_it_gave(void **state) {
             least = fmin(least, w.hand_work);
         }
     }
-    printf("least energy of the hand %.3g J, credit %.3g J\n", least, credit);
-    assert_true(least >= -credit);
+    printf("least energy of the hand %.3g J\n", least);
+    assert_true(least >= -LEAK);
 }
 
 /* A hand that trembles as fast as it is looked at, against a wall or in the air: what a damper of
@@ -121,7 +124,75 @@ static void test_trembling_is_not_fed(void **state) {
         }
         printf("trembling: %.3g J given before, %.3g J after, least %.3g J\n", given, w.hand_work,
                least);
-        assert_true(least >= -credit * (1 + 2.2 / 0.5)); /* what is forgotten in 2.2 s */
+        assert_true(least >= -credit - 2e-4 * 2.2); /* what refills in 2.2 s */
+    }
+}
+
+static double tremble(world *w, int ticks) {
+    double v = 0, z = w->hand.position[2], before = w->hand_work, least = 0;
+    for (int i = 0; i < ticks; i++) {
+        v += (i & 1 ? 90 : -90) * TICK * (i == 0 ? 0.5 : 1);
+        z += v * TICK;
+        tick(w, 0, z);
+        least = fmin(least, w->hand_work - before);
+    }
+    return least;
+}
+
+/* What was lost on the way is not credit for later; and an account that is empty fills again when
+ * the hand works. */
+static void test_account_is_honest(void **state) {
+    (void)state;
+    world w = start(&PROBE, 3000, 0.01);
+    for (int i = 0; i < 4000; i++) tick(&w, 0, 0.01 * cos(0.02 * i));
+    for (int i = 0; i < 500; i++) tick(&w, 0, 0.01);
+    assert_true(w.hand_work > 1e-3);
+    double credit = w.coupling.credit;
+    assert_true(tremble(&w, 2000) >= -credit - 2e-4 * 2.2);
+    w = start(&PROBE, 500, 0.0005);
+    double fed = tremble(&w, 1000), z = w.hand.position[2];
+    assert_true(fed < -credit);
+    for (int i = 0; i < 2000; i++) tick(&w, 0, z - 3e-6 * i); /* 3 mm/s into the wall */
+    double spring = fabs(w.coupling.spring[2]);
+    printf("after an empty account: %.3f of %.3f N\n", w.felt.force[2], spring);
+    assert_true(spring > 1);
+    assert_true(w.felt.force[2] > 0.95 * spring);
+}
+
+/* The engine was held up, and reads many positions at once: no blow. */
+static void test_bunches_are_no_blow(void **state) {
+    (void)state;
+    world w = start(&PROBE, 0, 0);
+    double most = 0;
+    for (int i = 0; i < 500; i++) {
+        if (i % 50 < 40 || i % 50 == 49) tick(&w, 3e-4 * i, 0);
+        most = fmax(most, fabs(w.felt.force[0]));
+    }
+    printf("bunches of 10 at 0.3 m/s: %.2f N at most\n", most);
+    assert_true(most < 3);
+}
+
+/* Positions that come early and late, as on a network, slowly and fast, into soft and hard walls:
+ * the account does not take the force away. */
+static void test_unsteady_positions_are_felt(void **state) {
+    (void)state;
+    const double stiffness[] = {100, 300, 1000, 3000, 20000}, speed[] = {0.003, 0.01, 0.05, 0.3};
+    for (int run = 0; run < 5 * 4; run++) {
+        world w = start(&PROBE, stiffness[run % 5], 0.02);
+        double v = speed[run / 5], spring = 0, felt = 0, z = 0.02;
+        seed = (uint64_t)run;
+        int ticks = (int)(0.03 / v / TICK);
+        for (int i = 0; i < ticks; i++) {
+            double u = any();
+            if (u < 0.8) z = 0.02 - v * TICK * i; /* or none comes, and two the next time */
+            tick(&w, 0, z);
+            spring += fmin(8, fabs(w.coupling.spring[2]));
+            felt += fabs(w.felt.force[2]);
+        }
+        if (felt < 0.95 * spring)
+            printf("%g N/m at %g m/s: %.3f of the spring is felt\n", stiffness[run % 5], v,
+                   felt / spring);
+        assert_true(felt > 0.9 * spring);
     }
 }
 
@@ -196,6 +267,22 @@ static void test_hand_pulls_no_harder(void **state) {
 /* ---- following --------------------------------------------------------------------------------
  */
 
+/* A hand may be allowed to pull hard: its device is told no more than a device can give. */
+static void test_strong_hand_feels_no_more(void **state) {
+    (void)state;
+    world w = start(&HAND, 5000, 0);
+    w.wall.held = true;
+    w.coupling = couple(&HAND, 1, 50);
+    double z = 0, v = 0, most = 0;
+    for (int t = 0; t < 1000; t++) {
+        z = move(z, &v, 0.3, 20, 1);
+        tick(&w, 0, z);
+        most = fmax(most, fabs(w.felt.force[2]));
+    }
+    assert_true(most > 7.9 && most <= 8.0001);
+    assert_true(fabs(w.coupling.tissue[2]) > 45);
+}
+
 static void test_tool_arrives_without_swinging(void **state) {
     (void)state;
     world w = start(&PROBE, 0, 0.1);
@@ -252,9 +339,13 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hand_never_gets_more_than_it_gave),
         cmocka_unit_test(test_trembling_is_not_fed),
+        cmocka_unit_test(test_account_is_honest),
+        cmocka_unit_test(test_bunches_are_no_blow),
+        cmocka_unit_test(test_unsteady_positions_are_felt),
         cmocka_unit_test(test_device_rests_on_stiff_wall),
         cmocka_unit_test(test_force_and_speed_are_bounded),
         cmocka_unit_test(test_hand_pulls_no_harder),
+        cmocka_unit_test(test_strong_hand_feels_no_more),
         cmocka_unit_test(test_tool_arrives_without_swinging),
         cmocka_unit_test(test_free_hand_is_put),
         cmocka_unit_test(test_turns_no_faster),
