@@ -29,6 +29,10 @@ export class Endoscope {
         if (atOnce) this.jump();
     }
 
+    get distance(): number {
+        return this.now.distance;
+    }
+
     turn(dx: number, dy: number): void {
         this.wanted.azimuth -= dx;
         this.wanted.height = Math.min(STEEPEST, Math.max(-STEEPEST, this.wanted.height + dy));

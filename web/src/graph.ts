@@ -133,7 +133,7 @@ export class Graph {
             pen.moveTo(x, top);
             pen.lineTo(x, top + tall);
             pen.stroke();
-            if (second > 0 && second < SECONDS) pen.fillText(second === SECONDS - 1 ? `−${second} s` : `−${second}`, x, top + tall + 13);
+            if (second > (wide < 200 ? 1 : 0) && second < SECONDS) pen.fillText(second === SECONDS - 1 ? `−${second} s` : `−${second}`, x, top + tall + 13);
         }
         pen.textAlign = 'right';
         pen.fillText('now', left + wide + 2, top + tall + 13);

@@ -124,6 +124,7 @@ function start(): void {
         if (now === stopped) return;
         stopped = now;
         if (!now) return trouble.hide();
+        hints.hide();
         pointer.end();
         hand.forget();
         const ways = [{ text: 'Reset', do: () => transport.reset() }];

@@ -42,7 +42,11 @@ export class Panel {
             this.body.append(row);
             this.cells.push(cell);
         }
-        this.details.open = innerWidth > 760 && innerHeight > 860;
+        // On a phone the organ needs the place.
+        const wide = innerWidth > 760;
+        this.details.open = wide && innerHeight > 860;
+        element<HTMLDetailsElement>('colour-card').open = wide;
+        element<HTMLDetailsElement>('tools').open = wide;
     }
 
     setHello(hello: Hello): void {

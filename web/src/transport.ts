@@ -55,6 +55,7 @@ export class Transport {
         element('play-shape').setAttribute('d', playing ? PAUSE : PLAY);
         this.record.setAttribute('aria-pressed', String(status.recording));
         write(this.record.querySelector('span')!, status.recording ? 'Stop' : 'Record');
+        this.record.setAttribute('aria-label', status.recording ? 'Stop recording' : 'Record');
         this.load.disabled = !this.saves || status.saved.length === 0;
         if (performance.now() > this.paceUntil) this.showPace(status.pace);
     }

@@ -119,6 +119,22 @@ export class View {
         this.stale = true;
     }
 
+    /* The farthest that a node of the surface is from its place at rest [m]. */
+    displacement(): number {
+        const { positions, rest, meshNodes } = this.surface ?? { meshNodes: 0 };
+        let most = 0;
+        for (let i = 0; i < meshNodes * 3; i += 3)
+            most = Math.max(
+                most,
+                Math.hypot(
+                    positions![i]! - rest![i]!,
+                    positions![i + 1]! - rest![i + 1]!,
+                    positions![i + 2]! - rest![i + 2]!,
+                ),
+            );
+        return most;
+    }
+
     changed(): void {
         this.stale = true;
     }

@@ -20,6 +20,9 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get force() { return force.history.ago(0); },
         get forces() { return force.history.count; },
         get peak() { return force.history.peak(); },
+        get displacement() { return view.displacement(); },
+        get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
+        get distance() { return view.endoscope.distance; },
         get nodes() { return view.surface?.nodes ?? 0; },
     };
     Object.defineProperty(window, 'lariat', { value: Object.freeze(state) });

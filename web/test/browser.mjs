@@ -39,6 +39,7 @@ export async function openBrowser({ flags = [], ...options } = {}) {
  * itself logs every refused WebSocket; who expects some, because the engine is gone, says so. */
 export async function openPage(browser, url, { drawn = true, expected = [] } = {}) {
     const page = await browser.context.newPage();
+    page.setDefaultTimeout(6000);
     const complaints = [];
     const add = (text) => {
         if (!/GL Driver Message|GPU stall/.test(text) && !expected.some((e) => e.test(text)))
@@ -48,7 +49,10 @@ export async function openPage(browser, url, { drawn = true, expected = [] } = {
         if (['error', 'warning'].includes(message.type())) add(`console: ${message.text()}`);
     });
     page.on('pageerror', (error) => add(`error: ${error.message}`));
-    page.on('requestfailed', (request) => add(`failed: ${request.url()}`));
+    page.on('requestfailed', (request) => {
+        const why = request.failure()?.errorText;
+        if (why !== 'net::ERR_ABORTED') add(`failed: ${request.url()} ${why}`); // aborted: by a reload
+    });
     page.on('response', (response) => {
         if (response.status() >= 400) add(`${response.status()}: ${response.url()}`);
     });

@@ -1,0 +1,273 @@
+// The page against the engine itself: everything that a person does in the first minutes.
+import assert from 'node:assert/strict';
+import { mkdirSync, readdirSync, statSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { demo, tornDemo, view } from './engine.mjs';
+
+mkdirSync(OUT, { recursive: true });
+const model = demo();
+const MIDDLE = [500, 330];
+const FUNDUS = [500, 220];
+let browser;
+let engine;
+let v; // the page that most tests go on with
+
+before(async () => {
+    [browser, engine] = await Promise.all([
+        openBrowser(),
+        view(model.scene, '--port', '0', '--save-folder', model.saved),
+    ]);
+    v = await openPage(browser, engine.url);
+});
+after(async () => {
+    await browser?.close();
+    await engine?.end();
+});
+
+const button = (name) => v.page.getByRole('button', { name, exact: true });
+const state = (wanted) => v.until((s) => window.lariat.state === s, wanted);
+
+/* The run as at the start, playing. */
+async function fresh() {
+    await v.page.keyboard.press('Escape');
+    await button('Reset').click();
+    await v.until(() => window.lariat.displacement < 1e-4);
+    if ((await v.get('state')) !== 'playing') await button('Play').click();
+    await state('playing');
+}
+
+test('the organ is drawn, in the middle, and in tissue colours', async () => {
+    assert.equal(await v.page.title(), 'Uterus – Lariat');
+    const [organ, corner] = await colours(v.page, [MIDDLE, [300, 600]]);
+    assert.ok(difference(organ, corner) > 60, `organ ${organ}, background ${corner}`);
+    assert.ok(organ[0] > organ[1] * 1.3, 'tissue is red');
+    assert.match(await v.page.locator('#hint').innerText(), /drag to pull/);
+    await v.shot('1-start');
+});
+
+test('a drag pulls the organ, and letting go lets it return', async () => {
+    await fresh();
+    const rest = await v.get('checksum');
+    await drag(v.page, ...FUNDUS, 60, -70);
+    await v.until(() => window.lariat.hand === 'holding');
+    await v.until(() => window.lariat.force > 0.02 && window.lariat.displacement > 0.003);
+    assert.notEqual(await v.get('checksum'), rest);
+    assert.ok((await v.get('forces')) > 100, 'the graph has a value for every tick');
+    assert.match(await v.page.locator('#force-value').innerText(), /^0\.[0-9]*[1-9]/);
+    await v.shot('2-pulled');
+    await v.page.mouse.up();
+    await v.until(() => window.lariat.force === 0 && window.lariat.displacement < 0.002);
+    assert.equal(await v.get('hand'), 'free');
+    assert.ok((await v.get('peak')) > 0.02, 'the graph keeps the last seconds');
+    assert.doesNotMatch(await v.page.locator('#hint').innerText(), /drag to pull/);
+});
+
+test('pause, step, play and reset', async () => {
+    await fresh();
+    await button('Pause').click();
+    await state('paused');
+    await v.page.waitForTimeout(300);
+    const paused = await v.get('step');
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.get('step'), paused, 'pause stops the steps');
+    await button('Step').click();
+    await v.until((s) => window.lariat.step > s, paused);
+    await v.page.waitForTimeout(300);
+    const stepped = await v.get('step');
+    assert.ok(stepped - paused <= 20, `${stepped - paused} steps`);
+    await button('Play').click();
+    await v.until((s) => window.lariat.step > s + 1000, stepped);
+    await button('Pause').click();
+    await state('paused');
+    await button('Reset').click();
+    await v.until(() => window.lariat.step === 0);
+});
+
+test('pace', async () => {
+    await fresh();
+    await v.page.getByLabel('Pace').selectOption('0.1');
+    await v.page.getByText('0.1 × real time, as asked for').waitFor({ timeout: 3000 });
+    await v.page.getByLabel('Pace').selectOption('1');
+    await v.page.locator('#state-text', { hasText: /real time|slow motion/ }).waitFor();
+});
+
+test('record, save and load', async () => {
+    await fresh();
+    await button('Record').click();
+    await v.page.locator('#record[aria-pressed="true"]').waitFor({ timeout: 3000 });
+    await drag(v.page, ...FUNDUS, 30, -40, 3);
+    await v.page.waitForTimeout(200);
+    await v.page.mouse.up();
+    await button('Stop recording').click();
+    await v.page.getByText(/Saved: recording/).waitFor({ timeout: 3000 });
+    await button('Save').click();
+    await v.page.getByText(/Saved: checkpoint/).waitFor({ timeout: 3000 });
+    const files = readdirSync(model.saved);
+    assert.equal(files.length, 2, files.join(' '));
+    for (const file of files) assert.ok(statSync(join(model.saved, file)).size > 1000, file);
+    const at = await v.get('step');
+    await v.until((s) => window.lariat.step > s + 5000, at);
+    await button('Load').click();
+    await v.until((s) => window.lariat.step < s + 4000, at);
+});
+
+test('colour maps change the picture, the legend and its range', async () => {
+    await fresh();
+    await drag(v.page, ...FUNDUS, 30, -60);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01);
+    const [tissue] = await colours(v.page, [MIDDLE]);
+    const seen = new Set();
+    const fields = [['displacement', 1, /m$/], ['von Mises stress', 4, /Pa$/], ['pressure', 8, /Pa$/]];
+    for (const [name, number, unit] of fields) {
+        await v.page.getByRole('radio', { name }).evaluate((choice) => choice.click());
+        await v.until((n) => window.lariat.field === n, number);
+        await v.page.waitForTimeout(250);
+        const most = await v.page.locator('#legend-most').innerText();
+        assert.match(most, unit);
+        assert.notEqual(parseFloat(most), 0, `${name} up to ${most}`);
+        const [colour] = await colours(v.page, [MIDDLE]);
+        assert.ok(difference(colour, tissue) > 25, `${name}: ${colour}, tissue: ${tissue}`);
+        seen.add(most);
+        await v.shot(`3-${name.replaceAll(' ', '-')}`);
+    }
+    assert.equal(seen.size, 3);
+    await v.page.mouse.up();
+
+    await v.page.getByRole('radio', { name: 'displacement' }).click();
+    await v.page.getByLabel('range follows the picture').uncheck();
+    await v.page.getByLabel('from').fill('-1');
+    await v.page.getByLabel('to', { exact: true }).fill('0.00001');
+    assert.equal(await v.page.locator('#legend-least').innerText(), '−1.00 m');
+    await v.until(() => window.lariat.field === 1);
+    await v.page.waitForTimeout(400);
+    const [yellow] = await colours(v.page, [MIDDLE]);
+    assert.ok(yellow[0] > yellow[2] + 50, `all at the upper end: ${yellow}`);
+    await v.page.getByRole('radio', { name: 'tissue' }).click();
+    assert.equal(await v.page.locator('#legend').isVisible(), false);
+});
+
+test('mesh edges', async () => {
+    await fresh();
+    const row = Array.from({ length: 60 }, (_, i) => [470 + i, 330]);
+    const roughness = async () => {
+        const line = await colours(v.page, row);
+        return line.slice(1).reduce((sum, c, i) => sum + difference(c, line[i]), 0);
+    };
+    const plain = await roughness();
+    await v.page.getByLabel('mesh edges').check();
+    await v.page.waitForTimeout(400);
+    const edged = await roughness();
+    assert.ok(edged > plain * 1.5 + 40, `${edged} with edges, ${plain} without`);
+    await v.page.getByLabel('mesh edges').uncheck();
+});
+
+test('everything by keyboard', async () => {
+    await fresh();
+    await v.page.locator('#picture').focus();
+    const keys = v.page.keyboard;
+    await keys.press('Space');
+    await state('paused');
+    const before = await v.get('step');
+    await keys.press('.');
+    await v.until((s) => window.lariat.step > s, before);
+    await keys.press('Space');
+    await state('playing');
+    await keys.press('3');
+    await v.until(() => window.lariat.field === 4);
+    await keys.press('1');
+    await v.until(() => window.lariat.field === 0);
+    const pictures = await v.get('pictures');
+    await keys.press('ArrowLeft');
+    await v.until((n) => window.lariat.pictures > n, pictures);
+    await keys.press('f');
+    await keys.press('?');
+    assert.ok(await v.page.getByRole('dialog').isVisible());
+    await v.shot('4-help');
+    await keys.press('Escape');
+    await v.page.getByRole('dialog').waitFor({ state: 'hidden' });
+    await v.page.waitForTimeout(500);
+    await keys.press('p');
+    await v.until(() => window.lariat.hand === 'holding');
+    for (let i = 0; i < 6; i++) await keys.press('ArrowUp');
+    await v.until(() => window.lariat.force > 0.01);
+    await keys.press('p');
+    await v.until(() => window.lariat.hand === 'free' && window.lariat.force === 0);
+});
+
+test('instruments are chosen, moved and closed', async () => {
+    await fresh();
+    const tools = () => v.get('tools');
+    await v.page.getByRole('radio', { name: 'grasper' }).click();
+    const [, rest] = await tools();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('p');
+    for (let i = 0; i < 5; i++) await v.page.keyboard.press('ArrowRight');
+    await v.until((x) => Math.abs(window.lariat.tools[1][0] - x) > 0.003, rest[0]);
+    await v.page.keyboard.press('Escape');
+    await v.page.locator('#opening').fill('0.4');
+    await v.until(() => Math.abs(window.lariat.tools[1][3] - 0.4) < 0.01);
+    await v.page.getByRole('radio', { name: 'hand' }).click();
+    assert.equal(await v.page.locator('#opening-row').isVisible(), false);
+});
+
+test('one finger pulls, two zoom', async () => {
+    await fresh();
+    const phone = await openBrowser({ viewport: { width: 412, height: 780 }, hasTouch: true, isMobile: true, deviceScaleFactor: 1 });
+    const p = await openPage(phone, engine.url);
+    const touch = await phone.context.newCDPSession(p.page);
+    const fingers = (type, ...points) =>
+        touch.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await fingers('touchStart', [206, 350]);
+    for (let i = 1; i <= 6; i++) await fingers('touchMove', [206 + 3 * i, 350 - 7 * i]);
+    await p.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01);
+    await p.shot('5-phone');
+    await fingers('touchEnd');
+    await p.until(() => window.lariat.hand === 'free');
+    const far = await p.get('distance');
+    await fingers('touchStart', [180, 350], [230, 350]);
+    for (let i = 1; i <= 6; i++) await fingers('touchMove', [180 - 20 * i, 350], [230 + 20 * i, 350]);
+    await fingers('touchEnd');
+    await p.until((d) => window.lariat.distance < 0.7 * d, far);
+    assert.equal(await p.get('hand'), 'free');
+    await p.close();
+    await phone.close();
+});
+
+test('ten reloads in a row, quickly; every frame was of one step', async () => {
+    for (let i = 0; i < 10; i++) {
+        await v.page.reload({ waitUntil: 'commit' });
+        await v.page.waitForTimeout(60);
+    }
+    await v.until(() => window.lariat?.frames > 2);
+    assert.equal(await v.get('torn'), 0);
+    await v.close();
+});
+
+test('a run that breaks is explained, and reset takes it up again', async () => {
+    const torn = await view(tornDemo(model), '--port', '0');
+    const t = await openPage(browser, torn.url, { drawn: false });
+    await t.page.getByText('The simulation has stopped').waitFor({ timeout: 15000 });
+    assert.match(await t.page.locator('#trouble-text').innerText(), /element|node/);
+    await t.shot('6-stopped');
+    await t.page.locator('#trouble-do').click();
+    await t.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 3000 });
+    await t.close();
+    await torn.end();
+});
+
+test('an engine that is killed is missed within 3 s, and found again', async () => {
+    const first = await view(model.scene, '--port', '0');
+    const t = await openPage(browser, first.url, { expected: [/WebSocket connection/, /failed: /] });
+    await first.end('SIGKILL');
+    await t.page.getByText('No connection to the engine').waitFor({ timeout: 3000 });
+    await t.shot('7-lost');
+    const second = await view(model.scene, '--port', String(first.port));
+    assert.equal(second.port, first.port);
+    await t.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 8000 });
+    const frames = await t.get('frames');
+    await t.until((n) => window.lariat.frames > n + 1, frames);
+    await t.close();
+    await second.end();
+});
