@@ -149,10 +149,13 @@ static void test_account_is_honest(void **state) {
     assert_true(w.hand_work > 1e-3);
     double credit = w.coupling.credit;
     assert_true(tremble(&w, 2000) >= -credit - 2e-4 * 2.2);
-    w = start(&PROBE, 500, 0.0005);
-    double fed = tremble(&w, 1000), z = w.hand.position[2];
-    assert_true(fed < -credit);
-    for (int i = 0; i < 2000; i++) tick(&w, 0, z - 3e-6 * i); /* 3 mm/s into the wall */
+    w = start(&PROBE, 500, 0);
+    for (int i = 0; i < 2000; i++) tick(&w, 0, -5e-6 * i);
+    double z = w.hand.position[2];
+    w.coupling.energy = -credit;
+    tick(&w, 0, z);
+    assert_true(w.felt.force[2] == 0);
+    for (int i = 0; i < 1500; i++) tick(&w, 0, z - 5e-6 * i); /* 5 mm/s into the wall */
     double spring = fabs(w.coupling.spring[2]);
     printf("after an empty account: %.3f of %.3f N\n", w.felt.force[2], spring);
     assert_true(spring > 1);
