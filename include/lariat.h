@@ -403,7 +403,7 @@ typedef struct lar_session_options {
     double pace;         /* simulated seconds per second of the clock; 0: as fast as it goes */
     int paused;          /* not 0: starts paused */
     double tool_speed;   /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
-    double hand_force;   /* hands pull no harder than this [N]; 0: 5 N */
+    double hand_force;   /* hands pull no harder than this [N]; 0: 1 N */
     const char *record;  /* path of a recording to write, from the start; NULL: none */
     uint64_t hash_every; /* steps between the hashes of a recording; 0: 100 */
 } lar_session_options;

@@ -29,7 +29,7 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
     if (status) return status;
     if (o->tick == 0) o->tick = 1e-3;
     if (o->tool_speed == 0) o->tool_speed = 1;
-    if (o->hand_force == 0) o->hand_force = 5;
+    if (o->hand_force == 0) o->hand_force = 1;
     if (o->hash_every == 0) o->hash_every = 100;
     /* A tick of exactly ten steps must not become nine by rounding. */
     double steps = floor(o->tick / session->time_step * (1 + 1e-9));
