@@ -4,7 +4,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/processor.h"
+#include "engine/contact_exchange.h"
 
 /* ---- force sums, or lists of elements ------------------------------------------------------ */
 
@@ -221,6 +221,9 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_e
     lar_status status = LAR_OK;
     dawdle(worker);
     recover(worker, batch, round);
+    /* Before anybody can wait for this thread's sums, like loads; behind the first elements, while
+     * whose recovery the places of others come. */
+    if (p->board && b == worker->batch_first) status = lar_contact_apply(worker, round, error);
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
         status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], round, error);
     dawdle(worker);
@@ -240,11 +243,14 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     uint64_t round = worker->round + 1; /* comm and marks count from 1 */
     lar_status status = LAR_OK;
     fetch_foreign(worker);
-    if (!p->check)
+    if (p->board) status = lar_contact_send(worker, round, error);
+    if (!p->check && !status)
         lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
                        &worker->trip);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, round, error);
+    if (p->board && worker->batch_first == worker->batch_end && !status)
+        status = lar_contact_apply(worker, round, error);
     if (status) {
         worker->follows = __atomic_exchange_n(&p->failed, 1, __ATOMIC_ACQ_REL) != 0;
         if (!worker->follows && status != LAR_ERROR_PEER && p->comm) lar_comm_abort(p->comm);
@@ -252,6 +258,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     }
     clear_parcels(worker);
     worker->round = round;
+    if (p->board) lar_contact_publish(worker, round + 1);
     if (p->check)
         worker->state.step++;
     else

@@ -265,7 +265,7 @@ static void search(lar_collide *collide, double way) {
     if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x, skin))
         collide->crowded = true;
     memcpy(motion->searched, motion->x, bytes);
-    motion->moved = 0;
+    collide->moved = 0;
     collide->list = motion->search->list;
     collide->info.searches++;
     collide->info.boxed += (uint64_t)collide->list.face_count;
@@ -280,7 +280,7 @@ static void look(lar_collide *collide, const lar_state *state, double way) {
     if (!motion->valid || motion->always || !enough)
         search(collide, way);
     else
-        motion->moved = moved;
+        collide->moved = moved;
     motion->valid = true;
 }
 
@@ -289,7 +289,7 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
     if (!collide->surface) return;
     lar_collide_motion *motion = collide->motion;
     if (state->step != motion->next) motion->valid = false;
-    if (!motion->valid || motion->always || !(motion->moved < 0.5 * collide->list.skin))
+    if (!motion->valid || motion->always || !(collide->moved < 0.5 * collide->list.skin))
         look(collide, state, context->time_step * state->fastest);
     motion->next = state->step + 1;
     lar_collide_add(collide, context, state);
@@ -298,8 +298,10 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
 }
 
 void lar_collide_moved(lar_collide *collide, double way) {
-    collide->travel += way;
-    if (collide->motion) collide->motion->moved += way;
+    collide->moved += way;
+    collide->way = way;
+    /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
+    if (collide->motion) collide->travel += way;
 }
 
 void lar_collide_forget(lar_collide *collide) {

@@ -46,7 +46,6 @@ typedef struct lar_collide_part {
 typedef struct lar_collide_motion {
     lar_contact_search *search;
     double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
-    double moved;                   /* since then, along any axis, at most [m] */
     double skin_least, skin_most;   /* [m] */
     uint64_t next;                  /* the step that follows the last one */
     bool valid;                     /* the list belongs to the state */
@@ -62,6 +61,8 @@ typedef struct lar_collide {
     double *due;                            /* [list.group_room] travel at which to look */
     int32_t *last;                          /* [list.group_room] the closest face then, an entry */
     double travel, least_due;               /* [m] */
+    double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
+    double way;   /* the same in the last step [m] */
     int32_t part_count;
     lar_collide_part *part; /* [list.group_room] */
     bool crowded;           /* there was no room for all pairs: the run must stop */

@@ -62,7 +62,8 @@ static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error 
     if (options->comm) comm.backend = options->comm;
     comm.self = p->self;
     comm.count = computer->division.grid.count;
-    comm.receive_bytes = computer->shift[p->self] + (size_t)schedule->receive_bytes;
+    comm.receive_bytes = computer->shift[p->self] + (size_t)schedule->receive_bytes +
+                         lar_contact_bytes(&computer->contact.map);
     comm.identity = computer->identity;
     comm.team = computer->team;
     comm.master = options->master;
@@ -139,6 +140,7 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     computer->identity = lar_hash_word(computer->identity, computer->checking);
     if (computer->checking) status = lar_verification_create(model, &computer->check, error);
     if (!status) status = size_buffers(computer, several, error);
+    if (!status) status = lar_contact_open(computer, error);
     if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
     if (status) return status;
     computer->processor = lar_calloc((size_t)computer->hosted, sizeof *computer->processor);
@@ -216,6 +218,7 @@ void lar_computer_destroy(lar_computer *computer) {
     if (computer->crew) lar_crew_run(computer->crew, close_seat, computer);
     lar_crew_destroy(computer->crew);
     lar_comm_team_destroy(computer->team);
+    lar_contact_close(computer);
     lar_verification_destroy(&computer->check);
     lar_division_destroy(&computer->division);
     free(computer->processor);
@@ -253,14 +256,17 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *tripped) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
+    if (p->board) lar_contact_watch(worker, stop - done);
     if (worker->trip.kind && !*tripped) {
         *tripped = true;
         lar_trip_examine(&p->domain, &worker->state, &worker->trip);
         lar_processor_ask_stop(p, stop);
     }
     if (seat == 0 && computer->first == 0 && computer->watch &&
-        !computer->watch(computer->watch_context, done))
+        !computer->watch(computer->watch_context, done)) {
+        computer->called_off = true;
         lar_processor_ask_stop(p, stop);
+    }
     check_clocks(computer, p->self, worker->round);
 }
 
@@ -270,6 +276,7 @@ static void advance_seat(void *context, int32_t number) {
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
     bool tripped = false;
+    if (p->board) lar_contact_publish(worker, worker->round + 1);
     while (worker->state.step < computer->until) {
         uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
         if (stop && worker->state.step >= stop) break;
@@ -288,10 +295,13 @@ static void report_here(const lar_computer *computer, lar_report *report) {
         lar_report_add(report, &processor_of(computer, i)->worker[i % computer->threads].acting);
 }
 
-static lar_status advance_here(lar_computer *computer, uint64_t until, lar_error *error) {
+/* `first`: of the stretches of an advance. */
+static lar_status advance_here(lar_computer *computer, uint64_t until, bool first,
+                               lar_error *error) {
     computer->until = until;
-    for (int32_t i = 0; i < seats(computer); i++)
+    for (int32_t i = 0; i < seats(computer) && first; i++)
         lar_report_begin(&processor_of(computer, i)->worker[i % computer->threads].acting);
+    for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
     lar_crew_run(computer->crew, advance_seat, computer);
     for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].stop = 0;
     report_here(computer, &computer->report);
@@ -320,24 +330,42 @@ lar_status lar_computer_refuse(lar_error *error) {
 
 /* Where the tools go travels with the order to go on, when it has changed: so all use it from the
  * same step on (T 6.5.1). */
-static lar_status order_advance(lar_computer *computer, uint64_t until, lar_error *error) {
-    const lar_order order = {LAR_ORDER_ADVANCE, until};
+static lar_status order_advance(lar_computer *computer, uint64_t until, bool first,
+                                lar_error *error) {
+    const lar_order order = {first ? LAR_ORDER_ADVANCE : LAR_ORDER_CONTINUE, until};
     size_t bytes = computer->tools_sent ? 0 : lar_tools_bytes(computer->tools);
     lar_status status = lar_control_order(computer->control, &order, computer->tools, bytes, error);
     if (!status) computer->tools_sent = true;
     return status;
 }
 
+static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_trip *trip,
+                              lar_error *error) {
+    lar_status status = computer->control ? order_advance(computer, until, first, error) : LAR_OK;
+    if (!status) status = advance_here(computer, until, first, error);
+    first_trip(computer, trip);
+    if (!status && computer->control) status = hear_all(computer, trip, error);
+    return status;
+}
+
+/* Without contact of bodies one stretch; otherwise all stop now and then, for a search. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
                                 void *context, lar_trip *trip, lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
-    uint64_t until = computer->processor[0].worker[0].state.step + steps;
+    const uint64_t *step = &computer->processor[0].worker[0].state.step;
+    uint64_t end = *step + steps;
+    lar_status status = LAR_OK;
     computer->watch = watch;
     computer->watch_context = context;
-    lar_status status = computer->control ? order_advance(computer, until, error) : LAR_OK;
-    if (!status) status = advance_here(computer, until, error);
-    first_trip(computer, trip);
-    if (!status && computer->control) status = hear_all(computer, trip, error);
+    computer->called_off = false;
+    for (bool first = true; first || *step < end; first = false) {
+        uint64_t begin = *step;
+        status = lar_contact_refresh(computer, trip, error);
+        if (status || trip->kind) break;
+        status = advance_all(computer, lar_contact_until(computer, end), first, trip, error);
+        lar_contact_count(computer, *step - begin);
+        if (status || trip->kind || computer->called_off) break;
+    }
     if (status) computer->broken = true;
     return status;
 }
@@ -370,9 +398,10 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
     if (order->kind == LAR_ORDER_GATHER)
         return lar_computer_answer_nodes(computer, order->argument, error);
     lar_status status = LAR_OK;
-    if (order->kind == LAR_ORDER_ADVANCE) {
+    if (order->kind == LAR_ORDER_ADVANCE || order->kind == LAR_ORDER_CONTINUE) {
+        bool first = order->kind == LAR_ORDER_ADVANCE;
         status = take_tools(computer, payload, bytes, error);
-        if (!status) status = advance_here(computer, order->argument, error);
+        if (!status) status = advance_here(computer, order->argument, first, error);
         first_trip(computer, &answer.trip);
         answer.step = p->worker[0].state.step;
         if (status) return status;
@@ -381,6 +410,8 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
     }
     if (order->kind == LAR_ORDER_SCATTER)
         status = lar_computer_take_state(computer, order->argument, payload, bytes, error);
+    else if (order->kind == LAR_ORDER_CONTACT)
+        status = lar_contact_obey(computer, payload, bytes, error);
     else
         status = refuse_order(error);
     return status ? status : lar_control_answer(control, &answer, NULL, 0, error);

@@ -19,6 +19,7 @@
 #define LAR_ENGINE_COMPUTER_H
 
 #include "base/crew.h"
+#include "engine/contact_exchange.h"
 #include "engine/control.h"
 #include "engine/division.h"
 #include "engine/processor.h"
@@ -29,6 +30,20 @@ typedef struct lar_seat {
     lar_status status;
     lar_error error;
 } lar_seat;
+
+/* Contact of bodies (computer_contact.c). */
+typedef struct lar_computer_contact {
+    lar_contact_map map; /* map.surface NULL: there is none */
+    size_t *shift;       /* [processors] bytes of a receive buffer before contact's */
+    /* of processor zero: */
+    lar_contact_search *search;     /* the whole model's, not owned */
+    double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
+    double skin;                    /* of that search [m] */
+    double moved, way;              /* since then, and in the last step, at most [m] */
+    bool valid;                     /* the search belongs to the state */
+    bool always;                    /* search in every step */
+    lar_contact_info info;          /* what concerns all processors together */
+} lar_computer_contact;
 
 typedef struct lar_computer {
     lar_division division;
@@ -44,8 +59,10 @@ typedef struct lar_computer {
     size_t *shift;   /* [processors] what control needs of their buffers */
     uint64_t *clock; /* [processors] atomic: rounds done, of those in this process */
     uint64_t until;  /* the step before which this advance ends */
+    lar_computer_contact contact;
     lar_watch *watch;
     void *watch_context;
+    bool called_off;   /* by the watch */
     lar_report report; /* of the last advance; at processor zero, of all processors */
     lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
     lar_tools *tools;  /* of this process: zero's are those that count */
@@ -81,8 +98,22 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 /* Every other process: does what processor zero says until it ends. */
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 
-/* ---- between computer.c and computer_state.c --------------------------------------------------
+/* ---- between computer.c, computer_state.c and computer_contact.c ------------------------------
  */
+
+/* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
+lar_status lar_contact_open(lar_computer *computer, lar_error *error);
+void lar_contact_close(lar_computer *computer); /* idempotent */
+/* Processor zero, before a stretch of steps: looks and searches where that is due. *trip: too many
+ * pairs. */
+lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error);
+/* The step that a stretch towards `end` may reach at most. */
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
+/* After a stretch of so many steps. */
+void lar_contact_count(lar_computer *computer, uint64_t steps);
+/* Another process: takes what processor zero found. */
+lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
+                            lar_error *error);
 
 /* The sentence for calls after a failure. */
 lar_status lar_computer_refuse(lar_error *error);

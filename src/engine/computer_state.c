@@ -189,6 +189,8 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     first->damped = computer->state->damped;
     first->contact = computer->state->contact;
     computer->tools_sent = false;
+    computer->contact.valid = false;
+    computer->contact.info = (lar_contact_info){0};
     lar_status status = computer->control ? scatter_others(computer, error) : LAR_OK;
     if (status) computer->broken = true;
     return status;

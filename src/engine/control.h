@@ -7,6 +7,8 @@
  *       <------------- answer {values of some nodes}      ... until all are there
  *       order {scatter, part of a state} ------->  keep the part
  *       <------------- answer {}                          ... until all are there, then take it
+ *       order {contact, pairs} ----------------->  take the list (contact_exchange.h)
+ *       <------------- answer {}
  *       order {finish} ------------------------->  end
  *
  * Orders and answers are packets of comm in regions of their own, before those of the schedule in
@@ -36,12 +38,15 @@ typedef enum lar_order_kind {
     LAR_ORDER_ADVANCE = 1,
     LAR_ORDER_GATHER,
     LAR_ORDER_SCATTER,
+    LAR_ORDER_CONTACT,
+    LAR_ORDER_CONTINUE, /* an advance that was interrupted for that */
     LAR_ORDER_FINISH
 } lar_order_kind;
 
 typedef struct lar_order {
-    uint64_t kind;     /* lar_order_kind */
-    uint64_t argument; /* advance: the step to stop before; gather: the round, 0, 1, ... */
+    uint64_t kind; /* lar_order_kind */
+    uint64_t
+        argument; /* advance, continue: the step to stop before; gather: the round, 0, 1, ... */
 } lar_order;
 
 /* Bytes of payload in one packet. */

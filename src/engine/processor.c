@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/contact_exchange.h"
 #include "engine/parcel.h"
 
 /* Who does what, by global element and node, while a schedule is compiled. */
@@ -211,6 +212,10 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
     lar_status status = LAR_OK;
     for (int32_t t = 0; t < p->thread_count && !status; t++)
         status = create_worker(schedule, setting, a, t, p, error);
+    const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
+    if (!status && !p->check)
+        status = lar_contact_board_create(&setting->whole->acting.collide, &share,
+                                          setting->reporter, schedule->grid.count, p, error);
     return status ? status : lar_parcels_create(schedule, a->thread, p, error);
 }
 
@@ -245,6 +250,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 }
 
 void lar_processor_destroy(lar_processor *p) {
+    lar_contact_board_destroy(p);
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
         lar_acting_destroy(&worker->acting);

@@ -48,6 +48,7 @@ typedef struct lar_parcel {
 } lar_parcel;
 
 struct lar_processor;
+struct lar_contact_board;
 
 /* One thread of a processor. */
 typedef struct lar_worker {
@@ -86,6 +87,7 @@ typedef struct lar_processor {
     uint64_t stop;           /* atomic: the step before which everyone stops; 0: none asked for */
     uint64_t failed;         /* atomic: a thread has given up, its siblings must */
     int64_t ahead;           /* steps of the state minus rounds, for messages */
+    struct lar_contact_board *board; /* of contact between bodies (contact_exchange.h), or NULL */
 } lar_processor;
 
 /* What is common to all processors of a computer. */

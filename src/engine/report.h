@@ -8,6 +8,7 @@
 typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MOST];
     lar_contact_info contact; /* since the start */
+    double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
 } lar_report;
 
 static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_info *other) {
@@ -39,6 +40,8 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->held += from->held;
     }
     lar_report_contact(&sum->contact, &other->contact);
+    if (!(other->moved <= sum->moved)) sum->moved = other->moved;
+    if (!(other->way <= sum->way)) sum->way = other->way;
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
@@ -47,6 +50,8 @@ static inline void lar_report_add(lar_report *sum, const lar_acting *acting) {
     for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
     own.contact = acting->touch.seen;
     lar_report_contact(&own.contact, &acting->collide.info);
+    own.moved = acting->collide.moved;
+    own.way = acting->collide.way;
     lar_report_join(sum, &own);
 }
 

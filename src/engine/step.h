@@ -22,7 +22,8 @@ typedef struct lar_trip {
         LAR_TRIP_ELEMENT,
         LAR_TRIP_SPEED,
         LAR_TRIP_LOAD,
-        LAR_TRIP_CROWD /* contact: more faces near a node than make sense */
+        LAR_TRIP_CROWD, /* contact: more faces near a node than make sense */
+        LAR_TRIP_RUSH   /* contact: faster than processors can tell each other */
     } kind;
     lar_gid element; /* of LAR_TRIP_ELEMENT; the node of the others */
     uint64_t step;   /* the step under way */

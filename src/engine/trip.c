@@ -143,6 +143,14 @@ static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, l
                     LAR_PAIRS_PER_NODE);
 }
 
+static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): the surface became so fast within a few steps "
+                    "that the search for contact on several processors could not follow; use "
+                    "slower or smaller loads and motions, or one processor",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step);
+}
+
 void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
     if (trip->kind == LAR_TRIP_ELEMENT) {
         examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
@@ -157,5 +165,6 @@ lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_e
     if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
     if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
     if (trip->kind == LAR_TRIP_CROWD) return report_crowd(domain, trip, error);
+    if (trip->kind == LAR_TRIP_RUSH) return report_rush(domain, trip, error);
     return report_speed(domain, trip, error);
 }

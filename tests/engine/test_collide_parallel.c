@@ -1,0 +1,162 @@
+/* Contact of bodies has the same bits on every grid, with any number of threads, by every scheme,
+ * with random delays, and whenever the search is made. */
+#include "engine/collide_test.h"
+
+#include "base/hash.h"
+
+static const brick lower_brick = {{6, 4, 2}, 0.01, 0.08, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+static const brick upper_brick = {{4, 3, 2}, 0.008, 0.05, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+
+/* A body slides over another one and falls off it: contact wanders from processor to processor. */
+static lar_model *sliding_model(bool self) {
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.002, true);
+    int32_t first =
+        (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){0.15, 0.05, -0.3});
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->damping = 3;
+    if (self) {
+        model->contact_count = 0;
+        touch_self(model);
+    }
+    return model;
+}
+
+typedef struct outcome {
+    uint64_t hash;
+    double contact, external; /* [J] */
+    lar_contact_info info;
+    int32_t touched; /* nodes, added up over the samples */
+} outcome;
+
+static outcome run(const lar_model *model, lar_options options, uint64_t steps) {
+    enum { STRIDE = 20 };
+    outcome all = {0};
+    lar_simulation *s = start_with(model, options);
+    for (uint64_t i = 0; i < steps; i += STRIDE) {
+        advance(s, STRIDE);
+        lar_simulation_contact(s, &all.info);
+        all.touched += all.info.touching;
+        if (i % (10 * STRIDE) == 0) all.hash = lar_hash_word(all.hash, lar_simulation_hash(s));
+    }
+    all.hash = lar_hash_word(all.hash, lar_simulation_hash(s));
+    lar_energy e;
+    lar_simulation_energy(s, &e);
+    all.contact = e.contact;
+    all.external = e.external;
+    lar_simulation_destroy(s);
+    return all;
+}
+
+static void compare(const lar_model *model, const outcome *one, lar_options options,
+                    uint64_t steps) {
+    outcome other = run(model, options, steps);
+    if (other.hash != one->hash)
+        fail_msg("grid %s, %d threads, scheme %s, delays %d, always %d: other bits", options.grid,
+                 (int)options.threads, options.scheme ? options.scheme : "all", (int)options.delays,
+                 options.search_always);
+    assert_int_equal(other.info.touching, one->info.touching);
+    assert_int_equal(other.touched, one->touched);
+    assert_true(other.info.deepest == one->info.deepest);
+    assert_int_equal(other.info.possible, one->info.possible);
+    assert_int_equal(other.info.steps, one->info.steps);
+    assert_below(fabs(other.contact - one->contact), 1e-9 * fabs(one->external));
+    if (options.search_always)
+        assert_int_equal(other.info.searches, steps);
+    else
+        assert_true(other.info.searches > 0 && other.info.searches < steps / 8);
+}
+
+static void bits_do_not_depend_on_the_division(void **unused) {
+    (void)unused;
+    enum { STEPS = 500 };
+    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "3x1x1", "1x1x2"};
+    static const char *const schemes[] = {"all", "local", "one", "two"};
+    for (int self = 0; self < 2; self++) {
+        lar_model *model = sliding_model(self != 0);
+        outcome one = run(model, lar_options_default(), STEPS);
+        print_message("%d nodes touched\n", (int)one.touched);
+        assert_true(one.touched > 50);
+        for (int g = 0; g < 5; g++)
+            for (int threads = 1; threads <= 2; threads++) {
+                lar_options options = lar_options_default();
+                options.grid = grids[g];
+                options.threads = threads;
+                options.scheme = schemes[(g + threads + self) % 4];
+                compare(model, &one, options, STEPS);
+            }
+        lar_model_destroy(model);
+    }
+}
+
+static void nor_on_delays_nor_on_searches(void **unused) {
+    (void)unused;
+    enum { STEPS = 200 };
+    lar_model *model = sliding_model(true);
+    outcome one = run(model, lar_options_default(), STEPS);
+    lar_options options = lar_options_default();
+    options.grid = "2x2x1";
+    options.threads = 2;
+    for (uint64_t delays = 1; delays <= 2; delays++) {
+        options.delays = delays;
+        options.scheme = delays == 1 ? "two" : "local";
+        compare(model, &one, options, STEPS);
+    }
+    options.delays = 0;
+    options.search_always = 1;
+    compare(model, &one, options, STEPS);
+    lar_model_destroy(model);
+}
+
+/* Steps of a watched run are not interrupted, and the watch still ends it. */
+static int until_step(void *context, uint64_t step) {
+    uint64_t *last = context;
+    assert_true(step == *last + 1);
+    *last = step;
+    return step < 300;
+}
+
+static void searches_are_not_seen_from_outside(void **unused) {
+    (void)unused;
+    lar_model *model = sliding_model(false);
+    lar_options options = lar_options_default();
+    options.grid = "2x1x1";
+    lar_simulation *s = start_with(model, options);
+    uint64_t last = 0;
+    lar_error error;
+    assert_int_equal(lar_simulation_advance_watched(s, 1000, until_step, &last, &error), LAR_OK);
+    assert_true(last >= 300 && last < 310);
+    assert_int_equal(lar_simulation_steps(s), last);
+    lar_contact_info info;
+    lar_simulation_contact(s, &info);
+    assert_int_equal(info.steps, last);
+    assert_true(info.searches > 1);
+    finish(s, model);
+}
+
+/* A state that is put back starts with a search of its own. */
+static void going_back_repeats_every_bit(void **unused) {
+    (void)unused;
+    lar_model *model = sliding_model(true);
+    lar_options options = lar_options_default();
+    options.grid = "2x1x1";
+    options.threads = 2;
+    lar_simulation *s = start_with(model, options);
+    advance(s, 500);
+    uint64_t hash = lar_simulation_hash(s);
+    lar_error error;
+    assert_int_equal(lar_simulation_reset(s, &error), LAR_OK);
+    advance(s, 500);
+    assert_true(lar_simulation_hash(s) == hash);
+    finish(s, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bits_do_not_depend_on_the_division),
+        cmocka_unit_test(nor_on_delays_nor_on_searches),
+        cmocka_unit_test(searches_are_not_seen_from_outside),
+        cmocka_unit_test(going_back_repeats_every_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
