@@ -105,12 +105,10 @@ export class StateLine {
         const now = performance.now();
         if (slow) this.shownSince = now;
         // Stays for a second, so that it can be read.
-        this.slow.hidden = !slow && (this.shownSince === 0 || now - this.shownSince > 1000);
+        this.slow.hidden =
+            status.state !== 'playing' || (!slow && (this.shownSince === 0 || now - this.shownSince > 1000));
         if (slow)
-            write(
-                element('slow-text'),
-                `${number(status.real_time_factor_now, 2)} × real time: the engine cannot keep up`,
-            );
+            write(element('slow-text'), `${number(status.real_time_factor_now, 2)} × real time`);
     }
 
     lost(): void {
