@@ -66,8 +66,8 @@ static void tools_do_and_feel_the_same_on_every_grid(void **unused) {
     lar_simulation *simulation = start_with(model, setting(0));
     follow(simulation, &wanted);
     lar_simulation_destroy(simulation);
-    assert_true(felt_something(&wanted, BALL));
-    assert_true(felt_something(&wanted, ROD));
+    assert_true(felt_something(&wanted, TEST_BALL));
+    assert_true(felt_something(&wanted, TEST_ROD));
     for (int grid = 1; grid < GRIDS; grid++) {
         simulation = start_with(model, setting(grid));
         follow(simulation, &found);
@@ -156,23 +156,24 @@ static void a_tool_moves_evenly_and_rests(void **unused) {
         advance(simulation, 7);
         lar_tool_pose there = {{0.04, 0.02, 0.08}, {1, 0, 0, 0}, 0.5};
         there.orientation[0] = there.orientation[3] = sqrt(0.5) * (1 + 4e-7);
-        assert_int_equal(lar_simulation_tool_move(simulation, ROD, &there, 20, &error), LAR_OK);
-        lar_tool_pose rest = model->tool[ROD].rest, now = pose_of(simulation, ROD);
+        assert_int_equal(lar_simulation_tool_move(simulation, TEST_ROD, &there, 20, &error),
+                         LAR_OK);
+        lar_tool_pose rest = model->tool[TEST_ROD].rest, now = pose_of(simulation, TEST_ROD);
         assert_memory_equal(&now, &rest, sizeof now);
         advance(simulation, 5);
-        now = pose_of(simulation, ROD);
+        now = pose_of(simulation, TEST_ROD);
         for (int i = 0; i < 3; i++)
             assert_true(fabs(now.position[i] -
                              (0.75 * rest.position[i] + 0.25 * there.position[i])) < 1e-15);
         assert_true(fabs(now.opening - 0.875) < 1e-15);
         advance(simulation, 15);
-        now = pose_of(simulation, ROD);
+        now = pose_of(simulation, TEST_ROD);
         assert_memory_equal(now.position, there.position, sizeof now.position);
         double length = 0;
         for (int i = 0; i < 4; i++) length += now.orientation[i] * now.orientation[i];
         assert_true(fabs(length - 1) < 1e-15);
         advance(simulation, 3);
-        lar_tool_pose later = pose_of(simulation, ROD);
+        lar_tool_pose later = pose_of(simulation, TEST_ROD);
         assert_memory_equal(&later, &now, sizeof now);
         lar_simulation_destroy(simulation);
     }
@@ -195,42 +196,42 @@ static void senseless_motions_are_refused(void **unused) {
     (void)unused;
     lar_model *model = tool_model();
     lar_simulation *simulation = start_with(model, setting(0));
-    lar_tool_pose rest = model->tool[BALL].rest, pose = rest;
+    lar_tool_pose rest = model->tool[TEST_BALL].rest, pose = rest;
     refuse(simulation, TEST_TOOLS, rest, 10, "no tool 4");
     refuse(simulation, -1, rest, 10, "no tool -1");
-    refuse(simulation, BALL, rest, 0, "ball: a way takes");
-    refuse(simulation, BALL, rest, UINT64_MAX, "ball: a way takes");
+    refuse(simulation, TEST_BALL, rest, 0, "ball: a way takes");
+    refuse(simulation, TEST_BALL, rest, UINT64_MAX, "ball: a way takes");
     pose.position[1] = NAN;
-    refuse(simulation, BALL, pose, 10, "finite");
+    refuse(simulation, TEST_BALL, pose, 10, "finite");
     pose = rest;
     pose.position[0] = INFINITY;
-    refuse(simulation, BALL, pose, 10, "finite");
+    refuse(simulation, TEST_BALL, pose, 10, "finite");
     pose = rest;
     pose.orientation[1] = 2e-3;
-    refuse(simulation, BALL, pose, 10, "length 1.000002");
+    refuse(simulation, TEST_BALL, pose, 10, "length 1.000002");
     pose.orientation[1] = NAN;
-    refuse(simulation, BALL, pose, 10, "length");
+    refuse(simulation, TEST_BALL, pose, 10, "length");
     pose = rest;
     pose.opening = 1.01;
-    refuse(simulation, BALL, pose, 10, "opening of 1.01");
+    refuse(simulation, TEST_BALL, pose, 10, "opening of 1.01");
     pose.opening = NAN;
-    refuse(simulation, BALL, pose, 10, "opening");
+    refuse(simulation, TEST_BALL, pose, 10, "opening");
     pose = rest; /* the radius is 8 mm: 4 mm in a step */
     pose.position[2] += 0.041;
-    refuse(simulation, BALL, pose, 10, "half its radius");
-    assert_int_equal(lar_simulation_tool_move(simulation, BALL, &pose, 11, NULL), LAR_OK);
+    refuse(simulation, TEST_BALL, pose, 10, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_BALL, &pose, 11, NULL), LAR_OK);
     lar_simulation_reset(simulation, NULL);
     /* Turned around its tip, the far end of the rod goes farther: 6 cm. */
-    pose = model->tool[ROD].rest;
+    pose = model->tool[TEST_ROD].rest;
     pose.orientation[0] = 0;
     pose.orientation[1] = 1;
-    refuse(simulation, ROD, pose, 14, "half its radius");
-    assert_int_equal(lar_simulation_tool_move(simulation, ROD, &pose, 16, NULL), LAR_OK);
+    refuse(simulation, TEST_ROD, pose, 14, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_ROD, &pose, 16, NULL), LAR_OK);
     /* A hand that holds nothing may be put anywhere. */
     pose = (lar_tool_pose){{100, -100, 3}, {1, 0, 0, 0}, 1};
-    assert_int_equal(lar_simulation_tool_move(simulation, HAND, &pose, 1, NULL), LAR_OK);
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_HAND, &pose, 1, NULL), LAR_OK);
     advance(simulation, 1);
-    lar_tool_pose now = pose_of(simulation, HAND);
+    lar_tool_pose now = pose_of(simulation, TEST_HAND);
     assert_memory_equal(&now, &pose, sizeof now);
     finish(simulation, model);
 }
@@ -246,26 +247,26 @@ static void forces_are_means_of_the_last_advance(void **unused) {
     lar_tool_force force, single, sum = {0};
     lar_error error;
     memset(&force, 1, sizeof force);
-    assert_int_equal(lar_simulation_tool_force(simulation, BALL, &force, &error), LAR_OK);
+    assert_int_equal(lar_simulation_tool_force(simulation, TEST_BALL, &force, &error), LAR_OK);
     assert_true(force.force[2] == 0 && force.torque[0] == 0 && force.touching == 0);
     act(simulation, 0, 6);
     assert_int_equal(lar_simulation_save(simulation, LAR_TEST_BUILD "/tools.checkpoint", &error),
                      LAR_OK);
     advance(simulation, 8);
-    lar_simulation_tool_force(simulation, BALL, &force, &error);
+    lar_simulation_tool_force(simulation, TEST_BALL, &force, &error);
     assert_true(force.force[2] > 0 && force.touching > 0);
     lar_energy energy;
     lar_simulation_energy(simulation, &energy);
     lar_tool_force again;
-    lar_simulation_tool_force(simulation, BALL, &again, &error);
+    lar_simulation_tool_force(simulation, TEST_BALL, &again, &error);
     assert_memory_equal(&again, &force, sizeof again);
     assert_int_equal(lar_simulation_load(simulation, LAR_TEST_BUILD "/tools.checkpoint", &error),
                      LAR_OK);
-    lar_simulation_tool_force(simulation, BALL, &again, &error);
+    lar_simulation_tool_force(simulation, TEST_BALL, &again, &error);
     assert_true(again.force[2] == 0);
     for (int i = 0; i < 8; i++) {
         advance(simulation, 1);
-        lar_simulation_tool_force(simulation, BALL, &single, &error);
+        lar_simulation_tool_force(simulation, TEST_BALL, &single, &error);
         sum.force[2] += single.force[2] / 8;
         sum.torque[1] += single.torque[1] / 8;
     }

@@ -5,7 +5,7 @@
 #ifndef LAR_TESTS_TOOLS_TEST_H
 #define LAR_TESTS_TOOLS_TEST_H
 
-enum { TICK_STEPS = 10, BALL = 0, ROD, GRASPER, HAND, TEST_TOOLS };
+enum { TICK_STEPS = 10, TEST_BALL = 0, TEST_ROD, TEST_GRASPER, TEST_HAND, TEST_TOOLS };
 
 /* Slightly irregular, no row of it straight; big enough for twelve processors. 6 x 5 x 4 cm. */
 static const brick tool_brick = {{6, 5, 4}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
@@ -31,7 +31,7 @@ TEST_UNUSED static lar_model *tool_model_of(const brick *b) {
     add_tool(model, "ball", LAR_TOOL_SPHERE, 0.03, 0.025, 0.052);
     add_tool(model, "rod", LAR_TOOL_CAPSULE, 0.045, 0.01, 0.052);
     add_tool(model, "grasper", LAR_TOOL_GRASPER, 0.03, 0.015, 0.095);
-    model->tool[GRASPER].radius = 0.003;
+    model->tool[TEST_GRASPER].radius = 0.003;
     return model;
 }
 
@@ -55,12 +55,13 @@ TEST_UNUSED static void act_at(lar_simulation *simulation, int tick) {
     uint64_t steps = tick == 7 ? TICK_STEPS + 5 : TICK_STEPS;
     if (tick == 8) return;
     double t = tick, down = t < 6 ? 0.0015 * t : 0.009;
-    place_tool(simulation, BALL, 0.03 + 0.0006 * t, 0.025, 0.052 - down, 1, steps);
-    place_tool(simulation, ROD, 0.045, 0.01 + 0.0004 * t, 0.052 - 0.5 * down, 1, steps);
+    place_tool(simulation, TEST_BALL, 0.03 + 0.0006 * t, 0.025, 0.052 - down, 1, steps);
+    place_tool(simulation, TEST_ROD, 0.045, 0.01 + 0.0004 * t, 0.052 - 0.5 * down, 1, steps);
     double height = t < 5 ? 0.095 - 0.0054 * t : 0.068 + 0.0008 * (t - 5);
-    place_tool(simulation, GRASPER, 0.03, 0.015, height, tick < 6 || tick > 16 ? 1 : 0.1, steps);
+    place_tool(simulation, TEST_GRASPER, 0.03, 0.015, height, tick < 6 || tick > 16 ? 1 : 0.1,
+               steps);
     double pull = tick < 4 ? 0 : 0.0006 * (t - 4);
-    place_tool(simulation, HAND, 0.06 + pull, 0.05, 0.04 + pull, tick < 3 || tick > 14 ? 1 : 0,
+    place_tool(simulation, TEST_HAND, 0.06 + pull, 0.05, 0.04 + pull, tick < 3 || tick > 14 ? 1 : 0,
                steps);
 }
 
