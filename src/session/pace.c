@@ -107,10 +107,10 @@ bool lar_pace_look(lar_pace *pace, int64_t now) {
 }
 
 static void report_rates(const lar_pace *pace, lar_session_status *status) {
-    const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
     status->engine_rate = status->haptic_rate = status->snapshot_rate = 0;
     status->real_time_factor_now = 0;
     if (pace->moments < 2) return;
+    const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
     double seconds = 1e-9 * (double)(last->at - first->at);
     double time = last->played - first->played;
     status->engine_rate = (double)(last->steps - first->steps) / seconds;

@@ -55,12 +55,16 @@ static lar_status check_simulation(const player *p, lar_error *error) {
 
 /* ---- records ------------------------------------------------------------------------------- */
 
+/* Steps between two looks, also where ticks are long. */
+static const uint64_t PART_MOST = 1000;
+
 static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     lar_status status = LAR_OK;
     uint64_t now = lar_simulation_steps(p->simulation);
     while (now < step && !status && !p->stopped) {
         uint64_t steps = step - now;
         if (steps > p->reader.header.tick_steps) steps = p->reader.header.tick_steps;
+        if (steps > PART_MOST) steps = PART_MOST;
         status = lar_simulation_compute(p->simulation, steps, NULL, NULL, error);
         now = lar_simulation_steps(p->simulation);
         if (status) break;
