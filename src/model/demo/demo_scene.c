@@ -82,10 +82,10 @@ static const char live_head[] =
     "materials:\n"
     "  - { name: uterus,    cells: uterus,    law: neo-hookean, density: 1050,\n"
     "      shear_modulus: 3.0e3, bulk_modulus: 3.0e5 }\n"
-    "  - { name: ovaries,   cells: ovaries,   law: neo-hookean, density: 1050,\n"
-    "      shear_modulus: 3.0e3, bulk_modulus: 3.0e5 }\n"
     "  - { name: tubes,     cells: tubes,     law: neo-hookean, density: 1050,\n"
     "      shear_modulus: 5.0e3, bulk_modulus: 3.0e5 }\n"
+    "  - { name: ovaries,   cells: ovaries,   law: neo-hookean, density: 1050,\n"
+    "      shear_modulus: 3.0e3, bulk_modulus: 3.0e5 }\n"
     "  - { name: ligaments, cells: ligaments, law: neo-hookean, density: 1050,\n"
     "      shear_modulus: 5.0e3, bulk_modulus: 3.0e5 }\n"
     "\n";
