@@ -14,9 +14,6 @@
 #include "cli/parallel.h"
 #include "cli/view_report.h"
 
-/* Not in every build yet. */
-extern __typeof__(lar_session_attach) lar_session_attach __attribute__((weak));
-
 typedef struct view_settings {
     const char *scene, *listen, *token, *record, *save_folder, *viewer;
     cli_texts devices; /* TOOL=SPEC */

@@ -77,7 +77,6 @@ void view_report_json(const view_report *report, FILE *out) {
     json_integer(&json, "steps", (int64_t)s->step);
     json_number(&json, "time", s->time);
     json_number(&json, "time_step", lar_simulation_time_step(report->simulation));
-    json_number(&json, "tick", report->tick);
     json_number(&json, "pace", report->pace);
     json_number(&json, "wall_time", report->elapsed);
     json_number(&json, "real_time_factor", s->real_time_factor);
@@ -108,8 +107,8 @@ void view_report_table(const view_report *report, FILE *out) {
     fprintf(out, "%-17s%.3f; slow motion began %" PRId64 " times, %.3g s were given up\n",
             "real-time factor", s->real_time_factor, report->slow_times, s->skipped);
     if (s->ticks > 0) {
-        fprintf(out, "%-17s%" PRIu64 " of %.4g s, %" PRIu64 " missed (%.3f %%)\n", "ticks",
-                s->ticks, report->tick, s->misses, 100 * (double)s->misses / (double)s->ticks);
+        fprintf(out, "%-17s%" PRIu64 ", %" PRIu64 " missed (%.3f %%)\n", "ticks", s->ticks,
+                s->misses, 100 * (double)s->misses / (double)s->ticks);
         fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
                 "a tick's forces", 1e6 * s->tick_p50, 1e6 * s->tick_p99, 1e6 * s->tick_p999,
                 1e6 * s->tick_max);

@@ -23,7 +23,7 @@ typedef struct view_report {
     const lar_parallel *parallel;
     const lar_simulation *simulation; /* after the session */
     lar_session_status status;        /* of the end */
-    double tick, pace, elapsed;       /* [s] simulated, factor asked for at the start, [s] */
+    double pace, elapsed;             /* asked for at the start; [s] */
     int64_t slow_times;               /* that slow motion began */
     int32_t viewers_most;             /* at once */
     int32_t devices;

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/folder.h"
 #include "comm/socket.h"
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
@@ -100,6 +101,7 @@ static uint64_t bytes_received(struct lws *wsi) {
 static void watch(lar_server *server, int64_t now) {
     double seconds = (double)(now - server->watched_at) / (double)LAR_SECOND_NS;
     server->watched_at = now;
+    lar_server_sweep(server, now);
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
         uint64_t bytes = bytes_received(viewer->wsi), before = viewer->bytes_in;
         viewer->bytes_in = bytes;
@@ -317,6 +319,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->listener = server->spare = -1;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
+    if (!status && asked.save_folder) status = lar_folder_make(asked.save_folder, error);
     if (!status) status = listen_there(server, asked.port, error);
     if (!status) status = copy_texts(server, &asked, error);
     if (!status) status = prepare(server, error);

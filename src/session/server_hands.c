@@ -146,7 +146,7 @@ bool lar_hands_busy(const lar_hands *hands) {
 const char *lar_hands_by(const lar_hands *hands, int32_t tool, uint64_t viewer, int64_t now) {
     const lar_owner *owner = &hands->owner[tool];
     uint64_t who = owner->viewer && now - owner->moved < OWNED ? owner->viewer : 0;
-    if (owner->device) return "device";
+    if (__atomic_load_n(&hands->session->tool[tool].device, __ATOMIC_RELAXED)) return "device";
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].tool == tool && hands->hand[i].state != LAR_HAND_FREE)
             who = hands->hand[i].viewer;

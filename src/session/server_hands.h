@@ -37,7 +37,6 @@ typedef struct lar_owner {
     uint64_t viewer; /* 0: nobody */
     int64_t moved;   /* [ns] */
     lar_tool_pose pose;
-    bool device;
 } lar_owner;
 
 /* News of a hand for its viewer: `state` is a word of the protocol. */

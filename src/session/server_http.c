@@ -51,7 +51,8 @@ bool lar_server_trusts(const lar_server *server, struct lws *wsi) {
 /* ---- answers --------------------------------------------------------------------------------- */
 
 static int refuse(struct lws *wsi, unsigned code, const char *sentence) {
-    return lws_return_http_status(wsi, code, sentence) < 0 ? -1 : 0;
+    if (lws_return_http_status(wsi, code, sentence) < 0) return -1;
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
 static int add_header(struct lws *wsi, const char *name, const char *value, unsigned char **at,
@@ -126,13 +127,48 @@ static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
                 copy_header(wsi, WSI_TOKEN_PROTOCOL, protocol, sizeof protocol) &&
                 strcmp(protocol, LAR_PROTOCOL) == 0;
     if (good) return 0;
-    return refuse(wsi, HTTP_STATUS_FORBIDDEN,
-                  "This is not the address, origin or protocol of a viewer.")
-               ? -1
-               : 1;
+    int sent = lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN,
+                                      "This is not the address, origin or protocol of a viewer.");
+    return sent < 0 ? -1 : 1;
 }
 
 /* ---- connections ----------------------------------------------------------------------------- */
+
+/* A page, its files and then the viewer take a moment; libwebsockets' own limits do not hold for
+ * everything that can be asked (a tunnel waits for ever). */
+static const int64_t LIFE = 30 * LAR_SECOND_NS;
+
+static void add_connection(lar_server *server, struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (server->connection[i].wsi) continue;
+        server->connection[i].wsi = wsi;
+        server->connection[i].since = lar_clock_ns();
+        server->connection[i].viewer = false;
+        server->connections++;
+        return;
+    }
+}
+
+static void drop_connection(lar_server *server, const struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (server->connection[i].wsi != wsi) continue;
+        server->connection[i].wsi = NULL;
+        server->connections--;
+    }
+}
+
+void lar_server_promote(lar_server *server, const struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+        if (server->connection[i].wsi == wsi) server->connection[i].viewer = true;
+}
+
+void lar_server_sweep(lar_server *server, int64_t now) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+        if (server->connection[i].wsi && !server->connection[i].viewer &&
+            now - server->connection[i].since > LIFE)
+            lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE,
+                            LWS_TO_KILL_ASYNC);
+}
 
 /* All that have come. When the process has no numbers for sockets left, the spare one takes the
  * connection and drops it: it would wait at the door, and wake us, forever. */
@@ -152,7 +188,8 @@ static void accept_all(lar_server *server) {
             continue;
         }
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-        lws_adopt_socket_vhost(server->vhost, fd);
+        struct lws *wsi = lws_adopt_socket_vhost(server->vhost, fd);
+        if (wsi) add_connection(server, wsi);
     }
 }
 
@@ -167,11 +204,8 @@ int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
         lar_server_collect(server);
         return 0;
-    case LWS_CALLBACK_WSI_CREATE:
-        server->connections++;
-        return 0;
     case LWS_CALLBACK_WSI_DESTROY:
-        server->connections--;
+        drop_connection(server, wsi);
         return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         return check_upgrade(server, wsi, in);

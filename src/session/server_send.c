@@ -1,4 +1,5 @@
 /* What viewers are told: docs/viewer-protocol.md. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,10 +110,10 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
 static void write_times(lar_json *json, const char *name, double p50, double p99, double p999,
                         double max) {
     lar_json_open(json, name, '{');
-    lar_json_number(json, "p50", 1e6 * p50);
-    lar_json_number(json, "p99", 1e6 * p99);
-    lar_json_number(json, "p999", 1e6 * p999);
-    lar_json_number(json, "max", 1e6 * max);
+    lar_json_number(json, "p50", round(1e9 * p50) / 1e3);
+    lar_json_number(json, "p99", round(1e9 * p99) / 1e3);
+    lar_json_number(json, "p999", round(1e9 * p999) / 1e3);
+    lar_json_number(json, "max", round(1e9 * max) / 1e3);
     lar_json_close(json, '}');
 }
 

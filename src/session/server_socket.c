@@ -55,6 +55,7 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
                            .allowance = LAR_MESSAGES_A_SECOND,
                            .allowed_at = now};
     server->first = viewer;
+    lar_server_promote(server, wsi);
     if (!viewer->token_is_right)
         lar_viewer_close(viewer, LAR_CLOSE_TOKEN,
                          "the token is missing or wrong; open the address that the engine printed");

@@ -94,6 +94,11 @@ struct lar_server {
     bool ending;     /* atomic */
     int32_t viewers; /* atomic */
     int connections;
+    struct {
+        struct lws *wsi; /* NULL: free */
+        int64_t since;
+        bool viewer;
+    } connection[LAR_CONNECTIONS_MOST];
 
     /* The server's thread's. */
     lar_viewer *first;
@@ -131,6 +136,10 @@ typedef struct lar_download {
     size_t sent;
 } lar_download;
 
+/* Ends those that have become nothing for too long. */
+void lar_server_sweep(lar_server *server, int64_t now);
+/* A connection has become a viewer. */
+void lar_server_promote(lar_server *server, const struct lws *wsi);
 /* For connections that are not viewers yet; libwebsockets calls it. */
 int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                     size_t length);

@@ -1,0 +1,245 @@
+/* Who is not let in, and what is not served. */
+#include "session/session_test.h"
+
+#include "session/server_test.h"
+
+static int upgrade_status(int port, upgrade u) {
+    int fd = connect_to(port), status = try_upgrade(fd, port, u);
+    close(fd);
+    return status;
+}
+
+static void only_our_own_page_may_connect(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    char own[64], local[64], other_port[64], own_origin[64], local_origin[64];
+    snprintf(own, sizeof own, "127.0.0.1:%d", s.port);
+    snprintf(local, sizeof local, "localhost:%d", s.port);
+    snprintf(other_port, sizeof other_port, "127.0.0.1:%d", s.port + 1);
+    snprintf(own_origin, sizeof own_origin, "http://127.0.0.1:%d", s.port);
+    snprintf(local_origin, sizeof local_origin, "http://localhost:%d", s.port);
+    const struct {
+        int status;
+        upgrade u;
+    } cases[] = {{101, {0}}, /* no browser: no origin */
+                 {101, {.origin = own_origin}},
+                 {101, {.host = local, .origin = local_origin}},
+                 {403, {.host = local, .origin = own_origin}},
+                 {403, {.origin = "http://evil.example"}},
+                 {403, {.origin = "null"}},
+                 {403, {.origin = "https://127.0.0.1"}},
+                 {403, {.origin = "http://127.0.0.1"}},
+                 {403, {.host = "evil.example"}},
+                 {403, {.host = "evil.example", .origin = "http://evil.example"}},
+                 {403, {.host = other_port}},
+                 {403, {.host = "127.0.0.1"}},
+                 {403, {.path = "/"}},
+                 {403, {.path = "/socket/"}},
+                 {403, {.protocol = "chat"}},
+                 {403, {.protocol = "lariat.2"}},
+                 {403, {.protocol = "http"}},
+                 {403, {.protocol = ""}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int status = upgrade_status(s.port, cases[i].u);
+        if (status != cases[i].status) fail_msg("case %zu: %d", i, status);
+    }
+    /* Without a Host, or with two. */
+    assert_int_not_equal(upgrade_status(s.port, (upgrade){.host = ""}), 101);
+    char twice[160];
+    snprintf(twice, sizeof twice, "%s\r\nHost: evil.example", own);
+    assert_int_not_equal(upgrade_status(s.port, (upgrade){.host = twice}), 101);
+    end_serving(&s);
+}
+
+static void tokens_are_asked_for(void **unused) {
+    (void)unused;
+    static const char token[] = "a-secret_of_ours";
+    served s = serve_with(NULL, &(lar_server_options){.token = token});
+    assert_non_null(strstr(lar_server_url(s.server), "/#token=a-secret_of_ours"));
+    static const char *const wrong[] = {"/socket",
+                                        "/socket?token=",
+                                        "/socket?token=a-secret_of_our",
+                                        "/socket?token=a-secret_of_ourss",
+                                        "/socket?token=A-secret_of_ours",
+                                        "/socket?other=a-secret_of_ours",
+                                        "/socket?tokena-secret_of_ours"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        client c = open_client_at(s.port, wrong[i]);
+        int code = await_close(&c);
+        if (code != 4001) fail_msg("%s: %d", wrong[i], code);
+        close_client(&c);
+    }
+    client c = open_client_at(s.port, "/socket?token=a-secret_of_ours");
+    await_text(&c, "hello");
+    close_client(&c);
+    end_serving(&s);
+}
+
+/* ---- files ------------------------------------------------------------------------------------
+ */
+
+static void write_file(const char *folder, const char *name, const char *text) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static int fetch_with(int port, const char *method, const char *path, char *head, char *body,
+                      size_t size) {
+    char request[4096];
+    int fd = connect_to(port);
+    snprintf(request, sizeof request,
+             "%s %s HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\n\r\n", method, path,
+             port);
+    head[0] = body[0] = '\0';
+    int status = ask_http(fd, request, head, 4096);
+    size_t length = 0;
+    while (length + 1 < size && get(fd, body + length, 1)) body[++length] = '\0';
+    close(fd);
+    return status;
+}
+
+static void files_and_nothing_else_are_served(void **unused) {
+    (void)unused;
+    char base[256], folder[300], assets[340], outside[300], link[340];
+    snprintf(base, sizeof base, "%s/server-files-%d", LAR_TEST_BUILD, (int)getpid());
+    snprintf(folder, sizeof folder, "%s/viewer", base);
+    snprintf(assets, sizeof assets, "%s/assets", folder);
+    snprintf(outside, sizeof outside, "%s/secret.txt", base);
+    snprintf(link, sizeof link, "%s/link.txt", folder);
+    mkdir(base, 0700);
+    mkdir(folder, 0700);
+    mkdir(assets, 0700);
+    char *big = malloc(100001);
+    for (int i = 0; i < 100000; i++) big[i] = (char)('a' + i % 26);
+    big[100000] = '\0';
+    write_file(folder, "index.html", "<!doctype html><title>x</title>");
+    write_file(assets, "main-1a2b.js", big);
+    write_file(assets, "main.css", "body{}");
+    write_file(folder, "icon.svg", "<svg/>");
+    write_file(folder, ".hidden", "hidden");
+    write_file(base, "secret.txt", "secret");
+    unlink(link);
+    assert_int_equal(symlink(outside, link), 0);
+
+    served s = serve_with(NULL, &(lar_server_options){.folder = folder});
+    char head[4096], *body = malloc(200000);
+    assert_int_equal(fetch_with(s.port, "GET", "/", head, body, 200000), 200);
+    assert_string_equal(body, "<!doctype html><title>x</title>");
+    assert_non_null(strstr(head, "content-type: text/html; charset=utf-8"));
+    assert_non_null(strstr(head, "cache-control: no-cache"));
+    assert_non_null(
+        strstr(head, "content-security-policy: default-src 'none'; script-src 'self';"));
+    assert_non_null(strstr(head, "x-content-type-options: nosniff"));
+    assert_int_equal(fetch_with(s.port, "GET", "/assets/main-1a2b.js", head, body, 200000), 200);
+    assert_string_equal(body, big);
+    assert_non_null(strstr(head, "content-type: text/javascript"));
+    assert_non_null(strstr(head, "immutable"));
+    assert_int_equal(fetch_with(s.port, "GET", "/assets/main.css?x=1", head, body, 200000), 200);
+    assert_non_null(strstr(head, "content-type: text/css"));
+    assert_int_equal(fetch_with(s.port, "GET", "/icon.svg", head, body, 200000), 200);
+    assert_non_null(strstr(head, "content-type: image/svg+xml"));
+    assert_int_equal(fetch_with(s.port, "HEAD", "/index.html", head, body, 200000), 200);
+    assert_string_equal(body, "");
+    assert_non_null(strstr(head, "content-length: 31"));
+
+    static const char *const paths[] = {"/none.html",
+                                        "/assets",
+                                        "/assets/",
+                                        "/.hidden",
+                                        "/link.txt",
+                                        "/../secret.txt",
+                                        "/assets/../../secret.txt",
+                                        "/%2e%2e/secret.txt",
+                                        "/..%2fsecret.txt",
+                                        "/assets/..%2f..%2fsecret.txt",
+                                        "/%2e%2e%2fsecret.txt",
+                                        "/..\\secret.txt",
+                                        "/....//secret.txt",
+                                        "//etc/passwd",
+                                        "/etc/passwd",
+                                        "/index.html%00.txt",
+                                        "/socket"};
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        int status = fetch_with(s.port, "GET", paths[i], head, body, 200000);
+        if (status == 200 || strstr(body, "secret") || strstr(body, "root:"))
+            fail_msg("%s is served: %d %s", paths[i], status, body);
+    }
+    static const char *const methods[] = {"POST", "PUT", "DELETE", "OPTIONS", "PATCH"};
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        assert_int_not_equal(fetch_with(s.port, methods[i], "/", head, body, 200000), 200);
+    free(body);
+    free(big);
+    end_serving(&s);
+}
+
+/* ---- opening ----------------------------------------------------------------------------------
+ */
+
+static void expect_refusal(const lar_server_options *options, lar_status status, const char *word) {
+    bench b = {.model = served_model()};
+    lar_server *server = NULL;
+    lar_error error = {LAR_OK, ""};
+    b.simulation = served_simulation(b.model, NULL);
+    DONE(lar_session_open(b.simulation, NULL, &b.session, &failure));
+    lar_status got = lar_server_open(b.session, b.model, options, &server, &error);
+    if (got != status || !strstr(error.message, word))
+        fail_msg("%d instead of %d, %s", got, status, error.message);
+    assert_null(server);
+    close_bench(&b);
+}
+
+static void what_makes_no_sense_is_refused(void **unused) {
+    (void)unused;
+    expect_refusal(&(lar_server_options){.address = "0.0.0.0"}, LAR_ERROR_ARGUMENT, "token");
+    expect_refusal(&(lar_server_options){.address = "::"}, LAR_ERROR_ARGUMENT, "token");
+    expect_refusal(&(lar_server_options){.address = "10.0.0.1"}, LAR_ERROR_ARGUMENT, "token");
+    expect_refusal(&(lar_server_options){.address = ""}, LAR_ERROR_ARGUMENT, "token");
+    expect_refusal(&(lar_server_options){.token = "short"}, LAR_ERROR_ARGUMENT, "8 to 128");
+    expect_refusal(&(lar_server_options){.token = "with a space"}, LAR_ERROR_ARGUMENT, "8 to 128");
+    expect_refusal(&(lar_server_options){.port = 65536}, LAR_ERROR_ARGUMENT, "65535");
+    expect_refusal(&(lar_server_options){.folder = "/nonexistent"}, LAR_ERROR_IO, "/nonexistent");
+    expect_refusal(&(lar_server_options){.folder = LAR_TEST_BUILD "/session"}, LAR_ERROR_IO, "");
+    expect_refusal(&(lar_server_options){.save_folder = "/dev/null/x"}, LAR_ERROR_IO, "/dev/null");
+    expect_refusal(&(lar_server_options){.address = "198.51.100.7", .token = "a-long-token"},
+                   LAR_ERROR_IO, "198.51.100.7");
+    served s = serve(NULL);
+    expect_refusal(&(lar_server_options){.port = s.port}, LAR_ERROR_IO, "cannot listen");
+    end_serving(&s);
+    assert_string_equal(lar_server_url(NULL), "");
+    assert_int_equal(lar_server_viewers(NULL), 0);
+    lar_server_close(NULL);
+}
+
+static void there_are_sixty_four_viewers(void **unused) {
+    (void)unused;
+    enum { MOST = 64 };
+    served s = serve(NULL);
+    client c[MOST];
+    for (int i = 0; i < MOST; i++) {
+        c[i] = open_client(s.port);
+        await_text(&c[i], "hello");
+    }
+    assert_int_equal(lar_server_viewers(s.server), MOST);
+    client more = open_client(s.port);
+    assert_int_equal(await_close(&more), 4003);
+    close_client(&more);
+    close_client(&c[0]);
+    for (int i = 0; i < 1000 && lar_server_viewers(s.server) == MOST; i++) nap(0.005);
+    c[0] = open_client(s.port);
+    await_text(&c[0], "hello");
+    for (int i = 0; i < MOST; i++) close_client(&c[i]);
+    end_serving(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(only_our_own_page_may_connect),
+                                       cmocka_unit_test(tokens_are_asked_for),
+                                       cmocka_unit_test(files_and_nothing_else_are_served),
+                                       cmocka_unit_test(what_makes_no_sense_is_refused),
+                                       cmocka_unit_test(there_are_sixty_four_viewers)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
