@@ -12,10 +12,10 @@ static const double TORQUE_MOST = 0.2;             /* [N m] */
 static const double TURN_MOST = 20;                /* [rad/s] */
 static const double LEVER_LEAST = 0.05;            /* [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
-static const double SMOOTH = 0.003;                /* of the hand's velocity [s] */
+static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
 static const double JUMP = 0.005;                  /* no hand goes so far in a tick [m] */
 static const double FORGET = 0.05;                 /* how stiff the tissue was [s] */
-static const double CREDIT = 2e-4, REFILL = 2e-4;  /* [J] [W] */
+static const double CREDIT = 5e-4, REFILL = 1e-3;  /* [J] [W] */
 static const double STIFFEST = 1e5;                /* [N/m] */
 static const double REACH = 0.5; /* of its radius, a tool's way in a step (lariat.h) */
 static const double CLOSES = 0.25;
@@ -186,8 +186,9 @@ static void pay(lar_coupling *c) {
                     0.5 * c->mass * dot(c->tool_velocity, c->tool_velocity);
     if (c->energy < c->credit) c->energy += REFILL * c->seconds;
     c->energy = fmax(-c->credit, fmin(c->energy, stored + c->credit));
+    /* A force that the hand works against pays for itself. */
     double earned = income(c, c->felt);
-    c->share = c->energy + earned >= 0 ? 1 : fmax(0, c->energy / -earned);
+    c->share = earned >= 0 ? 1 : fmax(0, fmin(1, c->energy / -earned));
     for (int i = 0; i < 3; i++) c->felt[i] *= c->share;
 }
 
