@@ -37,7 +37,9 @@ enum { SERVED_BALL = 0, SERVED_GRASPER, SERVED_HANDS };
 
 /* A small body that hangs, and beside it a ball and a grasper that touch nothing. */
 static lar_model *unchecked_model(void) {
-    lar_model *model = hanging_block();
+    lar_model *model = brick_model(&soft_brick);
+    fix_nodes(model, brick_side(&soft_brick, 0, 0), 7);
+    model->gravity[2] = -9.81;
     model->damping = 20;
     add_tool(model, "ball", LAR_TOOL_SPHERE, 0.2, 0, 0);
     add_tool(model, "grasper", LAR_TOOL_GRASPER, 0.2, 0, 0.2);
