@@ -339,7 +339,7 @@ static void hold_point(lar_touch *touch, const lar_condition_context *context,
     lar_face_mean((const double(*)[3])x, hold->weight, point);
     lar_face_mean((const double(*)[3])v, hold->weight, speed);
     int n = lar_touch_points(face, tool->radius);
-    double most = law->stiffness * point_mass(face, context->mass, n);
+    double most = 0.5 * law->stiffness * point_mass(face, context->mass, n);
     double stiffness = fmin(hold->stiffness, most), damping = sqrt(stiffness * most) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
@@ -429,6 +429,7 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
     clear_acting(touch);
     if (touch->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->time_step, context->stable_step);
+    lar_contact_law tool_law = lar_contact_tool_law_for(context->time_step, context->stable_step);
     double travel = step_travel(touch, context, state);
     bool known = isfinite(travel);
     if (!known) lar_touch_forget(touch);
@@ -436,7 +437,7 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
     for (int32_t t = 0; t < touch->list->count; t++) {
         touch->sum[t].touching = touch->sum[t].held = 0;
         if (touch->list->tool[t].shape != LAR_TOOL_HAND)
-            apply_tool(touch, context, state, t, known ? travel : 0, &law);
+            apply_tool(touch, context, state, t, known ? travel : 0, &tool_law);
     }
     apply_holds(touch, context, state, &law);
     add_forces(touch, state->force);

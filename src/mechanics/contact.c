@@ -16,6 +16,11 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
 }
 
+lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
+    lar_contact_law law = lar_contact_law_for(time_step, stable_step);
+    return (lar_contact_law){.stiffness = 3 * law.stiffness, .lead = 0.25 * law.lead};
+}
+
 double lar_contact_face_mass(const double mass[4], const double weight[4]) {
     double sum = 0;
     for (int a = 0; a < 4; a++) sum += weight[a] * weight[a] / mass[a];
@@ -65,7 +70,8 @@ double lar_segment_depth(const lar_segment *segment, double radius, const double
 void lar_sine_cosine(double angle, double *sine, double *cosine) {
     double x = angle / 8, y = x * x;
     double s = x * (1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72))));
-    double versine = y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90))));
+    double versine =
+        y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90 * (1 - y / 132)))));
     for (int i = 0; i < 3; i++) {
         double c = 1 - versine;
         versine = 2 * s * s;

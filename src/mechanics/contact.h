@@ -26,6 +26,10 @@ typedef struct lar_contact_law {
  * the node's share of a spring's end). */
 lar_contact_law lar_contact_law_for(double time_step, double stable_step);
 
+/* The law of tools: three times as stiff and less damped, which asks for half as much again of the
+ * step. What a tool's spring gives back is work of whoever moves the tool. */
+lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
+
 /* The force [N], at least 0, on a point that moves so much mass [kg]. */
 static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,
                                        double rate) {

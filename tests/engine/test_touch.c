@@ -205,6 +205,49 @@ static void every_joule_of_a_tool_is_accounted_for(void **unused) {
     finish(simulation, model);
 }
 
+/* A tool that rests in a body and touches all of its top, at steps up to the stable limit, where
+ * the fastest mode of a regular body needs all of the step: nothing grows, and what moves in
+ * contact comes to rest by the contact's own damping. */
+static void press_and_wait(const brick *b, double share_of_stable) {
+    lar_model *model = brick_model(b);
+    fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_ALL);
+    touch_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.1},
+               (double[]){0.015, 0.01, 0.1205});
+    lar_options options = lar_options_default();
+    options.time_step = share_of_stable * stable_step_of(model);
+    lar_simulation *simulation = start_with(model, options);
+    lar_energy e;
+    place(simulation, 0, (double[]){0.015, 0.01, 0.117}, upright, 1, 100);
+    advance(simulation, 100);
+    double first = body_energy(simulation, &e), highest = 0, swing = e.kinetic, last = 0;
+    for (int i = 0; i < 400; i++) {
+        advance(simulation, 50);
+        highest = fmax(highest, body_energy(simulation, &e));
+        if (i >= 390) last = fmax(last, e.kinetic);
+    }
+    lar_tool_force force;
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, NULL), LAR_OK);
+    print_message("%.3f of the stable step: %d points, %.3g N, energy up to %.4f of the pressed, "
+                  "kinetic energy %.1e to %.1e J\n",
+                  share_of_stable, (int)force.touching, force.force[2], highest / first, swing,
+                  last);
+    assert_true(force.touching > 20);
+    assert_below(highest, 1.2 * first); /* the tool's work as the body swings */
+    assert_below(last, 0.3 * swing);
+    finish(simulation, model);
+}
+
+static void a_tool_at_rest_stirs_nothing(void **unused) {
+    (void)unused;
+    static const double shares[] = {0.3, 0.8, 0.95, 0.999};
+    brick regular = tissue;
+    regular.shift = 0;
+    for (int s = 0; s < 4; s++) {
+        press_and_wait(&regular, shares[s]);
+        press_and_wait(&tissue, shares[s]);
+    }
+}
+
 /* ---- the same bits --------------------------------------------------------------------------- */
 
 static void poke(lar_simulation *simulation, int ticks) {
@@ -340,6 +383,7 @@ int main(void) {
         cmocka_unit_test(a_body_comes_to_rest_on_a_plane),
         cmocka_unit_test(what_tools_feel_is_what_the_body_feels),
         cmocka_unit_test(every_joule_of_a_tool_is_accounted_for),
+        cmocka_unit_test(a_tool_at_rest_stirs_nothing),
         cmocka_unit_test(the_hash_is_the_same_everywhere),
         cmocka_unit_test(a_tool_pushed_through_holds_or_stops_and_says_why),
     };
