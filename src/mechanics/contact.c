@@ -69,7 +69,7 @@ double lar_segment_depth(const lar_segment *segment, double radius, const double
  * nothing cancels. */
 void lar_sine_cosine(double angle, double *sine, double *cosine) {
     double x = angle / 8, y = x * x;
-    double s = x * (1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72))));
+    double s = x * (1 - y / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72 * (1 - y / 110)))));
     double versine =
         y / 2 * (1 - y / 12 * (1 - y / 30 * (1 - y / 56 * (1 - y / 90 * (1 - y / 132)))));
     for (int i = 0; i < 3; i++) {
