@@ -182,7 +182,7 @@ lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t 
         list.group_count = head.group_count;
         list.face = (int32_t *)(group + head.group_count);
         list.face_count = head.face_count;
-        const lar_contact_list *room = &computer->processor[0].worker[0].acting.collide.list;
+        const lar_contact_list *room = &computer->contact.search->list; /* of every thread, too */
         fits = head.face_count >= 0 && head.group_count <= room->group_room &&
                head.face_count <= room->face_room &&
                bytes == sizeof head + (size_t)head.group_count * sizeof *list.group +

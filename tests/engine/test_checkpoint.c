@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "engine/checkpoint.h"
+#include "engine/collide_test.h"
 #include "engine/engine_test.h"
 #include "engine/tools_test.h"
 
@@ -172,7 +173,6 @@ static void a_broken_run_is_taken_up_again(void **unused) {
 typedef struct participant {
     const lar_model *model;
     lar_options options;
-    const course *course;
     lar_error error;
     lar_status status;
 } participant;
@@ -202,6 +202,39 @@ static void go_back_and_forth(lar_simulation *simulation, const course *c) {
     assert_int_equal(lar_simulation_hash(simulation), c->end);
 }
 
+/* Starts the processes of a computer; the caller plays processor zero. */
+typedef struct fleet {
+    int count;
+    participant other[4];
+    pthread_t thread[4];
+    lar_simulation *zero;
+} fleet;
+
+static void start_fleet(fleet *f, const lar_model *model, lar_options options, int count) {
+    lar_error error;
+    char master[LAR_COMM_ADDRESS_TEXT];
+    int listener;
+    f->count = count;
+    if (lar_comm_listen("127.0.0.1:0", &listener, master, &error)) fail_msg("%s", error.message);
+    options.master = master;
+    for (int p = 1; p < count; p++) {
+        f->other[p] = (participant){.model = model, .options = options};
+        f->other[p].options.processor = p;
+        assert_int_equal(pthread_create(&f->thread[p], NULL, serve, &f->other[p]), 0);
+    }
+    options.listener = listener;
+    f->zero = NULL;
+    if (lar_simulation_create(model, &options, &f->zero, &error)) fail_msg("%s", error.message);
+}
+
+static void end_fleet(fleet *f) {
+    lar_simulation_destroy(f->zero);
+    for (int p = 1; p < f->count; p++) {
+        pthread_join(f->thread[p], NULL);
+        if (f->other[p].status) fail_msg("processor %d: %s", p, f->other[p].error.message);
+    }
+}
+
 static void processes_go_back_together(void **unused) {
     (void)unused;
     static const char *const backends[] = {"shm", "tcp", "shm"};
@@ -209,35 +242,85 @@ static void processes_go_back_together(void **unused) {
     for (int i = 0; i < 3; i++) {
         lar_model *model = tool_model_of(i == 0 ? &fine_tool_brick : &tool_brick);
         course c = straight_course(model);
-        lar_error error;
-        char master[LAR_COMM_ADDRESS_TEXT];
-        int listener, count = i == 2 ? 4 : 2;
-        participant other[4];
-        pthread_t thread[4];
-        if (lar_comm_listen("127.0.0.1:0", &listener, master, &error))
-            fail_msg("%s", error.message);
         lar_options options = setting(1);
         options.grid = grid[i];
         options.threads = 1 + i % 2;
         options.comm = backends[i];
-        options.master = master;
-        for (int p = 1; p < count; p++) {
-            other[p] = (participant){.model = model, .options = options, .course = &c};
-            other[p].options.processor = p;
-            assert_int_equal(pthread_create(&thread[p], NULL, serve, &other[p]), 0);
-        }
-        options.listener = listener;
-        lar_simulation *simulation = NULL;
-        if (lar_simulation_create(model, &options, &simulation, &error))
-            fail_msg("%s", error.message);
-        go_back_and_forth(simulation, &c);
-        lar_simulation_destroy(simulation);
-        for (int p = 1; p < count; p++) {
-            pthread_join(thread[p], NULL);
-            if (other[p].status) fail_msg("processor %d: %s", p, other[p].error.message);
-        }
+        fleet f;
+        start_fleet(&f, model, options, i == 2 ? 4 : 2);
+        go_back_and_forth(f.zero, &c);
+        end_fleet(&f);
         lar_model_destroy(model);
     }
+}
+
+/* ---- bodies in contact ---------------------------------------------------------------------- */
+
+static const brick anvil = {{6, 4, 2}, 0.01, 0.08, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+static const brick hammer = {{4, 3, 2}, 0.008, 0.05, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+
+/* Of a run that nothing interrupts: after 30 steps, when the bodies touch, and after 150. */
+typedef struct impact {
+    uint64_t begin, middle, end;
+} impact;
+
+static impact straight_impact(const lar_model *model) {
+    lar_simulation *simulation = start_with(model, setting(0));
+    impact w = {.begin = lar_simulation_hash(simulation)};
+    lar_contact_info info;
+    advance(simulation, 30);
+    lar_simulation_contact(simulation, &info);
+    assert_true(info.touching > 0);
+    w.middle = lar_simulation_hash(simulation);
+    save(simulation, PATH);
+    advance(simulation, 120);
+    w.end = lar_simulation_hash(simulation);
+    lar_simulation_destroy(simulation);
+    return w;
+}
+
+/* Also in the step that the state is of, where nothing else tells that it is another one. */
+static void take_up_impact(lar_simulation *simulation, const impact *w) {
+    lar_error error;
+    lar_tool_pose aside = {{1, 1, 1}, {1, 0, 0, 0}, 1};
+    for (int i = 0; i < 2; i++) {
+        advance(simulation, (uint64_t)(11 + 20 * i));
+        if (i == 1) reset(simulation);
+        if (i == 1) advance(simulation, 30);
+        if (lar_simulation_tool_move(simulation, 0, &aside, 5, &error))
+            fail_msg("%s", error.message);
+        load(simulation, PATH);
+        assert_int_equal(lar_simulation_hash(simulation), w->middle);
+        advance(simulation, 120);
+        assert_int_equal(lar_simulation_hash(simulation), w->end);
+        reset(simulation);
+        assert_int_equal(lar_simulation_hash(simulation), w->begin);
+        advance(simulation, 150);
+        assert_int_equal(lar_simulation_hash(simulation), w->end);
+    }
+}
+
+static void bodies_in_contact_are_taken_up_in_the_middle(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&anvil, &hammer, 0.002, true);
+    int32_t first = (anvil.cells[0] + 1) * (anvil.cells[1] + 1) * (anvil.cells[2] + 1);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){0.15, 0.05, -0.3});
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    impact w = straight_impact(model);
+    for (int grid = 0; grid < GRIDS; grid++) {
+        lar_simulation *simulation = start_with(model, setting(grid));
+        take_up_impact(simulation, &w);
+        lar_simulation_destroy(simulation);
+    }
+    for (int i = 0; i < 2; i++) {
+        lar_options options = setting(i + 1);
+        options.comm = i ? "shm" : "tcp";
+        fleet f;
+        start_fleet(&f, model, options, i ? 4 : 2);
+        take_up_impact(f.zero, &w);
+        end_fleet(&f);
+    }
+    lar_model_destroy(model);
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
@@ -421,6 +504,7 @@ int main(void) {
         cmocka_unit_test(time_may_go_back_again_and_again),
         cmocka_unit_test(a_broken_run_is_taken_up_again),
         cmocka_unit_test(processes_go_back_together),
+        cmocka_unit_test(bodies_in_contact_are_taken_up_in_the_middle),
         cmocka_unit_test(damaged_files_are_refused),
         cmocka_unit_test(forged_files_are_refused),
         cmocka_unit_test(other_models_are_refused),
