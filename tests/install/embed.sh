@@ -6,7 +6,7 @@
 # 1. The library exports the functions of lariat.h, all of them and nothing else, and carries its
 #    soname. 2. examples/embed.c builds with pkg-config and with find_package, after the tree was
 # moved. 3. Both programs run on the example beam and agree. 4. The command finds the modules for
-# MPI.
+# MPI. 5. examples/session.c holds the beam in real time.
 set -eu
 source=$1 build=$2 scratch=$3
 cc=${CC:-cc}
@@ -81,4 +81,16 @@ if "$scratch/embed-pkg-config" "$source/examples/none.yaml" 2>"$scratch/stderr";
     fail "a missing scene was not reported"
 fi
 grep -q 'none.yaml' "$scratch/stderr" || fail "the message does not name the missing scene"
+
+# A session without a server: the hand has hold of the beam and lifts it.
+# shellcheck disable=SC2046
+"$cc" -std=c17 -Wall -Wextra -Werror $(pkg-config --cflags lariat) "$source/examples/session.c" \
+    -o "$scratch/session" $(pkg-config --libs lariat) -lpthread
+"$scratch/session" "$source/examples/beam.yaml" >"$scratch/session.out" || fail "session failed"
+cat "$scratch/session.out"
+grep -q '^0\.[0-9]* s  force .* [1-9][0-9]* points held$' "$scratch/session.out" ||
+    fail "the hand holds nothing"
+grep -Eq '^tip lifted by [0-9.]*[1-9]' "$scratch/session.out" || fail "the beam was not lifted"
+grep -Eq '^hash [0-9a-f]{16} at step [1-9]' "$scratch/session.out" || fail "no hash was printed"
+if grep -Eiwq -e '-?nan|-?inf' "$scratch/session.out"; then fail "a number that is none"; fi
 echo "install: pkg-config and CMake programs agree"
