@@ -283,8 +283,8 @@ static impact straight_impact(const lar_model *model) {
 static void take_up_impact(lar_simulation *simulation, const impact *w) {
     lar_error error;
     lar_tool_pose aside = {{1, 1, 1}, {1, 0, 0, 0}, 1};
-    for (int i = 0; i < 2; i++) {
-        advance(simulation, (uint64_t)(11 + 20 * i));
+    for (int i = 1; i >= 0; i--) {
+        advance(simulation, i ? 31 : 600); /* far away, or near by */
         if (i == 1) reset(simulation);
         if (i == 1) advance(simulation, 30);
         if (lar_simulation_tool_move(simulation, 0, &aside, 5, &error))
