@@ -22,13 +22,11 @@ static void assert_refused(const char *spec, lar_status status, const char *word
 #include <SDL.h>
 
 static SDL_Joystick *joystick;
-static int rumbles;
-static Uint16 strongest;
+static _Atomic Uint16 strongest;
 
 static int on_rumble(void *data, Uint16 low, Uint16 high) {
     (void)data, (void)high;
     if (low > strongest) strongest = low;
-    rumbles++;
     return 0;
 }
 
@@ -61,12 +59,21 @@ static void rest(void) {
         SDL_JoystickSetVirtualAxis(joystick, i, i >= SDL_CONTROLLER_AXIS_TRIGGERLEFT ? -32768 : 0);
 }
 
-/* Long enough for the device's thread to have looked. */
-static void settle(void) {
-    usleep(30000);
-}
-
 static const lar_device_tick TICK = {.seconds = 0.001};
+
+/* Presses the right trigger or lets it go, and waits until the device's thread has seen it: then it
+ * has seen what the sticks did before, too. Ticks of no time move nothing. */
+static void settle(lar_device *device, bool pressed) {
+    const lar_device_tick now = {.seconds = 0};
+    lar_tool_pose pose = {.opening = -1};
+    SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_TRIGGERRIGHT,
+                               pressed ? 32767 : -32768);
+    for (int i = 0; i < 1000; i++) {
+        if (lar_device_poll(device, &now, &pose) && pose.opening == (pressed ? 0 : 1)) return;
+        usleep(5000);
+    }
+    fail_msg("the device does not see its controller");
+}
 
 static lar_tool_pose play(lar_device *device, int ticks, double tool_follows) {
     lar_tool_pose pose = PROBE.rest, tool = PROBE.rest;
@@ -91,21 +98,20 @@ static void test_sticks_move(void **state) {
     (void)state;
     rest();
     lar_device *device = open_device("gamepad:0,speed=0.1");
-    settle();
+    settle(device, false);
     lar_tool_pose pose = play(device, 100, 1);
     assert_true(fabs(pose.position[0]) < 1e-12 && fabs(pose.position[2] - 0.1) < 1e-12);
     assert_true(pose.opening == 1);
     SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_LEFTX, 32767);
     SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_RIGHTY, 32767);
-    SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_TRIGGERRIGHT, 32767);
-    settle();
+    settle(device, true);
     pose = play(device, 100, 1); /* 0.1 s at 0.1 m/s to the side and down, closed */
     assert_true(fabs(pose.position[0] - 0.01) < 1e-6);
     assert_true(fabs(pose.position[2] - 0.09) < 1e-6);
     assert_true(pose.opening < 0.01);
     lar_device_reset(device);
     rest();
-    settle();
+    settle(device, false);
     pose = play(device, 1, 1);
     assert_true(fabs(pose.position[0]) < 1e-12);
     lar_device_close(device);
@@ -117,7 +123,7 @@ static void test_hand_stays_near_a_stopped_tool(void **state) {
     rest();
     lar_device *device = open_device("gamepad:0");
     SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_LEFTX, -32768);
-    settle();
+    settle(device, true);
     lar_tool_pose pose = play(device, 3000, 0);
     assert_true(fabs(pose.position[0] + 0.01) < 1e-4);
     lar_device_close(device);
@@ -131,11 +137,11 @@ static void test_force_rumbles(void **state) {
     lar_tool_force force = {.force = {0, 0, 2.5}};
     strongest = 0;
     lar_device_feel(device, &TICK, &force, &pose);
-    usleep(150000);
+    for (int i = 0; i < 1000 && strongest == 0; i++) usleep(5000);
     assert_true(strongest > 32000 && strongest < 33500);
     force.force[2] = 100;
     lar_device_feel(device, &TICK, &force, &pose);
-    usleep(150000);
+    for (int i = 0; i < 1000 && strongest < 65535; i++) usleep(5000);
     assert_int_equal(strongest, 65535);
     lar_device_close(device);
 }
