@@ -330,8 +330,8 @@ LAR_API lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t
 
 /* From the present step on the tool moves evenly from where it is to `pose`, within `steps` (at
  * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
- * happen now. Not faster than half its radius in a step (LAR_ERROR_ARGUMENT), but a hand that holds
- * nothing may be put anywhere. */
+ * happen now. Neither its tip nor its other end faster than half its radius in a step
+ * (LAR_ERROR_ARGUMENT), but a hand that holds nothing may be put anywhere. */
 LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
                                             const lar_tool_pose *pose, uint64_t steps,
                                             lar_error *error);

@@ -87,7 +87,7 @@ static int32_t holds_of(const lar_tools *tools, int32_t tool) {
     return count;
 }
 
-/* How far the point at height z of the shaft goes. */
+/* How far the point at height z of the tool's axis goes. */
 static double way_of(const lar_tool_pose *from, const lar_tool_pose *to, double z) {
     double shaft[3] = {0, 0, z}, begin[3], end[3], square = 0;
     lar_turn(from->orientation, shaft, begin);
@@ -103,7 +103,8 @@ static double way_of(const lar_tool_pose *from, const lar_tool_pose *to, double 
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
                               lar_error *error) {
-    double tip = way_of(now, pose, 0), end = way_of(now, pose, tool->length);
+    double far = tool->shape == LAR_TOOL_GRASPER ? -tool->length : tool->length; /* jaws, shaft */
+    double tip = way_of(now, pose, 0), end = way_of(now, pose, far);
     double way = tip > end ? tip : end, most = 0.5 * tool->radius * (double)steps;
     if (way <= most) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
