@@ -11,21 +11,19 @@ all: setup
 	cmake --build --preset release -j $(JOBS)
 
 setup:
-	@tools/setup.sh build
+	@tools/setup.sh build web
 
+# Without a display the address is printed. DEMO_SECONDS=5 ends it by itself.
 demo: all
 	build/lariat demo-model out/demo
-	build/lariat run out/demo/uterus.yaml --out out/demo/results
 	@echo
-	@echo "See it move: open out/demo/results/uterus.pvd in ParaView, Apply, Filters > Common >"
-	@echo "    Warp By Vector, Apply, play. Without ParaView: out/demo/results/probes.csv."
-	@echo "Pull elsewhere: change out/demo/uterus.yaml (it is commented; make demo writes it anew), then"
-	@echo "    build/lariat run out/demo/uterus.yaml --out out/demo/results"
-	@echo "At the pace of the clock: build/lariat run out/demo/uterus.yaml --realtime"
-	@echo "What else there is: build/lariat --help. Your own mesh: README.md."
+	@echo "Take hold of the organ with the mouse and pull. Ctrl-C ends. What else there is:"
+	@echo "    build/lariat --help; your own mesh: README.md."
+	build/lariat view out/demo/uterus_live.yaml --save-folder out/demo/saved \
+	    $(if $(DISPLAY)$(WAYLAND_DISPLAY),--open) $(if $(DEMO_SECONDS),--seconds $(DEMO_SECONDS))
 
 check:
-	@tools/setup.sh build check
+	@tools/setup.sh build web check
 	@JOBS=$(JOBS) tools/check.sh
 
 check-long: setup
@@ -44,11 +42,11 @@ format:
 	git ls-files '*.c' '*.h' | xargs clang-format -i
 
 clean:
-	rm -rf build build-asan build-debug build-tsan build-coverage build-fuzz out
+	rm -rf build build-asan build-debug build-tsan build-coverage build-fuzz out web/dist web/node_modules
 
 help:
 	@echo "make          build the library and the command into build/"
-	@echo "make demo     build, write the demonstration organ, simulate it"
+	@echo "make demo     build, simulate the demonstration organ in real time, show it in the browser"
 	@echo "make check    every test, then the fast ones again under the sanitizers"
 	@echo "make check-long  what takes longer: every combination, ten million packets"
 	@echo "make fuzz     fuzz every reader, FUZZ_SECONDS=$(FUZZ_SECONDS) each"

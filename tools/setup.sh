@@ -2,15 +2,16 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [check] [fuzz]      default: build
+#   tools/setup.sh [build] [web] [check] [fuzz]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
+#   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2, the cross compiler and
 #           emulator for NEON
 #   fuzz    clang with libFuzzer
 #
-# What belongs to `check` and `fuzz` is optional: without it the tests that need it are left out,
-# and a sentence says so.
+# What belongs to `web`, `check` and `fuzz` is optional: without it the tests that need it are left
+# out, and a sentence says so.
 set -euo pipefail
 
 # One line each: package, then how to see the same thing when it came from somewhere else than
@@ -24,6 +25,13 @@ libyaml-dev       m:yaml-0.1
 libxml2-dev       m:libxml-2.0
 zlib1g-dev        m:zlib
 libcmocka-dev     m:cmocka"
+LWS_PACKAGES="
+libwebsockets-dev m:libwebsockets"
+NODE_PACKAGES="
+nodejs            c:node
+npm               c:npm"
+BROWSER_PACKAGES="
+chromium          c:chromium"
 CLANG_PACKAGES="
 clang             c:clang"
 METIS_PACKAGES="
@@ -147,6 +155,10 @@ want_clang() {
 for group in "$@"; do
     case $group in
     build) need "$BUILD_PACKAGES" ;;
+    web)
+        want "$LWS_PACKAGES" "lariat view is built without its server" || true
+        want "$NODE_PACKAGES" "the viewer's page is not built" || true
+        ;;
     check)
         want_clang "the sanitizers run with gcc instead of clang"
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
@@ -155,10 +167,11 @@ for group in "$@"; do
         want "$SDL_PACKAGES" "game controllers are neither built nor tested" || true
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
+        want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true
         ;;
     fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;
     *)
-        say "unknown group '$group'; use build, check or fuzz"
+        say "unknown group '$group'; use build, web, check or fuzz"
         exit 2
         ;;
     esac

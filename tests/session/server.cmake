@@ -1,7 +1,13 @@
 # The viewers' server; without libwebsockets only what does not need it.
 lar_test(session/test_server_message.c)
+lar_fuzz(viewer_message)
 if(LWS_FOUND)
   lar_test(session/test_server.c)
   lar_test(session/test_server_hostile.c)
   lar_test(session/test_server_refused.c)
+  lar_test(session/test_server_many.c slow)
 endif()
+add_test(NAME cli/view COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view.sh
+  $<TARGET_FILE:lariat> $<TARGET_FILE:json_check> ${CMAKE_CURRENT_BINARY_DIR}/cli-view
+  ${PROJECT_SOURCE_DIR})
+set_tests_properties(cli/view PROPERTIES LABELS fast TIMEOUT 300)

@@ -1,0 +1,89 @@
+#!/bin/sh
+# lariat view: an address, a report, free ports, signals; and what makes no sense.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
+scene=demo/uterus_live.yaml
+
+expect 2 "$LARIAT" view
+complains 'SCENE is missing'
+for wrong in '--port 65536' '--port x' '--pace -1' '--seconds 0' '--device='; do
+    # shellcheck disable=SC2086
+    expect 2 "$LARIAT" view $scene $wrong
+    silent
+done
+expect 1 "$LARIAT" view none.yaml
+complains 'none.yaml'
+
+if "$LARIAT" view $scene --port 0 --seconds 0.1 2>&1 | grep -q 'no server for viewers'; then
+    complains_about=$("$LARIAT" view $scene 2>&1)
+    case $complains_about in *libwebsockets-dev*) ;; *) fail "how to get it is not said" ;; esac
+    finish "lariat view: this build has no libwebsockets, and says how to get it"
+    exit 0
+fi
+
+# For people.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --save-folder "saved here/below"
+says '^http://127.0.0.1:[0-9]*/$'
+says '^real-time factor'
+says '^ticks '
+says '^state hash  *[0-9a-f]\{16\}$'
+[ -d "saved here/below" ] || fail "the folder for saved states was not made"
+
+# For machines.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --json --grid 2x1x1 --pace 0
+complains '^http://127.0.0.1:[0-9]*/$'
+has_keys title url state message steps time real_time_factor ticks deadline_misses slow_motion \
+    skipped viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
+[ "$(value_of grid)" = '"2x1x1"' ] || fail "the grid is $(value_of grid)"
+[ "$(value_of steps)" -gt 0 ] || fail "nothing was simulated"
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0
+[ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
+[ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
+
+# Every key is in the page.
+for key in $(grep -o '"[a-z0-9_]*":' out | tr -d '":' | sort -u); do
+    grep -q "\`$key\`" "$SOURCE/docs/cli.md" || fail "docs/cli.md lacks the key $key"
+done
+"$LARIAT" view --help | grep -o '^  --[a-z-]*' | while read -r option; do
+    grep -q -e "\`$option" "$SOURCE/docs/cli.md" || echo "$option"
+done >undocumented
+[ ! -s undocumented ] || fail "docs/cli.md lacks $(cat undocumented)"
+
+# A port that is taken: the next one. Ctrl-C: the report.
+"$LARIAT" view $scene --port 0 >first 2>first.err &
+first=$!
+for _ in $(seq 200); do
+    grep -q '^http' first && break
+    sleep 0.05
+done
+port=$(sed -n 's/^http:.*:\([0-9]*\)\/$/\1/p' first)
+[ -n "$port" ] || fail "no address was printed"
+expect 0 "$LARIAT" view $scene --port "$port" --seconds 0.2
+complains "port $port is taken"
+says "^http://127.0.0.1:"
+kill -INT $first
+wait $first
+status=$?
+[ $status -eq 0 ] || fail "Ctrl-C ends it with $status"
+grep -q '^state hash' first || fail "there is no report after Ctrl-C"
+
+# Others may come in with a token only.
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.2 --listen 0.0.0.0
+complains 'token'
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.2 --token short
+complains '8 to 128'
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.2 --token a-long-enough-one
+says '/#token=a-long-enough-one$'
+expect 1 "$LARIAT" view $scene --port 0 --viewer "$SCRATCH/none"
+complains "$SCRATCH/none"
+expect 2 "$LARIAT" view $scene --port 0 --device "nothing=script:x.csv"
+complains 'there is no such tool; there are: '
+expect 2 "$LARIAT" view $scene --port 0 --device probe
+complains 'TOOL=DEVICE'
+
+# What is recorded from the command line is there.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording
+[ -s way.recording ] || fail "nothing was recorded"
+
+finish "lariat view: address, report, ports, signals, refusals"
