@@ -23,8 +23,8 @@ export class Endoscope {
 
     reset(atOnce = false): void {
         this.wanted.target.copy(this.home.target);
-        this.wanted.azimuth = nearestTurn(-0.42, this.now.azimuth);
-        this.wanted.height = 0.3;
+        this.wanted.azimuth = nearestTurn(-0.15, this.now.azimuth);
+        this.wanted.height = 0.36;
         this.wanted.distance = this.fitting();
         if (atOnce) this.jump();
     }

@@ -33,7 +33,7 @@ export class ForceCard {
         const now = this.history.ago(0);
         const peak = this.history.peak();
         // The range follows the peak upwards at once; downwards only when it is far too large.
-        const wanted = Math.max(0.2, niceRange(peak * 1.02));
+        const wanted = Math.max(0.2, niceRange(peak * 0.99));
         if (wanted > this.range || wanted < this.range / 4) this.range = wanted;
         write(this.value, `${now.toFixed(2)} N`);
         write(this.rangeText, `${this.range} N`);

@@ -35,7 +35,7 @@ export const css = (c: Rgb): string => `rgb(${encode(c[0])} ${encode(c[1])} ${en
 const ORGANS: Rgb[] = [
     oklch(0.6, 0.135, 24),
     oklch(0.71, 0.09, 38),
-    oklch(0.84, 0.042, 78),
+    oklch(0.81, 0.05, 76),
     oklch(0.74, 0.035, 25),
     oklch(0.47, 0.075, 350),
     oklch(0.68, 0.085, 75),

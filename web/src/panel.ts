@@ -7,6 +7,13 @@ type Row = [name: string, value: (s: Status) => string, bad?: (s: Status) => boo
 const rate = (perSecond: number): string =>
     perSecond >= 9999.5 ? `${(perSecond / 1000).toFixed(1)} kHz` : `${perSecond.toFixed(0)} Hz`;
 
+/* Microseconds, with three digits. */
+function span(us: number | null): string {
+    if (us === null) return '–';
+    if (us >= 1000) return `${(us / 1000).toFixed(us >= 99950 ? 0 : 1)} ms`;
+    return `${us.toFixed(us >= 99.95 ? 0 : 1)} µs`;
+}
+
 export class Panel {
     pictureRate = 0;
     private tick = 0.001;
@@ -19,10 +26,10 @@ export class Panel {
         ['steps', (s) => String(s.step)],
         ['real-time factor', (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
         ['since the start', (s) => number(s.real_time_factor, 3)],
-        ['step, median', (s) => `${number(s.step_us.p50, 1)} µs`],
-        ['step, 99 %', (s) => `${number(s.step_us.p99, 1)} µs`],
-        ['step, longest', (s) => `${number(s.step_us.max, 0)} µs`],
-        ['answer, 99.9 %', (s) => `${number(s.tick_us.p999, 0)} µs`, (s) => this.late(s)],
+        ['step, median', (s) => span(s.step_us.p50)],
+        ['step, 99 %', (s) => span(s.step_us.p99)],
+        ['step, longest', (s) => span(s.step_us.max)],
+        ['answer, 99.9 %', (s) => span(s.tick_us.p999), (s) => this.late(s)],
         ['missed', (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
         ['engine', (s) => rate(s.engine_rate)],
         ['haptics', (s) => rate(s.haptic_rate)],

@@ -1,5 +1,6 @@
 /* Hard things in the light of the endoscope: instruments, arrows. Again only the angle between surface
- * and line of sight counts; bands of dark and bright stand for the reflections of polished steel. */
+ * and line of sight counts; polished steel mirrors a theatre
+ * that is not there. */
 import * as THREE from 'three';
 
 const VERTEX = /* glsl */ `
@@ -19,8 +20,11 @@ void main() {
     vec3 view = normalize(-vView);
     vec3 normal = normalize(vNormal);
     float cosine = clamp(dot(normal, view), 0.0, 1.0);
-    float band = 0.5 + 0.5 * sin(cosine * 9.0 + normal.y * 2.0);
-    float base = mix(0.25 + 0.75 * cosine, 0.12 + 0.55 * cosine * cosine + 0.22 * band, polish);
+    // What it would mirror in a theatre: dark below, a bright ceiling, one lamp aside.
+    vec3 mirror = reflect(-view, normal);
+    float room = 0.20 + 0.55 * smoothstep(-0.5, 0.9, mirror.y);
+    room += 0.55 * smoothstep(0.28, 0.0, abs(mirror.x - 0.45)) * smoothstep(-0.9, 0.3, mirror.y);
+    float base = mix(0.25 + 0.75 * cosine, room * (0.35 + 0.65 * cosine), polish);
     float glint = polish * pow(cosine, 60.0) * 0.7;
     vec3 light = colour * mix(base, 1.0, glow) + vec3(glint) + polish * 0.10 * pow(1.0 - cosine, 3.0);
     gl_FragColor = vec4(light, alpha);

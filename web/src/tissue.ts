@@ -108,7 +108,14 @@ void main() {
     float off = 1.0 - film;
     float wet = smoothstep(-0.5, 0.5, vGrain.x + (middle.w - 0.5) * 0.8);
     float sheen = 0.11 * exp(-off * 18.0);
-    float glint = (0.35 + 0.75 * wet) * smoothstep(0.0125, 0.0035, off);
+    float glint = (0.30 + 0.60 * wet) * smoothstep(0.0125, 0.0035, off);
+#ifdef FINE
+    // Drops and wrinkles of the film that stand up steeper.
+    vec3 drops = turn * (middle.xyz * 0.30 + fine.xyz * 0.36);
+    drops -= normal * dot(drops, normal);
+    float drop = 1.0 - clamp(dot(normalize(normal - drops), view), 0.0, 1.0);
+    glint += 0.42 * wet * smoothstep(0.012, 0.001, drop) * smoothstep(0.6, 0.8, smooth_);
+#endif
     float grazing = (1.0 - smooth_) * (1.0 - smooth_);
     vec3 shine = vec3(1.0, 0.97, 0.95) * (sheen + glint) * hollow;
     shine += vec3(0.13, 0.06, 0.05) * grazing * grazing * hollow;
