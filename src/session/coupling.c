@@ -41,6 +41,7 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
     /* Some room below what the engine refuses: the turn takes its part too. */
     double engine = REACH * tool->radius / limits->time_step;
     double speed = fmin(limits->tool_speed, 0.4 * engine), lever = fmax(tool->length, LEVER_LEAST);
+    double jaw = 0.5 * tool->length * tool->spread; /* way of a jaw's end from open to closed */
     double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
     *coupling = (lar_coupling){.shape = tool->shape,
                                .mass = MASS,
@@ -48,6 +49,7 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                                .damping = 2 * sqrt(STIFFNESS * MASS),
                                .speed = speed,
                                .turn = fmin(TURN_MOST, speed / lever),
+                               .squeeze = jaw > 0 ? speed / jaw : INFINITY,
                                .pull = pull,
                                .feel = fmin(pull, FEEL_MOST),
                                .drag = pull / speed,
@@ -141,7 +143,9 @@ void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_
     } else {
         pull_tool(coupling);
         turn_tool(coupling);
-        coupling->tool.opening = hand->opening;
+        double most = coupling->squeeze * coupling->seconds;
+        double change = hand->opening - coupling->tool.opening;
+        coupling->tool.opening += fmax(-most, fmin(most, change));
     }
     *tool = coupling->tool;
 }

@@ -47,6 +47,7 @@ typedef struct lar_coupling {
     lar_tool_shape shape;
     double mass, stiffness, damping; /* [kg] [N/m] [N s/m] */
     double speed, turn;              /* limits [m/s] [rad/s] */
+    double squeeze;                  /* limit of the opening's change [1/s] */
     double pull, feel;               /* limits of the spring and of what the hand feels [N] */
     double drag;                     /* of a tool whose spring is at its limit [N s/m] */
     double feel_torque;              /* [N m] */

@@ -334,6 +334,27 @@ static void test_turns_no_faster(void **state) {
     assert_true(fabs(2 * atan2(w.tool.orientation[2], w.tool.orientation[0]) - 1) < 1e-9);
 }
 
+/* The ends of jaws go no faster than tools may; they arrive exactly. */
+static void test_jaws_close_no_faster(void **state) {
+    (void)state;
+    lar_tool_info grasper = {.name = "grasper",
+                             .shape = LAR_TOOL_GRASPER,
+                             .radius = 0.0015,
+                             .length = 0.02,
+                             .spread = 0.8,
+                             .rest = {.orientation = {1}, .opening = 1}};
+    world w = start(&grasper, 0, 0);
+    w.hand.opening = 0;
+    double speed = 0;
+    for (int i = 0; i < 20; i++) {
+        double before = w.tool.opening;
+        tick(&w, 0, 0);
+        speed = fmax(speed, 0.5 * 0.02 * 0.8 * (before - w.tool.opening) / TICK);
+    }
+    assert_true(speed > 0.99 && speed < 1.01);
+    assert_true(w.tool.opening == 0);
+}
+
 static void test_reset_forgets(void **state) {
     (void)state;
     world w = start(&PROBE, 1000, 0.001);
@@ -361,6 +382,7 @@ int main(void) {
         cmocka_unit_test(test_tool_arrives_without_swinging),
         cmocka_unit_test(test_free_hand_is_put),
         cmocka_unit_test(test_turns_no_faster),
+        cmocka_unit_test(test_jaws_close_no_faster),
         cmocka_unit_test(test_reset_forgets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
