@@ -194,27 +194,30 @@ static void add_forces(lar_collide *collide, const lar_condition_context *contex
     collide->part_count++;
 }
 
+/* The groups that are due within the next part of the way that the list is good for. */
+static void look_ahead(lar_collide *collide) {
+    enum { PARTS = 16 };
+    collide->horizon = collide->travel + 0.5 * collide->list.skin / PARTS;
+    collide->near_count = 0;
+    for (int32_t g = 0; g < collide->list.group_count; g++)
+        if (collide->due[g] <= collide->horizon) collide->near[collide->near_count++] = g;
+}
+
 void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
     collide->part_count = 0;
     collide->info.touching = 0;
     collide->info.deepest = 0;
-    if (collide->travel < collide->least_due) return;
-    double least = INFINITY;
-    for (int32_t g = 0; g < collide->list.group_count; g++) {
-        if (collide->travel >= collide->due[g]) {
-            int32_t node = collide->list.group[g].node;
-            touching t;
-            if (contact(collide, state, g, &t)) {
-                add_forces(collide, context, state, node, &t);
-                /* Each node is counted once, by who adds its force. */
-                bool own = !collide->adds_node || collide->adds_node[node];
-                collide->info.touching += own;
-                if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
-            }
-        }
-        least = fmin(least, collide->due[g]);
+    if (!(collide->travel < collide->horizon)) look_ahead(collide);
+    for (int32_t i = 0; i < collide->near_count; i++) {
+        int32_t g = collide->near[i], node = collide->list.group[g].node;
+        touching t;
+        if (collide->travel < collide->due[g] || !contact(collide, state, g, &t)) continue;
+        add_forces(collide, context, state, node, &t);
+        /* Each node is counted once, by who adds its force. */
+        bool own = !collide->adds_node || collide->adds_node[node];
+        collide->info.touching += own;
+        if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
     }
-    collide->least_due = least;
 }
 
 void lar_collide_half_work(const lar_collide *collide, const lar_condition_context *context,
@@ -231,17 +234,20 @@ void lar_collide_half_work(const lar_collide *collide, const lar_condition_conte
 }
 
 void lar_collide_restart(lar_collide *collide) {
-    collide->travel = collide->least_due = 0;
+    collide->travel = collide->horizon = 0;
     for (int32_t g = 0; g < collide->list.group_count; g++) {
-        collide->due[g] = 0;
+        /* Along one axis, by both. */
+        double due = 0.5 * (double)collide->list.group[g].gap;
+        collide->due[g] = fmax(due, 0);
         collide->last[g] = 0;
     }
 }
 
 /* ---- motion and searches, of the whole model ------------------------------------------------ */
 
-/* Steps that a search should last. */
-enum { SEARCH_STEPS = 200 };
+/* Steps that a search should last, and those that the next one may take within the last fifth of
+ * the skin. */
+enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
 
 /* Fetches the places; returns how far the farthest has moved since the search. */
 static double fetch_places(lar_collide *collide, const lar_state *state) {
@@ -257,31 +263,63 @@ static double fetch_places(lar_collide *collide, const lar_state *state) {
     return most;
 }
 
-static void search(lar_collide *collide, double way) {
+static double skin_for(const lar_collide_motion *motion, double way) {
+    return fmin(fmax(2 * way * SEARCH_STEPS, motion->skin_least), motion->skin_most);
+}
+
+/* A search is done; `moved` says what has moved since its places. */
+static void take_list(lar_collide *collide, double moved) {
     lar_collide_motion *motion = collide->motion;
-    double skin = 2 * way * SEARCH_STEPS;
-    skin = fmin(fmax(skin, motion->skin_least), motion->skin_most);
-    size_t bytes = (size_t)collide->surface->node_count * sizeof *motion->x;
-    if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x, skin))
-        collide->crowded = true;
-    memcpy(motion->searched, motion->x, bytes);
-    collide->moved = 0;
     collide->list = motion->search->list;
+    memcpy(motion->searched, motion->x, (size_t)collide->surface->node_count * sizeof *motion->x);
     collide->info.searches++;
     collide->info.boxed += (uint64_t)collide->list.face_count;
     lar_collide_restart(collide);
+    collide->moved = collide->travel = moved;
+    motion->searching = false;
 }
 
-/* What has really moved. `way` is what a step takes at present. */
+static void search_now(lar_collide *collide, const lar_state *state, double way) {
+    lar_collide_motion *motion = collide->motion;
+    fetch_places(collide, state);
+    if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x,
+                                skin_for(motion, way)))
+        collide->crowded = true;
+    take_list(collide, 0);
+    motion->valid = true;
+}
+
+/* What has really moved? */
 static void look(lar_collide *collide, const lar_state *state, double way) {
     lar_collide_motion *motion = collide->motion;
     double moved = fetch_places(collide, state);
-    bool enough = moved < 0.25 * collide->list.skin && moved + 16 * way < 0.5 * collide->list.skin;
-    if (!motion->valid || motion->always || !enough)
-        search(collide, way);
-    else
+    if (moved < 0.15 * collide->list.skin) {
         collide->moved = moved;
-    motion->valid = true;
+        return;
+    }
+    lar_contact_search_begin(motion->search, (const double(*)[3])motion->x, skin_for(motion, way));
+    motion->since = 0;
+    motion->searching = true;
+}
+
+/* The list is good for this step, whatever happens. `way` is what a step takes at present. */
+static void keep_list(lar_collide *collide, const lar_state *state, double way) {
+    lar_collide_motion *motion = collide->motion;
+    if (!motion->valid || motion->always) {
+        search_now(collide, state, way);
+        return;
+    }
+    if (!motion->searching && collide->moved > 0.3 * collide->list.skin) look(collide, state, way);
+    bool last = !(collide->moved < 0.5 * collide->list.skin);
+    if (motion->searching) {
+        int32_t nodes = collide->surface->node_count / PART_STEPS + 1;
+        lar_contact_progress progress =
+            lar_contact_search_go_on(motion->search, last ? INT32_MAX : nodes);
+        if (progress == LAR_SEARCH_DONE) take_list(collide, motion->since);
+        if (progress == LAR_SEARCH_FULL) search_now(collide, state, way);
+    }
+    /* It has become so fast that even the new list is old. */
+    if (!(collide->moved < 0.5 * collide->list.skin)) search_now(collide, state, way);
 }
 
 void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
@@ -289,8 +327,7 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
     if (!collide->surface) return;
     lar_collide_motion *motion = collide->motion;
     if (state->step != motion->next) motion->valid = false;
-    if (!motion->valid || motion->always || !(collide->moved < 0.5 * collide->list.skin))
-        look(collide, state, context->time_step * state->fastest);
+    keep_list(collide, state, context->time_step * state->fastest);
     motion->next = state->step + 1;
     lar_collide_add(collide, context, state);
     collide->info.possible += collide->surface->possible;
@@ -300,8 +337,10 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
 void lar_collide_moved(lar_collide *collide, double way) {
     collide->moved += way;
     collide->way = way;
+    if (!collide->motion) return;
     /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
-    if (collide->motion) collide->travel += way;
+    collide->travel += way;
+    collide->motion->since += way;
 }
 
 void lar_collide_forget(lar_collide *collide) {
@@ -320,9 +359,10 @@ static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error
     motion->searched = lar_calloc(nodes, sizeof *motion->searched);
     collide->due = lar_calloc(groups, sizeof *collide->due);
     collide->last = lar_calloc(groups, sizeof *collide->last);
+    collide->near = lar_calloc(groups, sizeof *collide->near);
     collide->part = lar_calloc(groups, sizeof *collide->part);
     if (!value || !motion->x || !motion->searched || !collide->due || !collide->last ||
-        !collide->part)
+        !collide->near || !collide->part)
         return lar_fail_memory(error, groups * sizeof *collide->part, "contact of bodies");
     for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
     return LAR_OK;
@@ -361,6 +401,7 @@ void lar_collide_destroy(lar_collide *collide) {
     lar_collide_motion *motion = collide->motion;
     free(collide->due);
     free(collide->last);
+    free(collide->near);
     free(collide->part);
     if (motion) {
         free((int32_t *)collide->view.value);

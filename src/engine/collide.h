@@ -16,8 +16,9 @@
  * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
  * up, step by step, how far any node has moved along any axis at most. A group whose faces are all
  * farther away than their reach, by a `gap`, is due when travel has grown by gap / (2 sqrt 3): two
- * nodes, three axes. The list is good until travel since its search is half its skin. Then the real
- * motion is looked at, and the search is made anew if it is true that something has moved.
+ * nodes, three axes. Groups due beyond a horizon are not even compared until travel gets there. The
+ * list is good until travel since its search is half its skin. Then the real motion is looked at,
+ * and the search is made anew if it is true that something has moved.
  *
  * Several threads and processors: contact_exchange.h.
  */
@@ -45,11 +46,14 @@ typedef struct lar_collide_part {
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_collide_motion {
     lar_contact_search *search;
-    double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
-    double skin_least, skin_most;   /* [m] */
-    uint64_t next;                  /* the step that follows the last one */
-    bool valid;                     /* the list belongs to the state */
-    bool always;                    /* search in every step */
+    double (*x)[3];               /* [contact nodes] places at the search under way [m] */
+    double (*searched)[3];        /* and at the last one */
+    double since;                 /* what has moved since the search under way began [m] */
+    double skin_least, skin_most; /* [m] */
+    uint64_t next;                /* the step that follows the last one */
+    bool searching;               /* a search is under way */
+    bool valid;                   /* the list belongs to the state */
+    bool always;                  /* search in every step */
 } lar_collide_motion;
 
 typedef struct lar_collide {
@@ -60,7 +64,9 @@ typedef struct lar_collide {
     const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
     double *due;                            /* [list.group_room] travel at which to look */
     int32_t *last;                          /* [list.group_room] the closest face then, an entry */
-    double travel, least_due;               /* [m] */
+    int32_t *near;                          /* [list.group_room] the groups that are due before */
+    int32_t near_count;                     /* travel is at */
+    double travel, horizon;                 /* [m] */
     double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
     double way;   /* the same in the last step [m] */
     int32_t part_count;

@@ -160,7 +160,7 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
                                        &collide->surface->face[face[i]]);
         if (!takes) continue;
         own->group[own->group_count++] =
-            (lar_contact_group){group->node, own->face_count, group->count};
+            (lar_contact_group){group->node, own->face_count, group->count, group->gap};
         memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);
         own->face_count += group->count;
     }
@@ -199,11 +199,12 @@ static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_p
                              .adds_corner = adds_corner,
                              .due = lar_calloc(groups, sizeof *collide->due),
                              .last = lar_calloc(groups, sizeof *collide->last),
+                             .near = lar_calloc(groups, sizeof *collide->near),
                              .part = lar_calloc(groups, sizeof *collide->part)};
     collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
     collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
-    if (!adds_node || !adds_corner || !collide->due || !collide->last || !collide->part ||
-        !collide->list.group || !collide->list.face)
+    if (!adds_node || !adds_corner || !collide->due || !collide->last || !collide->near ||
+        !collide->part || !collide->list.group || !collide->list.face)
         return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
                                "contact of bodies");
     for (size_t n = 0; n < nodes; n++) adds_node[n] = board->loader[n] == thread;

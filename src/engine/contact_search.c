@@ -6,7 +6,7 @@
 
 #include "mechanics/face_contact.h"
 
-enum { PATCH_FACES = 4, DEPTH = 64 };
+enum { PATCH_FACES = 8, DEPTH = 64 };
 
 /* ---- the tree ------------------------------------------------------------------------------- */
 
@@ -65,26 +65,39 @@ static lar_status build_tree(lar_contact_search *search, lar_error *error) {
     size_t faces = (size_t)s->face_count;
     double(*middle)[3] = lar_calloc(faces, sizeof *middle);
     search->order = lar_calloc(faces, sizeof *search->order);
-    search->patch = lar_calloc(faces + 1, sizeof *search->patch);
-    search->patch_box = lar_calloc(faces + 1, sizeof *search->patch_box);
+    search->patch = lar_calloc(2 * faces + 1, sizeof *search->patch);
+    search->patch_box = lar_calloc(2 * faces + 1, sizeof *search->patch_box);
     search->face_box = lar_calloc(faces, sizeof *search->face_box);
-    bool fits = middle && search->order && search->patch && search->patch_box && search->face_box;
+    search->apart = lar_calloc(faces, sizeof *search->apart);
+    search->place = lar_calloc(faces, sizeof *search->place);
+    bool fits = middle && search->order && search->patch && search->patch_box && search->face_box &&
+                search->apart;
     for (int32_t f = 0; f < s->face_count && fits; f++) {
         search->order[f] = f;
         for (int a = 0; a < 4; a++)
             for (int i = 0; i < 3; i++) middle[f][i] += 0.25 * s->rest[s->face[f].corner[a]][i];
     }
     if (fits) divide(search, 0, s->face_count, (const double(*)[3])middle);
+    for (int32_t i = 0; i < s->face_count && fits; i++) search->place[search->order[i]] = i;
     free(middle);
     return fits ? LAR_OK : lar_fail_memory(error, 140 * faces, "the boxes of surfaces");
 }
 
 /* ---- boxes ---------------------------------------------------------------------------------- */
 
+/* fmin and fmax without a call; what is not a number is passed over as by them. */
+static inline double lesser(double a, double b) {
+    return b < a ? b : a;
+}
+
+static inline double greater(double a, double b) {
+    return b > a ? b : a;
+}
+
 static void join_box(lar_box *box, const lar_box *other) {
     for (int i = 0; i < 3; i++) {
-        box->lower[i] = fmin(box->lower[i], other->lower[i]);
-        box->upper[i] = fmax(box->upper[i], other->upper[i]);
+        box->lower[i] = lesser(box->lower[i], other->lower[i]);
+        box->upper[i] = greater(box->upper[i], other->upper[i]);
     }
 }
 
@@ -97,8 +110,8 @@ static lar_box box_of(const lar_contact_surface *s, const lar_contact_face *face
     double reach = s->body[face->body].reach[s->body_count > 1];
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) {
-            box.lower[i] = fmin(box.lower[i], x[face->corner[a]][i] - reach - skin);
-            box.upper[i] = fmax(box.upper[i], x[face->corner[a]][i] + reach + skin);
+            box.lower[i] = lesser(box.lower[i], x[face->corner[a]][i] - reach - skin);
+            box.upper[i] = greater(box.upper[i], x[face->corner[a]][i] + reach + skin);
         }
     return box;
 }
@@ -106,8 +119,8 @@ static lar_box box_of(const lar_contact_surface *s, const lar_contact_face *face
 /* Halves stand behind what they are halves of. */
 static void fit_boxes(lar_contact_search *search, const double (*x)[3], double skin) {
     const lar_contact_surface *s = &search->surface;
-    for (int32_t f = 0; f < s->face_count; f++)
-        search->face_box[f] = box_of(s, &s->face[f], x, skin);
+    for (int32_t i = 0; i < s->face_count; i++)
+        search->face_box[i] = box_of(s, &s->face[search->order[i]], x, skin);
     for (int32_t p = search->patch_count - 1; p >= 0; p--) {
         const lar_patch *patch = &search->patch[p];
         lar_box *box = &search->patch_box[p];
@@ -118,13 +131,14 @@ static void fit_boxes(lar_contact_search *search, const double (*x)[3], double s
             continue;
         }
         for (int32_t i = 0; i < patch->count; i++)
-            join_box(box, &search->face_box[search->order[patch->first + i]]);
+            join_box(box, &search->face_box[patch->first + i]);
     }
 }
 
+/* Without a branch between the comparisons: nobody can guess how they come out. */
 static inline bool holds(const lar_box *box, const double x[3]) {
-    return x[0] >= box->lower[0] && x[0] <= box->upper[0] && x[1] >= box->lower[1] &&
-           x[1] <= box->upper[1] && x[2] >= box->lower[2] && x[2] <= box->upper[2];
+    return ((x[0] >= box->lower[0]) & (x[0] <= box->upper[0]) & (x[1] >= box->lower[1]) &
+            (x[1] <= box->upper[1]) & (x[2] >= box->lower[2]) & (x[2] <= box->upper[2])) != 0;
 }
 
 /* ---- the list ------------------------------------------------------------------------------- */
@@ -139,6 +153,13 @@ static void insert(const lar_contact_face *face, int32_t *list, int32_t count, i
         list[at] = before;
     }
     list[at] = f;
+}
+
+/* Marks the faces that a node never meets: every node is in the boxes of its neighbours. */
+static void mark_apart(lar_contact_search *search, int32_t node) {
+    const lar_contact_surface *s = &search->surface;
+    for (int64_t i = s->apart_first[node]; i < s->apart_first[node + 1]; i++)
+        search->apart[s->apart[i]] = node + 1;
 }
 
 /* The faces whose boxes hold a node, behind those in the list; -1: there is no room. */
@@ -157,10 +178,10 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
             stack[depth++] = p + 1;
             continue;
         }
-        for (int32_t i = 0; i < patch->count; i++) {
-            int32_t f = search->order[patch->first + i];
-            if (!(passes & (s->face[f].active | s->face[f].mute)) ||
-                !holds(&search->face_box[f], x) || lar_contact_apart(s, node, f))
+        for (int32_t i = patch->first; i < patch->first + patch->count; i++) {
+            if (!holds(&search->face_box[i], x)) continue;
+            int32_t f = search->order[i];
+            if (search->apart[f] == node + 1 || !(passes & (s->face[f].active | s->face[f].mute)))
                 continue;
             if (count == room) return -1;
             insert(s->face, face, count++, f);
@@ -169,59 +190,86 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
     return count;
 }
 
+/* How far a node is outside a face's box without the skin, along some axis. */
+static double outside(const lar_box *box, double skin, const double x[3]) {
+    double most = -INFINITY;
+    for (int i = 0; i < 3; i++)
+        most = greater(most, greater(box->lower[i] + skin - x[i], x[i] - (box->upper[i] - skin)));
+    return most;
+}
+
 /* Cuts the faces of a node into groups of one body each. A group of mute faces pushes nobody. */
-static bool add_groups(lar_contact_search *search, int32_t node, int32_t count) {
+static bool add_groups(lar_contact_search *search, int32_t node, const double x[3], int32_t count) {
     const lar_contact_surface *s = &search->surface;
-    lar_contact_list *list = &search->list;
+    lar_contact_list *list = &search->next;
     int32_t *face = list->face + list->face_count, kept = 0;
     for (int32_t from = 0, to; from < count; from = to) {
         bool active = false;
-        for (to = from; to < count && s->face[face[to]].body == s->face[face[from]].body; to++)
+        double gap = INFINITY;
+        for (to = from; to < count && s->face[face[to]].body == s->face[face[from]].body; to++) {
             active = active || lar_contact_active(&s->node[node], &s->face[face[to]]);
+            gap = lesser(gap, outside(&search->face_box[search->place[face[to]]], list->skin, x));
+        }
         if (!active) continue;
         if (list->group_count == list->group_room || to - from > LAR_GROUP_FACES_MOST) return false;
         list->group[list->group_count++] =
-            (lar_contact_group){node, list->face_count + kept, to - from};
+            (lar_contact_group){node, list->face_count + kept, to - from, (float)(0.999 * gap)};
         for (int32_t i = from; i < to; i++) face[kept++] = face[i];
     }
     list->face_count += kept;
     return true;
 }
 
-static bool fill_list(lar_contact_search *search, const double (*x)[3], double skin) {
-    const lar_contact_surface *s = &search->surface;
-    lar_contact_list *list = &search->list;
+void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], double skin) {
+    lar_contact_list *list = &search->next;
     list->group_count = list->face_count = 0;
     list->skin = skin;
+    search->x = x;
+    search->at = 0;
     fit_boxes(search, x, skin);
-    for (int32_t n = 0; n < s->node_count; n++) {
+}
+
+lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes) {
+    const lar_contact_surface *s = &search->surface;
+    lar_contact_list *list = &search->next;
+    int32_t end = nodes < s->node_count - search->at ? search->at + nodes : s->node_count;
+    for (int32_t n = search->at; n < end; n++) {
         if (!s->node[n].passes) continue;
-        int32_t count = find_faces(search, n, x[n], list->face + list->face_count,
+        mark_apart(search, n);
+        int32_t count = find_faces(search, n, search->x[n], list->face + list->face_count,
                                    list->face_room - list->face_count);
-        if (count < 0 || !add_groups(search, n, count)) return false;
+        if (count < 0 || !add_groups(search, n, search->x[n], count)) return LAR_SEARCH_FULL;
     }
-    return true;
+    search->at = end;
+    if (end < s->node_count) return LAR_SEARCH_UNDER_WAY;
+    lar_contact_list done = search->next;
+    search->next = search->list;
+    search->list = done;
+    return LAR_SEARCH_DONE;
 }
 
 bool lar_contact_search_run(lar_contact_search *search, const double (*x)[3], double skin) {
     enum { HALVINGS = 6 };
-    for (int i = 0; i < HALVINGS; i++, skin /= 2)
-        if (fill_list(search, x, skin)) return true;
-    return fill_list(search, x, 0);
+    for (int i = 0; i <= HALVINGS; i++, skin /= 2) {
+        lar_contact_search_begin(search, x, i < HALVINGS ? skin : 0);
+        if (lar_contact_search_go_on(search, INT32_MAX) == LAR_SEARCH_DONE) return true;
+    }
+    return false;
 }
 
 /* ---- creation ------------------------------------------------------------------------------- */
 
-static lar_status allocate_list(lar_contact_search *search, lar_error *error) {
-    lar_contact_list *list = &search->list;
-    int64_t pairs = (int64_t)search->surface.slave_count * LAR_PAIRS_PER_NODE;
-    int64_t groups = (int64_t)search->surface.slave_count * (LAR_PAIRS_PER_NODE / 8);
+static lar_status allocate_list(const lar_contact_surface *surface, lar_contact_list *list,
+                                lar_error *error) {
+    int64_t pairs = (int64_t)surface->slave_count * LAR_PAIRS_PER_NODE;
+    int64_t groups = (int64_t)surface->slave_count * (LAR_PAIRS_PER_NODE / 8);
     list->face_room = pairs < INT32_MAX ? (int32_t)pairs : INT32_MAX;
     list->group_room = groups < INT32_MAX ? (int32_t)groups : INT32_MAX;
     list->face = lar_calloc((size_t)list->face_room, sizeof *list->face);
     list->group = lar_calloc((size_t)list->group_room, sizeof *list->group);
     if (list->face && list->group) return LAR_OK;
-    return lar_fail_memory(error, 4 * (size_t)pairs + 12 * (size_t)groups, "pairs in contact");
+    return lar_fail_memory(error, 4 * (size_t)pairs + sizeof *list->group * (size_t)groups,
+                           "pairs in contact");
 }
 
 /* The node lies in the layer below the face although nothing has moved. */
@@ -270,7 +318,8 @@ lar_status lar_contact_search_create(const lar_model *model, const double *mass,
     lar_status status = lar_contact_surface_create(model, mass, local, &search->surface, error);
     if (status || search->surface.node_count == 0) return status;
     status = build_tree(search, error);
-    if (!status) status = allocate_list(search, error);
+    if (!status) status = allocate_list(&search->surface, &search->list, error);
+    if (!status) status = allocate_list(&search->surface, &search->next, error);
     if (!status) status = keep_shape(search, error);
     if (status) lar_contact_search_clear(search);
     return status;
@@ -282,7 +331,11 @@ void lar_contact_search_clear(lar_contact_search *search) {
     free(search->patch_box);
     free(search->face_box);
     free(search->order);
+    free(search->apart);
+    free(search->place);
     free(search->list.group);
     free(search->list.face);
+    free(search->next.group);
+    free(search->next.face);
     *search = (lar_contact_search){0};
 }

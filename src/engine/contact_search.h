@@ -10,6 +10,9 @@
  * It misses nothing as long as no contact node has moved by more than half the skin along any axis
  * since the search: a node and a face come closer by twice what each of them moves at most.
  *
+ * A search of an organ takes as long as some twenty steps. So that nobody waits for it, it can be
+ * made a few nodes at a time, for the places at its beginning, while the last list is still good.
+ *
  * What is found depends on the skin, what touches does not: a list with more pairs than another
  * gives the same contacts (collide.h). A search asks for no memory: lists have room for
  * LAR_PAIRS_PER_NODE pairs per node; where that is not enough, it is made again with a thinner
@@ -26,6 +29,8 @@ enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MOST = 128 };
 typedef struct lar_contact_group {
     int32_t node; /* contact node */
     int32_t first, count;
+    float gap; /* by which the node is outside the boxes of all faces, grown by their reach only,
+                  along some axis; at most 0 when it is inside one [m] */
 } lar_contact_group;
 
 typedef struct lar_contact_list {
@@ -51,9 +56,14 @@ typedef struct lar_contact_search {
     int32_t patch_count;
     lar_patch *patch;      /* [patch_count] */
     lar_box *patch_box;    /* [patch_count] */
-    lar_box *face_box;     /* [face_count] */
     int32_t *order;        /* [face_count] faces, those of a patch together */
+    int32_t *place;        /* [face_count] where a face stands in `order` */
+    lar_box *face_box;     /* [face_count] in that order */
+    int32_t *apart;        /* [face_count] the last node, plus 1, that never meets it */
     lar_contact_list list; /* of the last search */
+    lar_contact_list next; /* of the one under way */
+    const double (*x)[3];  /* its places, not owned */
+    int32_t at;            /* the node that comes next */
 } lar_contact_search;
 
 /* Without contacts between bodies surface.node_count is 0. */
@@ -66,5 +76,14 @@ void lar_contact_search_clear(lar_contact_search *search); /* idempotent */
  * list.skin says what it became. False when even without a skin there are too many pairs: the
  * surface is crushed beyond use, or not finite. */
 bool lar_contact_search_run(lar_contact_search *search, const double (*x)[3], double skin);
+
+/* The same in parts: x must stay as it is meanwhile, and `list` the last one. */
+void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], double skin);
+typedef enum lar_contact_progress {
+    LAR_SEARCH_UNDER_WAY,
+    LAR_SEARCH_DONE, /* `list` is the new one, and the memory of the old one is used next */
+    LAR_SEARCH_FULL  /* too many pairs: take lar_contact_search_run */
+} lar_contact_progress;
+lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes);
 
 #endif

@@ -37,7 +37,7 @@ static outcome run(const lar_model *model, lar_options options, uint64_t steps) 
         advance(s, STRIDE);
         lar_simulation_contact(s, &all.info);
         all.touched += all.info.touching;
-        if (i % (10 * STRIDE) == 0) all.hash = lar_hash_word(all.hash, lar_simulation_hash(s));
+        if (i % (4 * STRIDE) == 0) all.hash = lar_hash_word(all.hash, lar_simulation_hash(s));
     }
     all.hash = lar_hash_word(all.hash, lar_simulation_hash(s));
     lar_energy e;
@@ -64,34 +64,38 @@ static void compare(const lar_model *model, const outcome *one, lar_options opti
     if (options.search_always)
         assert_int_equal(other.info.searches, steps);
     else
-        assert_true(other.info.searches > 0 && other.info.searches < steps / 8);
+        assert_true(other.info.searches > 0 && other.info.searches < steps / 4);
 }
+
+static bool everywhere; /* the slow run */
 
 static void bits_do_not_depend_on_the_division(void **unused) {
     (void)unused;
-    enum { STEPS = 500 };
     static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "3x1x1", "1x1x2"};
     static const char *const schemes[] = {"all", "local", "one", "two"};
+    const uint64_t steps = everywhere ? 800 : 240;
     for (int self = 0; self < 2; self++) {
         lar_model *model = sliding_model(self != 0);
-        outcome one = run(model, lar_options_default(), STEPS);
-        print_message("%d nodes touched\n", (int)one.touched);
+        outcome one = run(model, lar_options_default(), steps);
         assert_true(one.touched > 50);
         for (int g = 0; g < 5; g++)
-            for (int threads = 1; threads <= 2; threads++) {
-                lar_options options = lar_options_default();
-                options.grid = grids[g];
-                options.threads = threads;
-                options.scheme = schemes[(g + threads + self) % 4];
-                compare(model, &one, options, STEPS);
-            }
+            for (int threads = 1; threads <= 2; threads++)
+                for (int scheme = 0; scheme < 4; scheme++) {
+                    if (!everywhere && (threads != 1 + (g + self) % 2 || scheme != (g + self) % 4))
+                        continue;
+                    lar_options options = lar_options_default();
+                    options.grid = grids[g];
+                    options.threads = threads;
+                    options.scheme = schemes[scheme];
+                    compare(model, &one, options, steps);
+                }
         lar_model_destroy(model);
     }
 }
 
 static void nor_on_delays_nor_on_searches(void **unused) {
     (void)unused;
-    enum { STEPS = 200 };
+    enum { STEPS = 120 };
     lar_model *model = sliding_model(true);
     outcome one = run(model, lar_options_default(), STEPS);
     lar_options options = lar_options_default();
@@ -151,7 +155,8 @@ static void going_back_repeats_every_bit(void **unused) {
     finish(s, model);
 }
 
-int main(void) {
+int main(int count, char **argument) {
+    everywhere = count > 1 && strcmp(argument[1], "everywhere") == 0;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bits_do_not_depend_on_the_division),
         cmocka_unit_test(nor_on_delays_nor_on_searches),

@@ -1,0 +1,201 @@
+/* The search over boxes finds what comparing everything with everything finds, keeps doing so while
+ * things move by as much as its skin allows, and leaves neighbours and the body's own shape alone.
+ */
+#include "engine/collide_test.h"
+#include "mechanics/face_contact.h"
+
+static const brick one_brick = {{5, 4, 3}, 0.01, 0.1, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+static const brick other_brick = {{4, 4, 2}, 0.008, 0.1, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+
+static lar_contact_search search;
+
+static void create(lar_model *model) {
+    lar_error error;
+    if (lar_model_check(model, &error)) fail_msg("%s", error.message);
+    size_t nodes = (size_t)model->mesh.node_count;
+    double *mass = lar_calloc(nodes, sizeof *mass);
+    int32_t *local = lar_calloc(nodes, sizeof *local);
+    for (size_t n = 0; n < nodes; n++) {
+        local[n] = (int32_t)n;
+        mass[n] = 1;
+    }
+    if (lar_contact_search_create(model, mass, local, &search, &error))
+        fail_msg("%s", error.message);
+    free(mass);
+    free(local);
+}
+
+static double distance(const double (*x)[3], int32_t node, int32_t face) {
+    double corner[4][3];
+    for (int a = 0; a < 4; a++)
+        memcpy(corner[a], x[search.surface.face[face].corner[a]], sizeof corner[a]);
+    return lar_face_distance(x[node], (const double(*)[3])corner);
+}
+
+static bool listed(int32_t node, int32_t face) {
+    const lar_contact_list *list = &search.list;
+    for (int32_t g = 0; g < list->group_count; g++)
+        for (int32_t i = 0; list->group[g].node == node && i < list->group[g].count; i++)
+            if (list->face[list->group[g].first + i] == face) return true;
+    return false;
+}
+
+/* Pairs that belong together and are nearer than the reach, all of them listed. */
+static int32_t check_complete(const double (*x)[3]) {
+    const lar_contact_surface *s = &search.surface;
+    int32_t near = 0;
+    for (int32_t n = 0; n < s->node_count; n++)
+        for (int32_t f = 0; f < s->face_count; f++) {
+            if (!lar_contact_active(&s->node[n], &s->face[f]) || lar_contact_apart(s, n, f) ||
+                distance(x, n, f) > lar_contact_reach(s, &s->node[n], &s->face[f]))
+                continue;
+            near++;
+            assert_true(listed(n, f));
+        }
+    return near;
+}
+
+static double (*places(void))[3] {
+    size_t nodes = (size_t)search.surface.node_count;
+    double(*x)[3] = lar_calloc(nodes, sizeof *x);
+    memcpy(x, search.surface.rest, nodes * sizeof *x);
+    return x;
+}
+
+static void nothing_is_missed(void **unused) {
+    (void)unused;
+    for (int self = 0; self < 2; self++) {
+        lar_model *model = two_bricks(&one_brick, &other_brick, 0.003, false);
+        if (self) {
+            model->contact_count = 0;
+            touch_self(model);
+        }
+        create(model);
+        const double skin = 0.004;
+        double(*x)[3] = places(), (*moved)[3] = places();
+        /* The upper body sinks into the lower one, which bulges. */
+        for (int32_t n = 0; n < search.surface.node_count; n++) {
+            if (search.surface.node[n].body > 0) x[n][2] -= 0.006;
+            for (int i = 0; i < 3; i++) x[n][i] += 0.002 * noise((uint32_t)(3 * n + i));
+        }
+        assert_true(lar_contact_search_run(&search, (const double(*)[3])x, skin));
+        assert_true(search.list.skin == skin);
+        assert_true(check_complete((const double(*)[3])x) > 100);
+        for (int trial = 0; trial < 20; trial++) {
+            for (int32_t n = 0; n < search.surface.node_count; n++)
+                for (int i = 0; i < 3; i++)
+                    moved[n][i] =
+                        x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? 0.5 * skin
+                                                                                   : -0.5 * skin);
+            assert_true(check_complete((const double(*)[3])moved) > 50);
+        }
+        free(x);
+        free(moved);
+        lar_contact_search_clear(&search);
+        lar_model_destroy(model);
+    }
+}
+
+/* In parts it is the same list, made of the places at its beginning. */
+static void in_parts_it_is_the_same(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&one_brick, &other_brick, 0.001, false);
+    touch_self(model);
+    create(model);
+    double(*x)[3] = places();
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.003));
+    int32_t groups = search.list.group_count, faces = search.list.face_count;
+    int32_t *face = lar_calloc((size_t)faces, sizeof *face);
+    memcpy(face, search.list.face, (size_t)faces * sizeof *face);
+    lar_contact_search_begin(&search, (const double(*)[3])x, 0.003);
+    int parts = 1;
+    lar_contact_progress progress;
+    while ((progress = lar_contact_search_go_on(&search, 7)) == LAR_SEARCH_UNDER_WAY) {
+        assert_int_equal(search.list.group_count, groups); /* the last one, until it is done */
+        parts++;
+    }
+    assert_int_equal(progress, LAR_SEARCH_DONE);
+    assert_true(parts > 10);
+    assert_int_equal(search.list.group_count, groups);
+    assert_int_equal(search.list.face_count, faces);
+    assert_memory_equal(search.list.face, face, (size_t)faces * sizeof *face);
+    free(face);
+    free(x);
+    lar_contact_search_clear(&search);
+    lar_model_destroy(model);
+}
+
+/* A gap that a group states is one: whoever moves by less than half of it stays out of reach. */
+static void gaps_are_no_more_than_that(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&one_brick, &other_brick, 0.012, false);
+    create(model);
+    double(*x)[3] = places();
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.02));
+    const lar_contact_surface *s = &search.surface;
+    int32_t outside = 0;
+    for (int32_t g = 0; g < search.list.group_count; g++) {
+        const lar_contact_group *group = &search.list.group[g];
+        for (int32_t i = group->first; i < group->first + group->count; i++) {
+            int32_t f = search.list.face[i];
+            double reach = lar_contact_reach(s, &s->node[group->node], &s->face[f]);
+            assert_true(distance((const double(*)[3])x, group->node, f) >=
+                        (double)group->gap + reach - 1e-12);
+        }
+        outside += group->gap > 0;
+    }
+    assert_true(outside > 10);
+    free(x);
+    lar_contact_search_clear(&search);
+    lar_model_destroy(model);
+}
+
+/* A wedge: its two sides are nearer to each other at the thin end than the layer below them. */
+static void the_shape_of_a_body_is_no_contact(void **unused) {
+    (void)unused;
+    brick b = {{8, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+    lar_model *model = brick_model(&b);
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        double *x = model->mesh.position[n];
+        x[2] = (x[2] - 0.01) * (0.02 + pow(x[0] / 0.08, 3));
+    }
+    touch_self(model);
+    create(model);
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])search.surface.rest, 0));
+    for (int32_t g = 0; g < search.list.group_count; g++) {
+        const lar_contact_group *group = &search.list.group[g];
+        for (int32_t i = group->first; i < group->first + group->count; i++) {
+            const lar_contact_face *f = &search.surface.face[search.list.face[i]];
+            lar_face_point point;
+            double corner[4][3];
+            for (int a = 0; a < 4; a++)
+                memcpy(corner[a], search.surface.rest[f->corner[a]], sizeof corner[a]);
+            lar_face_closest(search.surface.rest[group->node], (const double(*)[3])corner, 1e-11,
+                             &point);
+            assert_true(point.distance > search.surface.body[0].reach[0] || point.height > -1e-9);
+        }
+    }
+    lar_contact_search_clear(&search);
+    lar_model_destroy(model);
+}
+
+static void without_contact_there_is_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = brick_model(&one_brick);
+    create(model);
+    assert_int_equal(search.surface.node_count, 0);
+    assert_null(search.patch);
+    lar_contact_search_clear(&search);
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_missed),
+        cmocka_unit_test(in_parts_it_is_the_same),
+        cmocka_unit_test(gaps_are_no_more_than_that),
+        cmocka_unit_test(the_shape_of_a_body_is_no_contact),
+        cmocka_unit_test(without_contact_there_is_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
