@@ -27,15 +27,6 @@ struct lar_device {
     lar_trocar_angles angles; /* of the last pose */
 };
 
-int lar_device_kind_count(void) {
-    return KINDS;
-}
-
-void lar_device_kind_get(int index, lar_device_kind *kind) {
-    const lar_device_backend *b = backends[index];
-    *kind = (lar_device_kind){.form = b->form, .summary = b->summary, .missing = b->missing};
-}
-
 /* ---- what the spec says -----------------------------------------------------------------------
  */
 

@@ -53,14 +53,4 @@ void lar_device_reset(lar_device *device);
 /* Belongs to the thread that polls, between two polls. `name` lives as long as the device. */
 void lar_device_status_get(const lar_device *device, lar_device_status *status);
 
-/* Kinds of devices: index 0..count-1. `missing` is NULL, or says how to get it. */
-typedef struct lar_device_kind {
-    const char *form;    /* "udp:HOST:PORT" */
-    const char *summary; /* "a device on the network" */
-    const char *missing;
-} lar_device_kind;
-
-int lar_device_kind_count(void);
-void lar_device_kind_get(int index, lar_device_kind *kind);
-
 #endif

@@ -80,15 +80,6 @@ static void test_unknown_devices_are_refused(void **state) {
     assert_refused("udp:0.0.0.0:0", LAR_ERROR_ARGUMENT, "token=");
 }
 
-static void test_kinds_are_listed(void **state) {
-    (void)state;
-    lar_device_kind kind;
-    assert_int_equal(lar_device_kind_count(), 3);
-    lar_device_kind_get(1, &kind);
-    assert_string_equal(kind.form, "udp:HOST:PORT");
-    assert_null(kind.missing);
-}
-
 /* ---- scripts ------------------------------------------------------------------------------ */
 
 static void test_script_is_interpolated(void **state) {
@@ -269,7 +260,6 @@ static void test_device_pivots(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_unknown_devices_are_refused),
-        cmocka_unit_test(test_kinds_are_listed),
         cmocka_unit_test(test_script_is_interpolated),
         cmocka_unit_test(test_script_of_positions_only),
         cmocka_unit_test(test_bad_scripts_are_refused),
