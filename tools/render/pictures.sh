@@ -72,4 +72,17 @@ done
 render --out "$images/cantilever.png" $frames --together --size 900 560 \
     --color von_mises --legend 'von Mises\nstress [Pa]' --range 0 240 \
     --crease 60 --azimuth 14 --elevation 10 --zoom 1.3
+
+# Contact: the scenes of examples/scenes, at rest, when they meet, and at the end.
+for scene in blocks strip; do
+    "$lariat" run "$here/../../examples/scenes/$scene.yaml" --out "$work/$scene" >"$work/log"
+done
+render --out "$images/contact_blocks.png" "$work/blocks/blocks_000000.vtu" \
+    "$work/blocks/blocks_000006.vtu" "$work/blocks/blocks_000100.vtu" --size 1200 400 \
+    --color von_mises --range 0 800 --legend 'von Mises\nstress [Pa]' --crease 60 \
+    --azimuth 25 --elevation 12 --zoom 1.05 --caption "at rest" --caption "0.06 s" --caption "1 s"
+render --out "$images/contact_strip.png" "$work/strip/strip_000000.vtu" \
+    "$work/strip/strip_000015.vtu" "$work/strip/strip_000100.vtu" --size 1200 400 \
+    --color von_mises --range 0 600 --legend 'von Mises\nstress [Pa]' --crease 60 \
+    --azimuth 15 --elevation 10 --zoom 1.05 --caption "at rest" --caption "0.15 s" --caption "1 s"
 ls -l "$images"
