@@ -4,6 +4,7 @@
     xvfb-run -a tools/render/render.py --out uterus.png results/uterus_000000.vtu \\
         results/uterus_000030.vtu --caption "at rest" --caption "pulled" --color parts
     xvfb-run -a tools/render/render.py --out stress.png --color von_mises results/uterus_000030.vtu
+    xvfb-run -a tools/render/render.py --film --out film results/uterus.pvd
 
 Needs VTK for the system's Python, and a display; without one, a virtual display does:
 
@@ -14,6 +15,9 @@ Nothing else in Lariat needs either. pictures.sh beside this file makes the pict
 import argparse
 import math
 import os
+import shutil
+import subprocess
+import xml.etree.ElementTree
 
 import numpy
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
@@ -295,8 +299,14 @@ def aim(renderer, bounds, options):
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description="Draws result files of Lariat as a picture.")
-    parser.add_argument("frames", nargs="+", metavar="FRAME.vtu", help="one panel each")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
+    parser.add_argument("frames", nargs="+", metavar="FRAME.vtu",
+                        help="one panel each; a .pvd stands for all of its frames")
+    parser.add_argument("--out", required=True, metavar="FILE.png", help="with --film: a folder")
+    parser.add_argument("--film", action="store_true",
+                        help="a picture of each frame, numbered, all seen alike; and a video where "
+                        "ffmpeg is installed")
+    parser.add_argument("--rate", type=float, default=25.0,
+                        help="pictures per second of the video")
     parser.add_argument("--color", default="parts",
                         help="parts (cell tags), processor (a file of lariat partition --vtu), "
                         "or the name of an array, such as von_mises")
@@ -340,52 +350,114 @@ def draw(renderer, width, height):
     return image
 
 
-def picture(options):
-    width, height = options.size
-    grids = [read_grid(path, options.scale, options.color, options.apart) for path in options.frames]
-    surfaces = [surface_of(grid, options.crease) for grid in grids]
-    all_bounds = [s.GetBounds() for s in surfaces]
-    bounds = [(min if i % 2 == 0 else max)(b[i] for b in all_bounds) for i in range(6)]
+def frames_of(paths):
+    """The frames, with those of a series in the place of its .pvd."""
+    frames = []
+    for path in paths:
+        if not path.endswith(".pvd"):
+            frames.append(path)
+            continue
+        sets = xml.etree.ElementTree.parse(path).getroot().iter("DataSet")
+        frames += [os.path.join(os.path.dirname(path), s.get("file")) for s in sets]
+    return frames
+
+
+def surface_from(path, options):
+    return surface_of(read_grid(path, options.scale, options.color, options.apart), options.crease)
+
+
+def measure(surface, options):
+    """Corners of the body, and the range of its colours."""
+    if options.color in ("parts", "processor"):
+        return surface.GetBounds(), (0, 0)
+    values = vtk_to_numpy(surface.GetPointData().GetArray(options.color))
+    return surface.GetBounds(), (values.min(), values.max())
+
+
+def common(measures, options):
+    """Bounds and colours that fit all of them."""
+    bounds = [(min if i % 2 == 0 else max)(m[0][i] for m in measures) for i in range(6)]
     for i in (4, 5):
         bounds[i] -= options.shift * (bounds[5] - bounds[4])
-    table = None
-    if options.color not in ("parts", "processor"):
-        arrays = [vtk_to_numpy(s.GetPointData().GetArray(options.color)) for s in surfaces]
-        low, high = options.range or (min(a.min() for a in arrays), max(a.max() for a in arrays))
-        table = lookup_table(low, high)
-    panels = [surfaces] if options.together else [[s] for s in surfaces]
+    if options.color in ("parts", "processor"):
+        return bounds, None
+    low, high = options.range or (min(m[1][0] for m in measures), max(m[1][1] for m in measures))
+    return bounds, lookup_table(low, high)
+
+
+def draw_panel(number, surfaces, last, width, view, options):
+    """Panel `number` with these surfaces; the last one has the legend."""
+    bounds, table = view
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    for surface in surfaces:
+        renderer.AddActor(body_actor(surface, options, table))
+        if options.edges > 0:
+            renderer.AddActor(edge_actor(surface, options.edges, 0.9 * FINE))
+    for arrow in options.arrow:
+        if int(arrow[0]) == number:
+            renderer.AddActor(arrow_actor(arrow[1:4], arrow[4:7]))
+    if number < len(options.caption):
+        renderer.AddActor2D(text_actor(options.caption[number], 20 * FINE, 0.5, 0.05))
+    if table and last:
+        renderer.AddActor2D(legend_actor(table, options.legend or options.color, 16 * FINE))
+    add_lights(renderer)
+    add_occlusion(renderer, bounds)
+    aim(renderer, bounds, options)
+    return draw(renderer, FINE * width, FINE * options.size[1])
+
+
+def write_png(path, panels, options):
     join = vtkImageAppend()
     join.SetAppendAxis(0)
-    for i, panel in enumerate(panels):
-        renderer = vtkRenderer()
-        renderer.SetBackground(1, 1, 1)
-        for surface in panel:
-            renderer.AddActor(body_actor(surface, options, table))
-            if options.edges > 0:
-                renderer.AddActor(edge_actor(surface, options.edges, 0.9 * FINE))
-        for arrow in options.arrow:
-            if int(arrow[0]) == i:
-                renderer.AddActor(arrow_actor(arrow[1:4], arrow[4:7]))
-        if i < len(options.caption):
-            renderer.AddActor2D(text_actor(options.caption[i], 20 * FINE, 0.5, 0.05))
-        if table and i == len(panels) - 1:
-            renderer.AddActor2D(legend_actor(table, options.legend or options.color, 16 * FINE))
-        add_lights(renderer)
-        add_occlusion(renderer, bounds)
-        aim(renderer, bounds, options)
-        join.AddInputData(draw(renderer, FINE * width // len(panels), FINE * height))
+    for panel in panels:
+        join.AddInputData(panel)
     small = vtkImageResize()
     small.SetInputConnection(join.GetOutputPort())
-    small.SetOutputDimensions(width, height, 1)
+    small.SetOutputDimensions(*options.size, 1)
     small.InterpolateOn()
     writer = vtkPNGWriter()
     writer.SetCompressionLevel(9)
-    writer.SetFileName(options.out)
+    writer.SetFileName(path)
     writer.SetInputConnection(small.GetOutputPort())
     writer.Write()
+
+
+def picture(options):
+    surfaces = [surface_from(path, options) for path in frames_of(options.frames)]
+    view = common([measure(surface, options) for surface in surfaces], options)
+    groups = [surfaces] if options.together else [[surface] for surface in surfaces]
+    width = options.size[0] // len(groups)
+    panels = [draw_panel(i, group, i == len(groups) - 1, width, view, options)
+              for i, group in enumerate(groups)]
+    write_png(options.out, panels, options)
+
+
+def film(options):
+    """A picture of each frame, all seen alike: read twice, so that memory holds one at a time."""
+    frames = frames_of(options.frames)
+    view = common([measure(surface_from(path, options), options) for path in frames], options)
+    os.makedirs(options.out, exist_ok=True)
+    for i, path in enumerate(frames):
+        panel = draw_panel(0, [surface_from(path, options)], True, options.size[0], view, options)
+        write_png(os.path.join(options.out, f"frame_{i:06d}.png"), [panel], options)
+    print(f"{options.out}: {len(frames)} pictures, frame_000000.png and so on")
+    if not shutil.which("ffmpeg"):
+        print("no ffmpeg here, so no video; with it: ffmpeg -framerate "
+              f"{options.rate:g} -i {options.out}/frame_%06d.png -pix_fmt yuv420p film.mp4")
+        return
+    video = os.path.join(options.out, "film.mp4")
+    subprocess.run(["ffmpeg", "-loglevel", "error", "-y", "-framerate", f"{options.rate:g}", "-i",
+                    os.path.join(options.out, "frame_%06d.png"), "-pix_fmt", "yuv420p", video],
+                   check=True)
+    print(f"{video}: {len(frames) / options.rate:.1f} s")
 
 
 if __name__ == "__main__":
     if not os.environ.get("DISPLAY"):
         raise SystemExit("render.py: there is no display; put xvfb-run -a in front of the command")
-    picture(parse_arguments())
+    arguments = parse_arguments()
+    if arguments.film:
+        film(arguments)
+    else:
+        picture(arguments)
