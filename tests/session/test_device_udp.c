@@ -210,6 +210,8 @@ static void test_reset_is_smooth(void **state) {
     rig r = open_rig("udp:127.0.0.1:0");
     int s = reach(&r);
     lar_force_packet answer;
+    r.pose.position[0] = 0.2; /* where the tool was when the device came */
+    tick(&r);
     for (uint32_t i = 1; i <= 350; i++) {
         send_position(s, i, 0.05, NULL);
         tick(&r);
