@@ -1,0 +1,71 @@
+#!/bin/sh
+# lariat replay: a session again on other grids and by processes, as frames; and what is refused.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
+scene=demo/uterus_live.yaml
+
+expect 2 "$LARIAT" replay
+complains 'RECORDING SCENE is missing'
+expect 2 "$LARIAT" replay some.recording
+expect 2 "$LARIAT" replay some.recording $scene more
+expect 2 "$LARIAT" replay some.recording $scene --every 0.1
+complains '--out'
+expect 1 "$LARIAT" replay none.recording $scene
+complains 'none.recording'
+expect 1 "$LARIAT" replay $scene $scene
+complains 'is no recording'
+silent
+
+# Every option is in the page.
+"$LARIAT" replay --help | grep -o '^  --[a-z-]*' | while read -r option; do
+    grep -q -e "\`$option" "$SOURCE/docs/cli.md" || echo "$option"
+done >undocumented
+[ ! -s undocumented ] || fail "docs/cli.md lacks $(cat undocumented)"
+
+# The script leads the probe onto the organ.
+cat >probe.csv <<'CSV'
+time,x,y,z
+0,0,0,0.12
+0.1,0,0,0.07
+CSV
+if "$LARIAT" view $scene --port 0 --seconds 0.1 2>&1 | grep -q 'no server for viewers'; then
+    finish "lariat replay: nothing to play, this build has no libwebsockets for lariat view"
+    exit 0
+fi
+expect 0 "$LARIAT" view $scene --port 0 --seconds 1 --pace 0.2 --record one.recording \
+    --device probe=script:probe.csv --json
+hash=$(value_of state_hash)
+
+# The same on one processor, on several, and between processes.
+expect 0 "$LARIAT" replay one.recording $scene
+says 'hashes are equal'
+for divided in '' '--grid 2x1x1 --threads 2' '--grid 1x2x1 --comm shm'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" replay one.recording $scene --json $divided
+    has_keys recording title steps time_step hashes equal state_hash frames interrupted wall_time
+    [ "$(value_of equal)" = true ] || fail "not equal"
+    [ "$(value_of state_hash)" = "$hash" ] || fail "the last hash differs: $divided"
+    [ "$(value_of hashes)" -gt 1 ] || fail "nothing was compared"
+done
+for key in $(grep -o '"[a-z0-9_]*":' out | tr -d '":' | sort -u); do
+    grep -q "\`$key\`" "$SOURCE/docs/cli.md" || fail "docs/cli.md lacks the key $key"
+done
+
+# Recorded by processes, played by one.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 1 --pace 0.2 --record two.recording \
+    --device probe=script:probe.csv --grid 2x1x1 --comm shm --json
+hash=$(value_of state_hash)
+expect 0 "$LARIAT" replay two.recording $scene --json --out frames --every 0.01
+[ "$(value_of state_hash)" = "$hash" ] || fail "recorded by processes, the last hash differs"
+[ "$(value_of frames)" -gt 1 ] || fail "no frames"
+[ -s frames/uterus_live.pvd ] && [ -s frames/uterus_live_000001.vtu ] || fail "no series of frames"
+
+# Another model, and a file that was cut or altered.
+expect 1 "$LARIAT" replay one.recording demo/uterus.yaml
+complains 'one.recording'
+head -c 20000 one.recording >cut.recording
+expect 1 "$LARIAT" replay cut.recording $scene --json
+complains 'cut off'
+silent
+finish "lariat replay: equal on every grid, and by processes"
