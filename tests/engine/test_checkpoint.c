@@ -279,12 +279,13 @@ static impact straight_impact(const lar_model *model) {
     return w;
 }
 
-/* Also in the step that the state is of, where nothing else tells that it is another one. */
-static void take_up_impact(lar_simulation *simulation, const impact *w) {
+/* From near by and, with `far`, from a state in which other faces are near each other. Also in the
+ * step that the state is of, where nothing else tells that it is another one. */
+static void take_up_impact(lar_simulation *simulation, const impact *w, bool far) {
     lar_error error;
     lar_tool_pose aside = {{1, 1, 1}, {1, 0, 0, 0}, 1};
-    for (int i = 1; i >= 0; i--) {
-        advance(simulation, i ? 31 : 600); /* far away, or near by */
+    for (int i = 1; i >= !far; i--) {
+        advance(simulation, i ? 31 : 600);
         if (i == 1) reset(simulation);
         if (i == 1) advance(simulation, 30);
         if (lar_simulation_tool_move(simulation, 0, &aside, 5, &error))
@@ -309,7 +310,7 @@ static void bodies_in_contact_are_taken_up_in_the_middle(void **unused) {
     impact w = straight_impact(model);
     for (int grid = 0; grid < GRIDS; grid++) {
         lar_simulation *simulation = start_with(model, setting(grid));
-        take_up_impact(simulation, &w);
+        take_up_impact(simulation, &w, grid > 1);
         lar_simulation_destroy(simulation);
     }
     for (int i = 0; i < 2; i++) {
@@ -317,7 +318,7 @@ static void bodies_in_contact_are_taken_up_in_the_middle(void **unused) {
         options.comm = i ? "shm" : "tcp";
         fleet f;
         start_fleet(&f, model, options, i ? 4 : 2);
-        take_up_impact(f.zero, &w);
+        take_up_impact(f.zero, &w, false);
         end_fleet(&f);
     }
     lar_model_destroy(model);
