@@ -6,6 +6,9 @@
 
 #include "mechanics/face_contact.h"
 
+/* How much nearer a node and a face come when all nodes move by 1 along every axis. */
+static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
+
 /* ---- one group ------------------------------------------------------------------------------ */
 
 typedef struct touching {
@@ -36,59 +39,63 @@ static void corners_of(const lar_collide *collide, const lar_state *state, int32
         place_of(collide, state, collide->surface->face[face].corner[a], x[a], v ? v[a] : NULL);
 }
 
-/* Not farther than this is the face: a ball around its middle holds it. */
+/* The face is at least so far away: as far as the box around it. */
 static double nearest_possible(const double x[3], const double corner[4][3]) {
-    double middle[3], radius = 0, square = 0;
-    for (int i = 0; i < 3; i++)
-        middle[i] = 0.25 * ((corner[0][i] + corner[1][i]) + (corner[2][i] + corner[3][i]));
-    for (int a = 0; a < 4; a++) {
-        double r = 0;
-        for (int i = 0; i < 3; i++) r += (corner[a][i] - middle[i]) * (corner[a][i] - middle[i]);
-        radius = fmax(radius, r);
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double low = corner[0][i], high = low;
+        for (int a = 1; a < 4; a++) {
+            low = corner[a][i] < low ? corner[a][i] : low;
+            high = corner[a][i] > high ? corner[a][i] : high;
+        }
+        double away = x[i] < low ? low - x[i] : x[i] > high ? x[i] - high : 0;
+        square += away * away;
     }
-    for (int i = 0; i < 3; i++) square += (x[i] - middle[i]) * (x[i] - middle[i]);
-    return sqrt(square) - sqrt(radius);
+    return sqrt(square);
 }
 
-/* Distances of a group's faces, INFINITY for those that cannot be the closest one. */
+/* Distances of a group's faces: where one need not be known, at least so much. */
 typedef struct survey {
     double reach; /* of the faces for the node [m] */
     double distance[LAR_GROUP_FACES_MOST];
-    double least; /* of those within reach */
+    double least; /* of those within reach; INFINITY: none is */
     double gap;   /* by which all faces are out of reach, at most 0 when one is not [m] */
 } survey;
 
 static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
                         double *distance, survey *s) {
-    const lar_contact_face *face = &collide->surface->face[f];
-    double corner[4][3], tie = LAR_FACE_TIE * face->size;
+    double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
     corners_of(collide, state, f, corner, NULL);
-    double nearest = nearest_possible(x, corner);
-    *distance = INFINITY;
-    if (nearest > s->least + tie || nearest - s->reach > collide->list.skin) {
-        s->gap = fmin(s->gap, nearest - s->reach);
-        return;
+    *distance = nearest_possible(x, (const double(*)[3])corner);
+    if (*distance <= s->least + tie && *distance - s->reach <= collide->list.skin) {
+        collide->info.tested++;
+        *distance = lar_face_distance(x, (const double(*)[3])corner);
+        if (*distance <= s->reach && *distance < s->least) s->least = *distance;
     }
-    collide->info.tested++;
-    double d = lar_face_distance(x, corner);
-    s->gap = fmin(s->gap, d - s->reach);
-    if (!(d <= s->reach)) return;
-    *distance = d;
-    s->least = fmin(s->least, d);
+    if (*distance - s->reach < s->gap) s->gap = *distance - s->reach;
 }
 
-/* The one that was closest the last time goes first: most others then need no more than a look. */
+/* The one that was closest the last time goes first: most others then need no more than a look, and
+ * those that are farther away by some margin not even that, until travel has used it up: both
+ * distances change by twice what each node moves. */
 static void survey_group(lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
                          survey *s) {
     const lar_contact_group *group = &collide->list.group[g];
     const int32_t *face = collide->list.face + group->first;
+    double *away = collide->away + group->first;
     int32_t first = collide->last[g];
     s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
                                  &collide->surface->face[face[0]]);
     s->least = s->gap = INFINITY;
     survey_face(collide, state, x, face[first], &s->distance[first], s);
-    for (int32_t i = 0; i < group->count; i++)
-        if (i != first) survey_face(collide, state, x, face[i], &s->distance[i], s);
+    for (int32_t i = 0; i < group->count; i++) {
+        if (i == first) continue;
+        s->distance[i] = INFINITY;
+        if (collide->travel >= away[i]) survey_face(collide, state, x, face[i], &s->distance[i], s);
+    }
+    for (int32_t i = 0; i < group->count && s->least < INFINITY; i++)
+        if (s->distance[i] < INFINITY)
+            away[i] = collide->travel + 0.999 * (s->distance[i] - s->least) / (2 * APPROACH);
 }
 
 /* The closest face of a group, an entry of it. */
@@ -100,7 +107,7 @@ static int32_t choose_face(lar_collide *collide, const lar_state *state, int32_t
         int32_t f = collide->list.face[group->first + i];
         double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
         lar_face_point other;
-        if (!(s->distance[i] <= s->least + tie)) continue;
+        if (!(s->distance[i] <= s->least + tie) || s->distance[i] > s->reach) continue;
         corners_of(collide, state, f, corner, NULL);
         lar_face_closest(x, corner, tie, &other);
         if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
@@ -135,7 +142,6 @@ static bool push(const lar_collide *collide, const lar_state *state, int32_t nod
 
 /* Contact of group g; sets when it is due again. */
 static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
-    static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
     const lar_contact_group *group = &collide->list.group[g];
     double x[3];
     survey s;
@@ -240,6 +246,9 @@ void lar_collide_restart(lar_collide *collide) {
         double due = 0.5 * (double)collide->list.group[g].gap;
         collide->due[g] = fmax(due, 0);
         collide->last[g] = 0;
+    }
+    for (int32_t i = 0; i < collide->list.face_count; i++) {
+        collide->away[i] = 0;
     }
 }
 
@@ -353,6 +362,7 @@ static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error
     lar_collide_motion *motion = collide->motion;
     const lar_contact_surface *surface = &motion->search->surface;
     size_t nodes = (size_t)surface->node_count, groups = (size_t)motion->search->list.group_room;
+    size_t pairs = (size_t)motion->search->list.face_room;
     int32_t *value = lar_calloc(nodes, sizeof *value);
     collide->view.value = value;
     motion->x = lar_calloc(nodes, sizeof *motion->x);
@@ -360,9 +370,10 @@ static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error
     collide->due = lar_calloc(groups, sizeof *collide->due);
     collide->last = lar_calloc(groups, sizeof *collide->last);
     collide->near = lar_calloc(groups, sizeof *collide->near);
+    collide->away = lar_calloc(pairs, sizeof *collide->away);
     collide->part = lar_calloc(groups, sizeof *collide->part);
     if (!value || !motion->x || !motion->searched || !collide->due || !collide->last ||
-        !collide->near || !collide->part)
+        !collide->near || !collide->away || !collide->part)
         return lar_fail_memory(error, groups * sizeof *collide->part, "contact of bodies");
     for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
     return LAR_OK;
@@ -402,6 +413,7 @@ void lar_collide_destroy(lar_collide *collide) {
     free(collide->due);
     free(collide->last);
     free(collide->near);
+    free(collide->away);
     free(collide->part);
     if (motion) {
         free((int32_t *)collide->view.value);

@@ -64,6 +64,8 @@ typedef struct lar_collide {
     const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
     double *due;                            /* [list.group_room] travel at which to look */
     int32_t *last;                          /* [list.group_room] the closest face then, an entry */
+    double *away;                           /* [list.face_room] travel until which the face cannot
+                                               be the closest of its group */
     int32_t *near;                          /* [list.group_room] the groups that are due before */
     int32_t near_count;                     /* travel is at */
     double travel, horizon;                 /* [m] */

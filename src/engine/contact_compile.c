@@ -200,11 +200,12 @@ static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_p
                              .due = lar_calloc(groups, sizeof *collide->due),
                              .last = lar_calloc(groups, sizeof *collide->last),
                              .near = lar_calloc(groups, sizeof *collide->near),
+                             .away = lar_calloc(pairs, sizeof *collide->away),
                              .part = lar_calloc(groups, sizeof *collide->part)};
     collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
     collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
     if (!adds_node || !adds_corner || !collide->due || !collide->last || !collide->near ||
-        !collide->part || !collide->list.group || !collide->list.face)
+        !collide->away || !collide->part || !collide->list.group || !collide->list.face)
         return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
                                "contact of bodies");
     for (size_t n = 0; n < nodes; n++) adds_node[n] = board->loader[n] == thread;
