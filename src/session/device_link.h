@@ -11,6 +11,8 @@
  * After a silence, and at the beginning, the hand is somewhere else than the tool: the pose is led
  * from where the tool is to where the hand is within the same 300 ms, so that nothing jumps.
  *
+ * An engine that was held up for longer than 20 ms has been silent itself, and comes back likewise.
+ *
  * Time is CLOCK_MONOTONIC in ns, as a number that the caller gives: no clock, no socket, no memory
  * in here, so that a test and the fuzzer can play everything that a network does.
  */

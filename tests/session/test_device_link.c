@@ -223,6 +223,27 @@ static void test_silence_fades(void **state) {
     assert_int_equal(link.timeouts, 1);
 }
 
+/* An engine that was held up comes back as after a silence: no blow for where the hand is by now.
+ */
+static void test_engine_held_up(void **state) {
+    (void)state;
+    lar_link link;
+    lar_link_create(&link, NULL, &ORIGIN);
+    for (uint32_t i = 0; i < 400; i++) {
+        take(&link, &HE, i + 1, NULL, 0.1, (1000 + i) * MS);
+        lar_link_advance(&link, false, (1000 + i) * MS);
+    }
+    assert_true(link.strength == 1);
+    link.tool = link.pose;
+    for (uint32_t i = 400; i < 490; i++) take(&link, &HE, i + 1, NULL, 0.15, 1490 * MS);
+    assert_true(lar_link_advance(&link, false, 1490 * MS));
+    assert_true(link.strength < 0.3);
+    assert_true(link.pose.position[0] < 0.13);
+    take(&link, &HE, 491, NULL, 0.15, 1491 * MS);
+    assert_true(lar_link_advance(&link, false, 1491 * MS));
+    assert_true(link.strength < 0.4);
+}
+
 static void test_pause_fades(void **state) {
     (void)state;
     lar_link link;
@@ -261,7 +282,7 @@ int main(void) {
         cmocka_unit_test(test_what_is_no_packet),      cmocka_unit_test(test_old_packets_are_late),
         cmocka_unit_test(test_first_sender_owns),      cmocka_unit_test(test_token_is_asked_for),
         cmocka_unit_test(test_silence_fades),          cmocka_unit_test(test_pause_fades),
-        cmocka_unit_test(test_button_closes),
+        cmocka_unit_test(test_button_closes),          cmocka_unit_test(test_engine_held_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
