@@ -68,8 +68,10 @@ export class Trouble {
             button.onclick = way ? () => way.do() : null;
             if (way) write(button, way.text);
         });
+        const before = this.panel.hidden;
         this.panel.hidden = false;
         this.picture.classList.add('gone');
+        if (before && ways.length) this.buttons[0]!.focus({ preventScroll: true });
     }
 
     hide(): void {

@@ -98,7 +98,7 @@ test('frames are asked for one at a time, and never too many messages are sent',
     server.state.mute = false;
     await v.close();
     const w = await openPage(browser, server.url);
-    await drag(w.page, 500, 320, 60, -40, 40);
+    await drag(w.page, 500, 320, 60, -40, 15);
     await w.page.mouse.up();
     await w.close();
     assert.deepEqual(server.faults, []);

@@ -11,14 +11,13 @@ const model = demo();
 const engine = await view(model.scene, '--port', '0', '--save-folder', model.saved);
 const browser = await openBrowser({ viewport: { width: 1600, height: 1000 } });
 const { page, get } = await openPage(browser, `${engine.url}#quality=fine`);
-// Nearer; and a look around, so that the hints are done with.
+// A look around, so that the hints are done with.
 await page.mouse.move(300, 300);
 await page.mouse.down();
 await page.mouse.move(294, 302, { steps: 2 });
 await page.mouse.up();
-await page.mouse.wheel(0, -60);
 await page.waitForTimeout(1500);
-const [x, y] = [800, 290];
+const [x, y] = [800, 300];
 await page.mouse.move(x, y);
 await page.mouse.down();
 // Out, back a little, and further out, so that the graph has something to tell.
