@@ -41,6 +41,20 @@ static void write_energy(json_writer *json, const lar_simulation *simulation) {
     json_number(json, "hourglass", energy.hourglass);
     json_number(json, "external", energy.external);
     json_number(json, "damping", energy.damping);
+    json_number(json, "contact", energy.contact);
+    json_close(json);
+}
+
+static void write_contact(json_writer *json, const lar_simulation *simulation) {
+    lar_contact_info info;
+    lar_simulation_contact(simulation, &info);
+    json_open(json, "contact", '{');
+    json_integer(json, "touching", info.touching);
+    json_number(json, "deepest", info.deepest);
+    json_integer(json, "possible", (int64_t)info.possible);
+    json_integer(json, "boxed", (int64_t)info.boxed);
+    json_integer(json, "tested", (int64_t)info.tested);
+    json_integer(json, "searches", (int64_t)info.searches);
     json_close(json);
 }
 
@@ -70,6 +84,7 @@ void run_report_json(const run_report *report, FILE *out) {
     json_boolean(&json, "realtime", report->clock->paced);
     json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
+    write_contact(&json, simulation);
     json_text(&json, "state_hash", hash);
     json_boolean(&json, "verify", report->verify);
     json_integer(&json, "frames", report->frames);
@@ -89,12 +104,26 @@ static void print_division(const lar_parallel *parallel, FILE *out) {
             local ? parallel->channels : "", parallel->comm);
 }
 
+/* Nothing where nothing came close. */
+static void print_contact(const lar_simulation *simulation, FILE *out) {
+    lar_contact_info info;
+    lar_simulation_contact(simulation, &info);
+    if (info.tested == 0) return;
+    fprintf(out,
+            "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
+            " searches, %.2g %% of all pairs tested\n",
+            "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
+            100 * (double)info.tested / (double)info.possible);
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
-    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g; external %.4g\n",
-            "energy [J]", energy.kinetic, energy.strain, energy.hourglass, energy.damping,
-            energy.external);
+    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g", "energy [J]",
+            energy.kinetic, energy.strain, energy.hourglass, energy.damping);
+    if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
+    fprintf(out, "; external %.4g\n", energy.external);
+    print_contact(report->simulation, out);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
 }
 
