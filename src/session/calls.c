@@ -1,5 +1,7 @@
 /* What is asked of a session, from any thread. */
 
+#include <stdio.h>
+
 #include "engine/checkpoint.h"
 #include "session/session.h"
 
@@ -105,6 +107,7 @@ lar_status lar_session_record(lar_session *session, const char *path, lar_error 
             (lar_request){.kind = LAR_REQUEST_RECORD, .recorder = recorder, .answer = &answer},
             error);
     lar_status closed = lar_recorder_close(answer.recorder, status ? NULL : error);
+    if (status && recorder) remove(path); /* there is nothing in it */
     return status ? status : closed;
 }
 

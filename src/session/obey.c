@@ -24,7 +24,7 @@ void lar_session_note_hash(lar_session *session) {
                                             .hash = lar_simulation_hash(session->simulation)});
 }
 
-/* A run that broke is not brought to its last step when it is played: it would break again. */
+/* A run that broke has no hash there: when it is played it breaks in the same step. */
 void lar_session_note_end(lar_session *session) {
     if (!session->recorder) return;
     bool broken = session->status.state == LAR_SESSION_STOPPED;

@@ -40,6 +40,15 @@ TEST_UNUSED static lar_model *hanging_block(void) {
     return model;
 }
 
+/* The same, torn apart by a force that sets in at step 200. */
+TEST_UNUSED static lar_model *torn_block(void) {
+    static const double points[3][2] = {{0, 0}, {0.02, 0}, {0.021, 1}};
+    lar_model *model = hanging_block();
+    load_nodes(model, brick_side(&soft_brick, 0, -1), 1e4, 0, 0,
+               add_table(model, LAR_CURVE_LINEAR, 3, points));
+    return model;
+}
+
 TEST_UNUSED static lar_options block_options(const char *grid, int threads) {
     lar_options options = lar_options_default();
     options.time_step = 1e-4;

@@ -80,6 +80,34 @@ static void plays_on_every_grid(void **unused) {
     }
 }
 
+/* A run that breaks does so again in its replay; one that was taken up before its end does not. */
+static void broken_runs_break_again(void **unused) {
+    (void)unused;
+    for (int taken_up = 0; taken_up < 2; taken_up++) {
+        lar_session_options options = lar_session_options_default();
+        options.record = PATH;
+        bench b = open_bench_of(torn_block(), "2x1x1", 1, &options);
+        DONE(lar_session_start(b.session, &failure));
+        lar_session_status stopped = await(&b, LAR_SESSION_STOPPED, 200);
+        if (taken_up) {
+            lar_session_pause(b.session);
+            DONE(lar_session_reset(b.session, &failure));
+            lar_session_pause(b.session);
+            await(&b, LAR_SESSION_PAUSED, 0);
+        }
+        close_bench(&b);
+        lar_model *model = torn_block();
+        lar_simulation *simulation = start_with(model, block_options(NULL, 0));
+        lar_replay_report report;
+        failure.message[0] = '\0';
+        lar_status status = lar_replay(simulation, PATH, NULL, NULL, &report, &failure);
+        assert_int_equal(status, taken_up ? LAR_OK : LAR_ERROR_UNSTABLE);
+        if (!taken_up) assert_string_equal(failure.message, stopped.message);
+        assert_true(report.different == UINT64_MAX);
+        finish(simulation, model);
+    }
+}
+
 /* ---- altered on purpose -------------------------------------------------------------------- */
 
 static lar_bytes file;
@@ -296,6 +324,11 @@ static void other_files_are_spared(void **unused) {
     close_bench(&b);
     lar_replay_report report;
     assert_int_equal(replay(LAR_TEST_BUILD "/none", NULL, 0, &report), LAR_ERROR_IO);
+    assert_int_equal(replay(NULL, NULL, 0, &report), LAR_ERROR_ARGUMENT);
+    lar_recording_info info;
+    assert_int_equal(lar_replay(NULL, PATH, NULL, NULL, NULL, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_recording_inspect(NULL, &info, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_recording_inspect(PATH, NULL, &failure), LAR_ERROR_ARGUMENT);
     assert_int_equal(replay(LAR_TEST_BUILD, NULL, 0, &report), LAR_ERROR_IO);
 }
 
@@ -349,6 +382,7 @@ static void replays_can_be_ended(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(plays_on_every_grid),
+                                       cmocka_unit_test(broken_runs_break_again),
                                        cmocka_unit_test(first_difference_is_named),
                                        cmocka_unit_test(damage_is_found),
                                        cmocka_unit_test(forged_files_are_refused),
