@@ -140,31 +140,40 @@ static void time_may_go_back_again_and_again(void **unused) {
 
 /* ---- runs that have broken off -------------------------------------------------------------- */
 
-static void a_broken_run_is_taken_up_again(void **unused) {
-    (void)unused;
+/* One node is thrown into the body. */
+static lar_model *crashing_model(void) {
     lar_model *model = everything_model(&tool_brick);
     static const double crash[3] = {-200, 0, 0};
     throw_node(model, brick_node(&tool_brick, 3, 2, 2), crash);
+    return model;
+}
+
+static void break_and_take_up(lar_simulation *simulation) {
     lar_error error;
-    for (int grid = 0; grid < GRIDS; grid++) {
-        lar_simulation *simulation = start_with(model, setting(grid));
-        uint64_t begin = lar_simulation_hash(simulation);
-        save(simulation, PATH);
-        for (int i = 0; i < 4; i++) {
-            assert_int_equal(lar_simulation_advance(simulation, 500, &error), LAR_ERROR_UNSTABLE);
-            assert_int_equal(lar_simulation_advance(simulation, 1, &error), LAR_ERROR_UNSTABLE);
-            assert_int_equal(lar_simulation_save(simulation, PATH ".no", &error),
-                             LAR_ERROR_UNSTABLE);
-            if (i % 2)
-                load(simulation, PATH);
-            else
-                reset(simulation);
-            assert_int_equal(lar_simulation_hash(simulation), begin);
-            if (lar_simulation_advance(simulation, 1, &error)) fail_msg("%s", error.message);
-        }
-        lar_simulation_destroy(simulation);
+    uint64_t begin = lar_simulation_hash(simulation);
+    save(simulation, PATH);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(lar_simulation_advance(simulation, 500, &error), LAR_ERROR_UNSTABLE);
+        assert_int_equal(lar_simulation_advance(simulation, 1, &error), LAR_ERROR_UNSTABLE);
+        assert_int_equal(lar_simulation_save(simulation, PATH ".no", &error), LAR_ERROR_UNSTABLE);
+        if (i % 2)
+            load(simulation, PATH);
+        else
+            reset(simulation);
+        assert_int_equal(lar_simulation_hash(simulation), begin);
+        if (lar_simulation_advance(simulation, 1, &error)) fail_msg("%s", error.message);
     }
     assert_int_equal(access(PATH ".no", F_OK), -1);
+}
+
+static void a_broken_run_is_taken_up_again(void **unused) {
+    (void)unused;
+    lar_model *model = crashing_model();
+    for (int grid = 0; grid < GRIDS; grid++) {
+        lar_simulation *simulation = start_with(model, setting(grid));
+        break_and_take_up(simulation);
+        lar_simulation_destroy(simulation);
+    }
     lar_model_destroy(model);
 }
 
@@ -252,6 +261,18 @@ static void processes_go_back_together(void **unused) {
         end_fleet(&f);
         lar_model_destroy(model);
     }
+}
+
+static void processes_that_broke_off_are_taken_up_again(void **unused) {
+    (void)unused;
+    lar_model *model = crashing_model();
+    lar_options options = setting(1);
+    options.comm = "shm";
+    fleet f;
+    start_fleet(&f, model, options, 2);
+    break_and_take_up(f.zero);
+    end_fleet(&f);
+    lar_model_destroy(model);
 }
 
 /* ---- bodies in contact ---------------------------------------------------------------------- */
@@ -505,6 +526,7 @@ int main(void) {
         cmocka_unit_test(time_may_go_back_again_and_again),
         cmocka_unit_test(a_broken_run_is_taken_up_again),
         cmocka_unit_test(processes_go_back_together),
+        cmocka_unit_test(processes_that_broke_off_are_taken_up_again),
         cmocka_unit_test(bodies_in_contact_are_taken_up_in_the_middle),
         cmocka_unit_test(damaged_files_are_refused),
         cmocka_unit_test(forged_files_are_refused),
