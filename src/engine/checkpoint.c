@@ -157,7 +157,7 @@ static lar_status write_file(const char *path, const unsigned char *data, size_t
     if (!part) return lar_fail_memory(error, size, path);
     snprintf(part, size, "%s.part", path);
     errno = 0;
-    int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
     bool good = file >= 0 && write_all(file, data, bytes) && fsync(file) == 0;
     int cause = errno;
     if (file >= 0 && close(file) != 0 && good) {
