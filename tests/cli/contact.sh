@@ -56,10 +56,13 @@ for comm in $comms; do
         [ ! -s err ] || fail "messages during a good run by $comm"
     done
 done
-if mpirun --version >/dev/null 2>&1; then
-    mpirun --allow-run-as-root --oversubscribe -n 2 "$LARIAT" run fall.yaml --steps 150 --json \
-        --comm mpi --grid 2x1x1 >out 2>err && [ "$(value_of state_hash)" != "$hash" ] &&
-        fail "mpi: $(value_of state_hash)"
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+if timeout 60 mpirun -n 2 "$LARIAT" run fall.yaml --steps 150 --json --comm mpi --grid 2x1x1 \
+    >out 2>err; then
+    [ "$(value_of state_hash)" = "$hash" ] || fail "mpi: $(value_of state_hash)"
+else
+    echo "left out: mpi: $(tail -n 1 err)"
 fi
 # Lists of elements take no part in contact.
 expect 0 "$LARIAT" verify fall.yaml --grid 2x1x1 --threads 2 --steps 20 --json
