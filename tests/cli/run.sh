@@ -10,7 +10,7 @@ scene=$demo/uterus.yaml
 expect 0 "$LARIAT" info "$scene"
 says '^mesh  *1840 elements'
 says 'fundus: .* nodes'
-says 'grasper: grasper, radius 0.0015 m, length 0.02 m, spread 50 degrees, at '
+says 'grasper: grasper, radius 0.002 m, length 0.02 m, spread 50 degrees, at '
 expect 0 "$LARIAT" info "$demo/uterus_live.yaml"
 says '^contact  *[0-9]* faces with each other'
 expect 0 "$LARIAT" info "$demo/uterus_live.yaml" --json

@@ -300,6 +300,7 @@ static void test_scenes(void **state) {
         snprintf(path, sizeof path, "%s/%s", folder, name[i]);
         if (lar_scene_read(path, &model, &error)) fail_msg("%s", error.message);
         assert_int_equal(model->load_count, i == 0);
+        assert_int_equal(model->notice_count, 0);
         assert_int_equal(model->contact_count, i);
         if (i > 0) {
             assert_int_equal(model->contact[0].kind, LAR_CONTACT_SELF);

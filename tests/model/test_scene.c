@@ -363,6 +363,21 @@ static void test_tools_beside_the_body(void **state) {
     }
 }
 
+/* A thin tool finds its way between the points at which a face of 10 mm feels it. */
+static void test_thin_tools(void **state) {
+    (void)state;
+    lar_model *model =
+        scene(HEAD MATERIAL "tools:\n"
+                            "  - {name: enough, shape: sphere, radius: 0.0012, at: [0, 0, 1]}\n"
+                            "  - {name: thin, shape: sphere, radius: 0.0011, at: [0, 0, 1]}\n");
+    assert_int_equal(model->notice_count, 1);
+    assert_string_equal(model->notice[0],
+                        "s.yaml: the tool \"thin\" has a radius of 0.0011 m, and the surface has "
+                        "edges of up to 0.01 m: large faces feel it only where it meets one of "
+                        "their 36 points; give it a radius of 0.0012 m, or refine the mesh");
+    lar_model_destroy(model);
+}
+
 static void test_several_meshes(void **state) {
     (void)state;
     lar_model *model = scene("lariat: 1\nmesh: [brick.vtu, {file: two.vtu, tag: 9}]\n" MATERIAL
@@ -473,6 +488,7 @@ int main(void) {
         cmocka_unit_test(test_contact),
         cmocka_unit_test(test_tools),
         cmocka_unit_test(test_tools_beside_the_body),
+        cmocka_unit_test(test_thin_tools),
         cmocka_unit_test(test_several_meshes),
         cmocka_unit_test(test_mesh_stands_beside_the_scene),
         cmocka_unit_test(test_every_key),

@@ -112,7 +112,7 @@ static const char middle[] =
     "# Instruments, which wait in front of the organ until a device or the mouse moves them.\n"
     "tools:\n"
     "  - { name: probe, shape: sphere, radius: 0.005, at: [0.045, -0.045, 0.075] }\n"
-    "  - { name: grasper, shape: grasper, radius: 0.0015, length: 0.02, spread: 50,\n"
+    "  - { name: grasper, shape: grasper, radius: 0.002, length: 0.02, spread: 50,\n"
     "      at: [-0.035, -0.055, 0.09], towards: [0.35, 0.75, -0.5] }\n";
 
 const lar_demo_scene lar_demo_scene_of[LAR_DEMO_SCENES] = {

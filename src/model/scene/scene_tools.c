@@ -139,11 +139,39 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     return status;
 }
 
+static double longest_edge(const lar_model *model) {
+    double longest = 0;
+    for (int32_t f = 0; f < model->surface.face_count; f++)
+        for (int a = 0; a < 4; a++) {
+            const double *p = model->mesh.position[model->surface.corner[f][a]];
+            const double *q = model->mesh.position[model->surface.corner[f][(a + 1) % 4]];
+            longest = fmax(longest, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
+        }
+    return longest;
+}
+
+/* A face feels tools at 6 x 6 points at most (engine/touch.h). Between four of them there is room
+ * for a tool of that radius. */
+static lar_status notice_thin_tools(lar_scene *scene) {
+    lar_model *model = scene->model;
+    double edge = longest_edge(model), room = edge / 6 * sqrt(0.5);
+    lar_status status = LAR_OK;
+    for (int i = 0; !status && i < model->tool_count; i++)
+        if (model->tool[i].radius < room)
+            status = lar_model_notice(
+                model, scene->error,
+                "%s: the tool \"%s\" has a radius of %.3g m, and the surface has edges of up to "
+                "%.3g m: large faces feel it only where it meets one of their 36 points; give it "
+                "a radius of %.2g m, or refine the mesh",
+                scene->path, model->tool[i].name, model->tool[i].radius, edge, 1.05 * room);
+    return status;
+}
+
 lar_status lar_scene_read_tools(lar_scene *scene, const lar_yaml *node) {
     lar_status status = lar_scene_list(
         scene, node, "tools, {name: probe, shape: sphere, radius: 0.005, at: [0, 0, 0.1]}");
     if (!status) status = lar_scene_need_surface(scene);
     for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next)
         status = read_tool(scene, entry);
-    return status;
+    return status ? status : notice_thin_tools(scene);
 }
