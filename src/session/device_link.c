@@ -81,7 +81,11 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
     bool here = link->owned &&
                 !(now > link->last_packet && now - link->last_packet > SILENCE * MILLISECOND);
     if (!here && !link->silent && link->received) link->timeouts++;
-    if (ms > SILENCE) { /* the engine was held up: for the device, as long a silence */
+    /* The engine was held up: for the device, as long a silence. An engine that is always so slow
+     * is not. */
+    bool held_up = ms > SILENCE && link->last_gap <= SILENCE;
+    link->last_gap = ms;
+    if (held_up) {
         link->silent = true;
         link->strength = toward(link->strength, 0, (ms - SILENCE) / FADE);
         ms = 0;

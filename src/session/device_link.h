@@ -38,6 +38,7 @@ typedef struct lar_link {
     lar_link_address owner;
     uint64_t last_packet; /* of the owner [ns] */
     uint64_t last_time;   /* of the last call of lar_link_advance [ns] */
+    double last_gap;      /* between the last two calls of lar_link_advance [ms] */
     bool silent;          /* between a time-out and the next packet */
     double strength;      /* 0..1: share of the force */
     double approach;      /* 0..1: share of the way to the hand */

@@ -244,6 +244,18 @@ static void test_engine_held_up(void **state) {
     assert_true(link.strength < 0.4);
 }
 
+/* An engine that is too slow for the clock still brings the tool to the hand. */
+static void test_slow_engine_arrives(void **state) {
+    (void)state;
+    lar_link link;
+    lar_link_create(&link, NULL, &ORIGIN);
+    for (uint32_t i = 0; i < 20; i++) {
+        take(&link, &HE, i + 1, NULL, 0.1, (1000 + 40 * i) * MS);
+        assert_true(lar_link_advance(&link, false, (1000 + 40 * i) * MS));
+    }
+    assert_true(link.strength == 1 && link.pose.position[0] == 0.1);
+}
+
 static void test_pause_fades(void **state) {
     (void)state;
     lar_link link;
@@ -283,6 +295,7 @@ int main(void) {
         cmocka_unit_test(test_first_sender_owns),      cmocka_unit_test(test_token_is_asked_for),
         cmocka_unit_test(test_silence_fades),          cmocka_unit_test(test_pause_fades),
         cmocka_unit_test(test_button_closes),          cmocka_unit_test(test_engine_held_up),
+        cmocka_unit_test(test_slow_engine_arrives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
