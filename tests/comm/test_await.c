@@ -99,9 +99,27 @@ static void nonsense_is_refused(void **state) {
     fleet_everywhere("nonsense", (fleet){.count = 2, .bytes = 64, .body = nonsense});
 }
 
+/* Packets are counted by rounds, messages name steps. */
+static const char *wait_by_another_name(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
+    (void)context;
+    lar_error error;
+    if (lar_comm_self(comm) == 1) {
+        lar_comm_abort(comm);
+        return NULL;
+    }
+    lar_comm_number_steps(comm, 1000);
+    if (lar_comm_wait(comm, 1, 0, 8, 5, NULL, &error) != LAR_ERROR_PEER) return "no failure";
+    return strstr(error.message, "is 1004;") ? NULL : fleet_say(text, "%s", error.message);
+}
+
+static void messages_name_steps_not_rounds(void **state) {
+    (void)state;
+    fleet_everywhere("names", (fleet){.count = 2, .bytes = 64, .body = wait_by_another_name});
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(quiet_time_may_be_long),
-                                       cmocka_unit_test(the_dead_are_not_awaited),
-                                       cmocka_unit_test(nonsense_is_refused)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quiet_time_may_be_long), cmocka_unit_test(the_dead_are_not_awaited),
+        cmocka_unit_test(nonsense_is_refused), cmocka_unit_test(messages_name_steps_not_rounds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
