@@ -17,7 +17,8 @@ give_up() {
 }
 
 # One at a time: several build folders share web/.
-exec 9>".lock" && { ! command -v flock >/dev/null || flock 9; }
+exec 9<package.json
+! command -v flock >/dev/null || flock 9
 
 newer() {
     [ ! -e "$1" ] || [ -n "$(find src public index.html package-lock.json vite.config.ts \
