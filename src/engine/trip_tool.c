@@ -47,7 +47,7 @@ void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
     const lar_touch *touch = &domain->acting.touch;
     if (trip->blamed || (trip->kind != LAR_TRIP_ELEMENT && trip->kind != LAR_TRIP_SPEED)) return;
     trip->blamed = true;
-    if (touch->face_count == 0) return;
+    if (touch->face_count == 0 || trip->element < 0) return;
     double rest[3], edge = 0, closest = 1;
     if (trip->kind == LAR_TRIP_ELEMENT) {
         edge = element_at_rest(domain, trip->element, rest);
