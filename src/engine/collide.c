@@ -59,7 +59,8 @@ typedef struct survey {
     double reach; /* of the faces for the node [m] */
     double distance[LAR_GROUP_FACES_MOST];
     double least; /* of those within reach; INFINITY: none is */
-    double gap;   /* by which all faces are out of reach, at most 0 when one is not [m] */
+    double gap;   /* by which those looked at are out of reach, at most 0 when one is not [m] */
+    double next;  /* travel at which the first of the others may matter [m] */
 } survey;
 
 static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
@@ -67,7 +68,7 @@ static void survey_face(lar_collide *collide, const lar_state *state, const doub
     double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
     corners_of(collide, state, f, corner, NULL);
     *distance = nearest_possible(x, (const double(*)[3])corner);
-    if (*distance <= s->least + tie && *distance - s->reach <= collide->list.skin) {
+    if (*distance <= s->least + tie && *distance <= s->reach) {
         collide->info.tested++;
         *distance = lar_face_distance(x, (const double(*)[3])corner);
         if (*distance <= s->reach && *distance < s->least) s->least = *distance;
@@ -75,9 +76,15 @@ static void survey_face(lar_collide *collide, const lar_state *state, const doub
     if (*distance - s->reach < s->gap) s->gap = *distance - s->reach;
 }
 
-/* The one that was closest the last time goes first: most others then need no more than a look, and
- * those that are farther away by some margin not even that, until travel has used it up: both
- * distances change by twice what each node moves. */
+/* The travel until which a face cannot be the closest one within reach: it is out of reach, or
+ * farther away than the closest, whose distance changes as well. */
+static double away_until(double travel, double distance, const survey *s) {
+    double reach = (distance - s->reach) / APPROACH;
+    double least = (distance - s->least) / (2 * APPROACH);
+    return travel + 0.999 * (reach > least ? reach : least);
+}
+
+/* The one that was closest the last time goes first: most others then need no more than a look. */
 static void survey_group(lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
                          survey *s) {
     const lar_contact_group *group = &collide->list.group[g];
@@ -86,16 +93,19 @@ static void survey_group(lar_collide *collide, const lar_state *state, int32_t g
     int32_t first = collide->last[g];
     s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
                                  &collide->surface->face[face[0]]);
-    s->least = s->gap = INFINITY;
+    s->least = s->gap = s->next = INFINITY;
     survey_face(collide, state, x, face[first], &s->distance[first], s);
     for (int32_t i = 0; i < group->count; i++) {
         if (i == first) continue;
+        if (collide->travel >= away[i]) {
+            survey_face(collide, state, x, face[i], &s->distance[i], s);
+            continue;
+        }
         s->distance[i] = INFINITY;
-        if (collide->travel >= away[i]) survey_face(collide, state, x, face[i], &s->distance[i], s);
+        if (away[i] < s->next) s->next = away[i];
     }
-    for (int32_t i = 0; i < group->count && s->least < INFINITY; i++)
-        if (s->distance[i] < INFINITY)
-            away[i] = collide->travel + 0.999 * (s->distance[i] - s->least) / (2 * APPROACH);
+    for (int32_t i = 0; i < group->count; i++)
+        if (s->distance[i] < INFINITY) away[i] = away_until(collide->travel, s->distance[i], s);
 }
 
 /* The closest face of a group, an entry of it. */
@@ -148,7 +158,7 @@ static bool contact(lar_collide *collide, const lar_state *state, int32_t g, tou
     lar_face_point point;
     place_of(collide, state, group->node, x, NULL);
     survey_group(collide, state, g, x, &s);
-    collide->due[g] = s.gap > 0 ? collide->travel + s.gap / APPROACH : 0;
+    collide->due[g] = s.gap > 0 ? fmin(collide->travel + s.gap / APPROACH, s.next) : 0;
     if (!(s.least < INFINITY)) return false;
     int32_t chosen = choose_face(collide, state, g, x, &s, &point);
     if (chosen < 0) return false;
@@ -399,7 +409,7 @@ lar_status lar_collide_create(const lar_model *model, const double *mass, const 
     collide->list = motion->search->list;
     motion->always = search_always;
     motion->skin_least = 0.25 * surface->reach;
-    motion->skin_most = 2 * surface->reach_most;
+    motion->skin_most = surface->reach_most;
     status = allocate(collide, local, error);
     if (status)
         lar_collide_destroy(collide);

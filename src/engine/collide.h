@@ -65,7 +65,7 @@ typedef struct lar_collide {
     double *due;                            /* [list.group_room] travel at which to look */
     int32_t *last;                          /* [list.group_room] the closest face then, an entry */
     double *away;                           /* [list.face_room] travel until which the face cannot
-                                               be the closest of its group */
+                                               be the closest one within reach */
     int32_t *near;                          /* [list.group_room] the groups that are due before */
     int32_t near_count;                     /* travel is at */
     double travel, horizon;                 /* [m] */
