@@ -57,7 +57,13 @@ TEST_UNUSED static int32_t *outer_faces(const lar_model *model, int32_t first, i
     return faces;
 }
 
+/* Instead of all others. */
 TEST_UNUSED static void touch_self(lar_model *model) {
+    for (int i = 0; i < model->contact_count; i++) {
+        free(model->contact[i].face);
+        free(model->contact[i].against);
+    }
+    model->contact_count = 0;
     lar_contact *contact = LAR_MODEL_APPEND(model, contact);
     contact->kind = LAR_CONTACT_SELF;
     contact->face = outer_faces(model, 0, model->mesh.element_count, &contact->face_count);

@@ -80,10 +80,7 @@ static void a_collision_keeps_momentum(void **unused) {
 /* Largest total energy over the first one of a body that is thrown on another. */
 static double thrown(double speed, double part_of_stable_step, bool self, double *rebound) {
     lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.0005, true);
-    if (self) {
-        model->contact_count = 0;
-        touch_self(model);
-    }
+    if (self) touch_self(model);
     int32_t first =
         (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
     throw_nodes(model, first, model->mesh.node_count, (double[]){0, 0, -speed});
@@ -112,7 +109,8 @@ static void a_collision_adds_no_energy(void **unused) {
     static const double speeds[] = {0.01, 0.1, 1, 5}, parts[] = {0.2, 0.8, 0.999};
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 3; j++) {
-            double left, most = thrown(speeds[i], parts[j], (i + j) % 2, &left);
+            if ((i + j) % 2 && i < 2) continue; /* slow ones: every other */
+            double left, most = thrown(speeds[i], parts[j], j == 1, &left);
             print_message("%4g m/s, %.3f of the stable step: at most %.5f, %.4f left\n", speeds[i],
                           parts[j], most, left);
             assert_below(most, 1.001);
@@ -186,18 +184,15 @@ static void prediction_changes_no_bit(void **unused) {
         lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.001, true);
         memcpy(model->gravity, (double[]){0.5, 0, -9.81}, 24);
         model->damping = 5;
-        if (self) {
-            model->contact_count = 0;
-            touch_self(model);
-        }
+        if (self) touch_self(model);
         lar_contact_info predicted, always;
-        uint64_t one = hash_after(model, 0, 1500, &predicted);
-        uint64_t other = hash_after(model, 1, 1500, &always);
+        uint64_t one = hash_after(model, 0, 800, &predicted);
+        uint64_t other = hash_after(model, 1, 800, &always);
         assert_true(one == other);
         assert_true(predicted.touching > 0);
         assert_int_equal(predicted.touching, always.touching);
-        assert_int_equal(always.searches, 1500);
-        assert_true(predicted.searches < 150);
+        assert_int_equal(always.searches, 800);
+        assert_true(predicted.searches < 80);
         assert_true(predicted.tested < always.tested);
         print_message("%s: possible %.3g, boxed %.3g (always %.3g), tested %.3g (%.3g), "
                       "searches %d\n",

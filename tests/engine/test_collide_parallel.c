@@ -15,10 +15,7 @@ static lar_model *sliding_model(bool self) {
     throw_nodes(model, first, model->mesh.node_count, (double[]){0.15, 0.05, -0.3});
     memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
     model->damping = 3;
-    if (self) {
-        model->contact_count = 0;
-        touch_self(model);
-    }
+    if (self) touch_self(model);
     return model;
 }
 

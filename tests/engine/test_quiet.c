@@ -5,7 +5,7 @@
  * the functions below; system calls are forbidden by a seccomp filter in a child process, which the
  * kernel kills at the first one. Where the sandbox of the test allows no filter, that part says so
  * and is skipped. */
-#include "engine/engine_test.h"
+#include "engine/collide_test.h"
 
 #include <errno.h>
 #include <linux/audit.h>
@@ -76,6 +76,27 @@ static void a_step_allocates_and_locks_nothing(void **unused) {
         assert_int_equal(counted, 0);
         finish(simulation, model);
     }
+}
+
+/* Also while bodies touch, and the search for what may touch is made anew. */
+static void contact_allocates_and_locks_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&soft_brick, &soft_brick, 0.004, false);
+    throw_nodes(model, model->mesh.node_count / 2, model->mesh.node_count,
+                (double[]){0.02, 0, -0.3});
+    lar_simulation *simulation = start(model);
+    advance(simulation, 1);
+    lar_error error;
+    lar_contact_info before, after;
+    lar_simulation_contact(simulation, &before);
+    int from = calls;
+    lar_status status = lar_simulation_advance(simulation, 100, &error);
+    int counted = calls - from;
+    lar_simulation_contact(simulation, &after);
+    assert_int_equal(status, LAR_OK);
+    assert_int_equal(counted, 0);
+    assert_true(after.tested > before.tested && after.searches > before.searches);
+    finish(simulation, model);
 }
 
 /* The same of four processors with two threads each. Threads take a lock to fall asleep and to wake
@@ -161,6 +182,7 @@ static void a_step_makes_no_system_call(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_allocates_and_locks_nothing),
+        cmocka_unit_test(contact_allocates_and_locks_nothing),
         cmocka_unit_test(processors_allocate_and_lock_nothing),
         cmocka_unit_test(a_step_makes_no_system_call),
     };
