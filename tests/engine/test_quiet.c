@@ -6,6 +6,7 @@
  * kernel kills at the first one. Where the sandbox of the test allows no filter, that part says so
  * and is skipped. */
 #include "engine/collide_test.h"
+#include "engine/touch_test.h"
 
 #include <errno.h>
 #include <linux/audit.h>
@@ -99,6 +100,32 @@ static void contact_allocates_and_locks_nothing(void **unused) {
     finish(simulation, model);
 }
 
+/* Also while a tool, a hand and a plane are at work. */
+static void tools_allocate_and_lock_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = everything_model(&soft_brick);
+    touch_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.006},
+               (double[]){0.015, 0.01, 0.0275});
+    add_plane(model, (double[]){0, 0, -0.0012}, (double[]){0, 0, 1});
+    lar_options options = lar_options_default();
+    options.hands = 1;
+    lar_simulation *simulation = start_with(model, options);
+    lar_error error;
+    lar_contact_info info;
+    place(simulation, 1, (double[]){0.03, 0.02, 0.02}, (double[]){1, 0, 0, 0}, 0, 1);
+    place(simulation, 0, (double[]){0.017, 0.01, 0.023}, (double[]){1, 0, 0, 0}, 1, 200);
+    advance(simulation, 10);
+    int before = calls;
+    lar_status status = lar_simulation_advance(simulation, 300, &error);
+    int counted = calls - before;
+    lar_simulation_contact(simulation, &info);
+    assert_int_equal(status, LAR_OK);
+    assert_int_equal(counted, 0);
+    assert_true(simulation->report.tool[0].touching > 0 && simulation->report.tool[1].held > 0);
+    assert_true(info.searches > 2 && info.touching > 0);
+    finish(simulation, model);
+}
+
 /* The same of four processors with two threads each. Threads take a lock to fall asleep and to wake
  * up between two advances, so it is counted within one, by processor zero. */
 static int calls_from, calls_to;
@@ -183,6 +210,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_allocates_and_locks_nothing),
         cmocka_unit_test(contact_allocates_and_locks_nothing),
+        cmocka_unit_test(tools_allocate_and_lock_nothing),
         cmocka_unit_test(processors_allocate_and_lock_nothing),
         cmocka_unit_test(a_step_makes_no_system_call),
     };
