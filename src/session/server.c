@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/folder.h"
+#include "base/pin.h"
 #include "comm/socket.h"
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
@@ -152,6 +153,7 @@ static int64_t thread_time(void) {
 
 static void *run(void *argument) {
     lar_server *server = argument;
+    lar_pin_nowhere(); /* not where a processor computes, whose thread may have started this one */
     setpriority(PRIO_PROCESS, 0, LAR_SERVER_NICE); /* of this thread only, on Linux */
     lws_sul_schedule(server->context, 0, &server->beat, beat, 1);
     int64_t spent = thread_time(), begun = server->paint_begun;

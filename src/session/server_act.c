@@ -18,12 +18,12 @@ lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
 
 static const char CHECKPOINT[] = "checkpoint", RECORDING[] = "recording";
 
-/* The first free name of a kind: uterus-3.checkpoint. False when the folder is full of them. */
-static bool choose_name(const lar_server *server, const char *extension, lar_job *job) {
-    enum { NUMBERS_MOST = 10000 };
-    for (int number = 1; number < NUMBERS_MOST; number++) {
-        int length =
-            snprintf(job->name, sizeof job->name, "%s-%d.%s", server->stem, number, extension);
+/* The next free name of a kind: uterus-3.checkpoint. A number is given out once, also while its
+ * file is not there yet. False when the folder is full of them. */
+static bool choose_name(lar_server *server, const char *extension, lar_job *job) {
+    while (server->saved_number < LAR_SAVE_NUMBERS) {
+        int length = snprintf(job->name, sizeof job->name, "%s-%d.%s", server->stem,
+                              ++server->saved_number, extension);
         int whole = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
         if (length < 0 || (size_t)length >= sizeof job->name || whole < 0 ||
             (size_t)whole >= sizeof job->path)
@@ -31,6 +31,14 @@ static bool choose_name(const lar_server *server, const char *extension, lar_job
         if (access(job->path, F_OK) != 0 && errno == ENOENT) return true;
     }
     return false;
+}
+
+/* Twice a second is often enough for people; whoever wants to fill the disk has to wait. */
+static bool saves_too_often(lar_server *server) {
+    int64_t now = lar_clock_ns();
+    bool often = server->saved_at && now - server->saved_at < LAR_SECOND_NS / 2;
+    if (!often) server->saved_at = now;
+    return often;
 }
 
 /* One of those that were saved here: a viewer cannot name any other file. */
@@ -58,6 +66,10 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *
         return false;
     }
     bool names = wish->kind == LAR_WISH_SAVE || (wish->kind == LAR_WISH_RECORD && wish->on);
+    if (names && saves_too_often(server)) {
+        lar_viewer_note(server, viewer, "this is too often; save or record again in a second");
+        return false;
+    }
     if (names && !choose_name(server, wish->kind == LAR_WISH_SAVE ? CHECKPOINT : RECORDING, job)) {
         lar_viewer_note(server, viewer,
                         "no name is left in the folder for saved states, or it cannot be read; "

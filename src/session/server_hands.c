@@ -129,7 +129,6 @@ static void go_on(lar_hands *hands, lar_hand *hand, const lar_session_status *st
 
 void lar_hands_look(lar_hands *hands, int64_t now) {
     lar_session_status status;
-    if (!lar_hands_busy(hands)) return;
     lar_session_status_get(hands->session, &status);
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status, now);
@@ -137,7 +136,8 @@ void lar_hands_look(lar_hands *hands, int64_t now) {
 
 bool lar_hands_busy(const lar_hands *hands) {
     for (int32_t i = 0; i < hands->count; i++)
-        if (hands->hand[i].state != LAR_HAND_FREE) return true;
+        if (hands->hand[i].state == LAR_HAND_GOING || hands->hand[i].state == LAR_HAND_CLOSING)
+            return true;
     return false;
 }
 

@@ -63,6 +63,7 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wis
 void lar_hands_leave(lar_hands *hands, uint64_t viewer);
 
 void lar_hands_look(lar_hands *hands, int64_t now);
+/* Whether a hand is on its way, so that somebody should look soon again. */
 bool lar_hands_busy(const lar_hands *hands);
 
 /* Who moves a tool: "nobody", "you" (this viewer), "other", "device". */

@@ -28,7 +28,8 @@ enum {
     LAR_VIEWERS_MOST = 64,
     LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
     LAR_NOTES_MOST = 8,         /* that wait for a viewer */
-    LAR_SAVES_MOST = 16,        /* that `load` knows */
+    LAR_SAVE_NUMBERS = 1000,
+    LAR_SAVES_MOST = 16, /* that `load` knows */
     LAR_HOST_BYTES = 96,
     LAR_MESSAGES_A_SECOND = 300
 };
@@ -118,7 +119,8 @@ struct lar_server {
     } tool[LAR_TOOLS_MOST];
     double pace;
     char save[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
-    int saves;
+    int saves, saved_number;
+    int64_t saved_at;
     char recording[LAR_NAME_MOST + 1];
     lws_sorted_usec_list_t beat;
     int64_t status_at, watched_at, paint_begun, paint_cost;

@@ -4,6 +4,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "base/pin.h"
+
 /* A tick that takes longer than this is no real time at all [s]. */
 static const double SNAPSHOT_SECONDS = 2;
 
@@ -60,6 +62,7 @@ static void paint(lar_work *work) {
 
 static void *run(void *argument) {
     lar_work *work = argument;
+    lar_pin_nowhere();                             /* as the server's */
     setpriority(PRIO_PROCESS, 0, LAR_SERVER_NICE); /* of this thread only, on Linux */
     pthread_mutex_lock(&work->lock);
     while (!work->ending) {

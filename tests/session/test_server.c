@@ -356,6 +356,9 @@ static void saves_where_it_may(void **unused) {
     say(&c, "{\"do\":\"save\"}");
     assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-1.checkpoint\""));
     say(&c, "{\"do\":\"save\"}");
+    assert_non_null(strstr(await_text(&c, "note"), "too often"));
+    nap(0.6);
+    say(&c, "{\"do\":\"save\"}");
     assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-2.checkpoint\""));
     await_status(&c, "\"saved\":[\"model-1.checkpoint\",\"model-2.checkpoint\"]");
     uint64_t before = (uint64_t)number_of((char *)c.data, "step");
@@ -369,10 +372,11 @@ static void saves_where_it_may(void **unused) {
     say(&c, "{\"do\":\"load\",\"name\":\"../../etc/passwd\"}");
     assert_non_null(strstr(await_text(&c, "note"), "no saved state"));
     say(&c, "{\"do\":\"play\"}");
+    nap(0.6);
     say(&c, "{\"do\":\"record\",\"on\":true}");
     await_status(&c, "\"recording\":true");
     say(&c, "{\"do\":\"record\",\"on\":false}");
-    assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-1.recording\""));
+    assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-3.recording\""));
     await_status(&c, "\"recording\":false");
     close_client(&c);
     end_serving(&s);
