@@ -1,5 +1,5 @@
 /* The pull as one sees it: a dot where the tissue is held, a thread to where the hand is, and an arrow
- * along the force. Its length is in newtons: about half the organ's size at the full range of the bar. */
+ * along the force. Its length is in newtons: about a fifth of the organ's width at the full range of the bar. */
 import * as THREE from 'three';
 import { steel } from './steel';
 
@@ -54,7 +54,7 @@ export class PullPicture {
         this.dot.position.copy(grip);
         this.dot.scale.setScalar(unit * 0.02);
 
-        const length = Math.min(1, share) * unit * 0.48;
+        const length = Math.min(1, share) * unit * 0.4;
         const visible = length > unit * 0.01;
         this.shaft.visible = this.head.visible = visible;
         if (visible) {

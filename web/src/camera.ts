@@ -16,7 +16,8 @@ export class Endoscope {
 
     /* Everything in sight, from the front and a little above. */
     frame(center: readonly [number, number, number], size: number): void {
-        this.home.target.set(center[0], center[1], center[2]);
+        // There is more to do above than below: one pulls upwards.
+        this.home.target.set(center[0], center[1], center[2] + 0.05 * size);
         this.home.size = size;
         this.reset(true);
     }
@@ -100,7 +101,7 @@ export class Endoscope {
 
     private fitting(): number {
         const narrow = Math.min(1, this.camera.aspect);
-        return (this.home.size * 0.98) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
+        return (this.home.size * 1.02) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
     }
 
     private jump(): void {

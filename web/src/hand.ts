@@ -111,7 +111,8 @@ export class Hand {
         const tools = this.session.frame.tools;
         const at = this.tool * TOOL_WORDS + 8;
         if (this.state !== 'holding' || at < 0 || at + 3 > tools.length) this.force.set(0, 0, 0);
-        else this.force.set(-tools[at]!, -tools[at + 1]!, -tools[at + 2]!);
+        // Paused, no tick has a force: the last one stays, as in bar and graph.
+        else if (this.session.status?.state !== 'paused') this.force.set(-tools[at]!, -tools[at + 1]!, -tools[at + 2]!);
     }
 
     private setPlane(): void {

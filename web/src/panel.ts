@@ -68,7 +68,8 @@ export class Panel {
     }
 
     update(status: Status): void {
-        write(element('panel-short'), `${number(status.real_time_factor_now, 2)} × real time`);
+        const factor = `${number(status.real_time_factor_now, 2)} × real time`;
+        write(element('panel-short'), status.state === 'playing' ? factor : '');
         if (!this.details.open) return;
         this.rows.forEach(([, value, bad], i) => {
             const cell = this.cells[i]!;
@@ -114,8 +115,14 @@ export class StateLine {
         // Stays for a second, so that it can be read.
         this.slow.hidden =
             status.state !== 'playing' || (!slow && (this.shownSince === 0 || now - this.shownSince > 1000));
+        const factor = status.real_time_factor_now;
         if (slow)
-            write(element('slow-text'), `${number(status.real_time_factor_now, 2)} × real time`);
+            write(
+                element('slow-text'),
+                factor !== null && factor < 0.995 * (status.pace || 1)
+                    ? `${factor.toFixed(2)} × real time`
+                    : 'catching up with the clock',
+            );
     }
 
     lost(): void {

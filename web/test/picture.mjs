@@ -17,15 +17,19 @@ await page.mouse.down();
 await page.mouse.move(294, 302, { steps: 2 });
 await page.mouse.up();
 await page.waitForTimeout(1500);
-const [x, y] = [800, 300];
+const [x, y] = [800, 320];
 await page.mouse.move(x, y);
 await page.mouse.down();
 // Out, back a little, and further out, so that the graph has something to tell.
-for (const [dx, dy, wait] of [[25, -25, 300], [60, -50, 500], [40, -30, 500], [75, -70, 300], [95, -90, 700]]) {
+for (const [dx, dy, wait] of [[25, -25, 300], [60, -50, 500], [40, -30, 500], [65, -60, 300], [78, -76, 900]]) {
     await page.mouse.move(x + dx, y + dy, { steps: 2 });
     await page.waitForTimeout(wait);
 }
 console.log(await get('hand'), await get('force'), 'N', await get('displacement'), 'm');
+// Paused: a machine that draws a fine picture without a graphics processor computes nothing else in time.
+await page.keyboard.press('Space');
+await page.keyboard.press('g');
+await page.waitForTimeout(2500);
 writeFileSync(process.argv[2] ?? 'viewer.png', smaller(await page.screenshot()));
 await page.mouse.up();
 await browser.close();
