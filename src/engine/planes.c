@@ -121,9 +121,9 @@ static void search(lar_planes *planes, const lar_condition_context *context, con
     planes->near_count = 0;
     for (int32_t i = 0; i < planes->count; i++) {
         const lar_plane_node *n = &planes->node[i];
-        /* Not a number counts as near. */
-        if (n->offset + dot(planes->way[n->way].normal, state->u + n->value) > planes->reach)
-            continue;
+        double height = n->offset + dot(planes->way[n->way].normal, state->u + n->value);
+        /* A little more, for rounding. Not a number counts as near. */
+        if (height > (1 + 1e-9) * planes->reach) continue;
         lar_plane_near *near = &planes->near[planes->near_count++];
         *near = (lar_plane_near){.node = *n, .weight = context->weight[n->value / 4]};
         memcpy(near->before, state->v + n->value, sizeof near->before);

@@ -111,10 +111,16 @@ void lar_touch_destroy(lar_touch *touch) {
     *touch = (lar_touch){0};
 }
 
+/* The balls of groups are measured anew when somebody asks. */
+static void forget_groups(lar_touch *touch) {
+    for (int32_t g = 0; g < touch->group_count; g++) touch->group[g].travel = -INFINITY;
+    touch->travel = 0;
+}
+
 void lar_touch_forget(lar_touch *touch) {
     touch->planes.known = false;
     touch->moved = UINT64_MAX;
-    for (int32_t g = 0; g < touch->group_count; g++) touch->group[g].travel = -INFINITY;
+    forget_groups(touch);
     for (int t = 0; t < LAR_TOOLS_MOST; t++) touch->watch[t].known = touch->watch[t].rests = false;
 }
 
@@ -299,10 +305,10 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
         double size = lar_touch_ball((const double(*)[3])patch.x, center);
         double gap = lar_touch_distance(&watch->body, patch.radius, center) - size;
         touch->seen.tested++;
-        watch->look[i] = watch->path + fmax(gap, 0);
+        watch->look[i] = watch->path + lar_touch_clear(gap, patch.radius);
         if (gap > 0) continue;
         touch_face(&patch, law, state->v, context->mass);
-        watch->look[i] = watch->path + fmax(patch.closest, 0);
+        watch->look[i] = watch->path + lar_touch_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         touch->sum[tool].touching += patch.touching;
         give(touch, context, watch->near[i], tool, watch->body.now[0].end[0],
@@ -433,7 +439,8 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
     double travel = step_travel(touch, context, state);
     bool known = isfinite(travel);
     if (!known) lar_touch_forget(touch);
-    touch->travel += known ? travel : 0;
+    if (known) touch->travel += travel;
+    if (touch->travel > 1) forget_groups(touch); /* short sums keep the smallest steps */
     for (int32_t t = 0; t < touch->list->count; t++) {
         touch->sum[t].touching = touch->sum[t].held = 0;
         if (touch->list->tool[t].shape != LAR_TOOL_HAND)

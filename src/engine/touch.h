@@ -11,9 +11,9 @@
  * exchanged, and force sums make it the same bits on any grid.
  *
  * Prediction (T 3.8.2). Every tool has a path: how far it and the tissue can have gone towards each
- * other since the start, added up step by step from the greatest velocity of the nodes that this
- * thread knows. What was farther away than the path has grown since is not looked at. That is a
- * bound and no estimate: the forces are the same with and without it.
+ * other since the last search, added up step by step from the greatest velocity of the nodes that
+ * this thread knows. What was farther away than the path has grown since is not looked at. That is
+ * a bound and no estimate: the forces are the same with and without it.
  */
 #ifndef LAR_ENGINE_TOUCH_H
 #define LAR_ENGINE_TOUCH_H
@@ -67,7 +67,7 @@ typedef struct lar_tool_body {
 typedef struct lar_tool_watch {
     lar_tool_body body;
     bool rests, known; /* `body` is for good; `near` belongs to the state */
-    double path;       /* [m] */
+    double path;       /* since the search [m] */
     double limit;      /* of the path, up to which `near` is complete */
     int32_t near_count;
     int32_t *near; /* [near_count] faces */
@@ -88,7 +88,7 @@ typedef struct lar_touch {
     int32_t *foreign;       /* [foreign_count] 4 * local node: corners that others move */
     lar_touch_force *acting;
     lar_tool_watch watch[LAR_TOOLS_MOST];
-    double travel;  /* how far any corner can have gone since the start [m] */
+    double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
 } lar_touch;
 
@@ -143,6 +143,13 @@ void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_bo
                     lar_segment segment[2]);
 /* Distance of a point from a tool's segments, less its radius. */
 double lar_touch_distance(const lar_tool_body *body, double radius, const double point[3]);
+/* How far the path may grow before a gap can have closed: less than the gap by more than what
+ * rounding could add to the one and take from the other. */
+static inline double lar_touch_clear(double gap, double radius) {
+    double clear = gap - 1e-9 * radius;
+    return clear > 0 ? clear : 0;
+}
+
 /* The faces near a tool, for some dozens of steps in which the path grows by `step_path` each. */
 void lar_touch_search(lar_touch *touch, int32_t tool, const lar_state *state, double step_path);
 

@@ -116,7 +116,7 @@ static void search_group(lar_touch *touch, lar_tool_watch *watch, double radius,
         double gap = lar_touch_distance(&watch->body, radius, center) - size;
         if (gap > reach) continue; /* not a number is near */
         watch->near[watch->near_count] = f;
-        watch->look[watch->near_count++] = watch->path + fmax(gap, 0);
+        watch->look[watch->near_count++] = lar_touch_clear(gap, radius);
     }
     touch->seen.boxed += (uint64_t)group->count;
 }
@@ -128,7 +128,8 @@ void lar_touch_search(lar_touch *touch, int32_t tool, const lar_state *state, do
     double reach = fmin(fmax(AHEAD * step_path, 0.02 * radius), 4 * radius);
     if (!(reach > 0)) reach = radius;
     watch->near_count = 0;
-    watch->limit = watch->path + reach;
+    watch->path = 0; /* short sums keep the smallest steps */
+    watch->limit = lar_touch_clear(reach, radius);
     watch->known = true;
     for (int32_t g = 0; g < touch->group_count; g++) {
         lar_touch_group *group = &touch->group[g];
