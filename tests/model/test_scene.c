@@ -353,8 +353,8 @@ static void test_tools_beside_the_body(void **state) {
         "shape: sphere, radius: 0.005, at: [-0.003, 0.01, -0.004]",
         "shape: sphere, radius: 0.007, at: [0.022, 0.023, -0.006]",
         "shape: capsule, radius: 0.002, length: 1, at: [0.5, 0.01, 0.022], towards: [1, 0, 0]",
-        "shape: capsule, radius: 0.0141421356, length: 1, at: [0.265, 0.28, -0.22], towards: "
-        "[1, 1, -1]",
+        ("shape: capsule, radius: 0.0141421356, length: 1, at: [0.265, 0.28, -0.22], "
+         "towards: [1, 1, -1]"),
         "shape: grasper, radius: 0.001, length: 0.04, spread: 120, at: [0.01, 0.01, 0.037]"};
     for (size_t i = 0; i < sizeof beside / sizeof beside[0]; i++) {
         char text[600];
