@@ -75,6 +75,43 @@ static void a_collision_keeps_momentum(void **unused) {
     finish(s, model);
 }
 
+/* The forces of one step alone: they add up to nothing, to the last bit, and so do their moments
+ * but for rounding. */
+static void forces_come_in_pairs(void **unused) {
+    (void)unused;
+    brick shifted = upper_brick;
+    shifted.shift = 0.1;
+    lar_model *model = two_bricks(&lower_brick, &shifted, -0.001, false);
+    lar_simulation *s = start(model);
+    lar_domain *domain = &s->domain;
+    const lar_layout *layout = &domain->layout;
+    lar_condition_context context = lar_domain_context(domain);
+    lar_collide_forget(&domain->acting.collide);
+    lar_collide_apply(&domain->acting.collide, &context, &s->state);
+    assert_true(domain->acting.collide.info.touching > 10);
+    int64_t sum[3] = {0};
+    double moment[3] = {0}, size = 0;
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        int64_t *force = s->state.force + 4 * layout->local[n];
+        double x[3];
+        for (int i = 0; i < 3; i++) {
+            x[i] = model->mesh.position[n][i] + node_u(s, n)[i];
+            sum[i] += force[i];
+            size += fabs(x[i] * (double)force[i]);
+        }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            moment[i] += x[j] * (double)force[k] - x[k] * (double)force[j];
+        }
+        memset(force, 0, 3 * sizeof *force);
+    }
+    for (int i = 0; i < 3; i++) {
+        assert_true(sum[i] == 0);
+        assert_below(fabs(moment[i]), 1e-12 * size);
+    }
+    finish(s, model);
+}
+
 /* ---- energy --------------------------------------------------------------------------------- */
 
 /* Largest total energy over the first one of a body that is thrown on another. */
@@ -255,6 +292,7 @@ static void a_strip_that_closes_on_itself_holds(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_collision_keeps_momentum),
+        cmocka_unit_test(forces_come_in_pairs),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(every_joule_of_contact_is_accounted_for),
         cmocka_unit_test(a_body_comes_to_rest_on_another),
