@@ -203,6 +203,19 @@ static void grab_at(client *c, int hand, const float at[3]) {
     say(c, text);
 }
 
+/* Waits until the body is above, or below, a height, on however busy a machine. */
+static double await_height(client *c, double limit, bool above) {
+    float corner[3];
+    for (int i = 0; i < 1000; i++) {
+        ask_frame(c, "none");
+        double height = height_of(c, corner);
+        if ((height > limit) == above) return height;
+        nap(0.01);
+    }
+    fail_msg("the body does not come %s %g", above ? "above" : "below", limit);
+    return 0;
+}
+
 static void pulls_and_lets_go(void **unused) {
     (void)unused;
     served s = serve(NULL);
@@ -219,10 +232,7 @@ static void pulls_and_lets_go(void **unused) {
     const char *hand = await_text(&c, "hand");
     assert_non_null(strstr(hand, "\"hand\":0"));
     assert_non_null(strstr(hand, "\"state\":\"holding\""));
-    nap(0.3);
-    ask_frame(&c, "none");
-    double pulled = height_of(&c, corner);
-    assert_true(pulled > before + 0.001);
+    double pulled = await_height(&c, before + 0.001, true);
     await_status(&c, "\"by\":\"you\"");
     say(&c, "{\"do\":\"forces\",\"tool\":2,\"after\":0}");
     await_binary(&c, 3);
@@ -245,11 +255,7 @@ static void pulls_and_lets_go(void **unused) {
     assert_true(word_at(&c, 8) < count || count == 0);
 
     say(&c, "{\"do\":\"release\",\"hand\":0}");
-    nap(0.6);
-    ask_frame(&c, "none");
-    double after = height_of(&c, corner);
-    if (!(after < before + 0.3 * (pulled - before)))
-        fail_msg("the body was at %g, was pulled to %g and is at %g", before, pulled, after);
+    await_height(&c, before + 0.3 * (pulled - before), false);
     close_client(&c);
     end_serving(&s);
 }
@@ -355,12 +361,10 @@ static void saves_where_it_may(void **unused) {
     assert_non_null(strstr(await_text(&c, "note"), "no saved state"));
     say(&c, "{\"do\":\"save\"}");
     assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-1.checkpoint\""));
-    say(&c, "{\"do\":\"save\"}");
-    assert_non_null(strstr(await_text(&c, "note"), "too often"));
     nap(0.6);
-    say(&c, "{\"do\":\"save\"}");
-    assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-2.checkpoint\""));
-    await_status(&c, "\"saved\":[\"model-1.checkpoint\",\"model-2.checkpoint\"]");
+    for (int i = 0; i < 20; i++) say(&c, "{\"do\":\"save\"}"); /* the first of them is done */
+    assert_non_null(strstr(await_text(&c, "note"), "too often"));
+    await_status(&c, "\"saved\":[\"model-1.checkpoint\",\"model-2.checkpoint\"");
     uint64_t before = (uint64_t)number_of((char *)c.data, "step");
     say(&c, "{\"do\":\"pause\"}");
     await_status(&c, "\"state\":\"paused\"");
@@ -376,7 +380,7 @@ static void saves_where_it_may(void **unused) {
     say(&c, "{\"do\":\"record\",\"on\":true}");
     await_status(&c, "\"recording\":true");
     say(&c, "{\"do\":\"record\",\"on\":false}");
-    assert_non_null(strstr(await_text(&c, "saved"), "\"name\":\"model-3.recording\""));
+    while (!strstr(await_text(&c, "saved"), ".recording\"")) continue; /* others may still come */
     await_status(&c, "\"recording\":false");
     close_client(&c);
     end_serving(&s);
