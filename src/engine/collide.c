@@ -58,29 +58,41 @@ static double nearest_possible(const double x[3], const double corner[4][3]) {
 typedef struct survey {
     double reach; /* of the faces for the node [m] */
     double distance[LAR_GROUP_FACES_MOST];
-    double least; /* of those within reach; INFINITY: none is */
-    double gap;   /* by which those looked at are out of reach, at most 0 when one is not [m] */
-    double next;  /* travel at which the first of the others may matter [m] */
+    double least;         /* of those within reach; INFINITY: none is */
+    int32_t at;           /* the entry that it belongs to, */
+    lar_face_point point; /* and where */
+    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
+    double next; /* travel at which the first of the others may matter [m] */
 } survey;
 
+static double tie_of(const lar_collide *collide, int32_t face) {
+    return LAR_FACE_TIE * collide->surface->face[face].size;
+}
+
 static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
-                        double *distance, survey *s) {
-    double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
+                        int32_t i, survey *s) {
+    double corner[4][3], tie = tie_of(collide, f), *distance = &s->distance[i];
     corners_of(collide, state, f, corner, NULL);
     *distance = nearest_possible(x, (const double(*)[3])corner);
     if (*distance <= s->least + tie && *distance <= s->reach) {
+        lar_face_point point;
         collide->info.tested++;
-        *distance = lar_face_distance(x, (const double(*)[3])corner);
-        if (*distance <= s->reach && *distance < s->least) s->least = *distance;
+        lar_face_closest(x, (const double(*)[3])corner, tie, &point);
+        *distance = point.distance;
+        if (*distance <= s->reach && *distance < s->least) {
+            s->least = *distance;
+            s->at = i;
+            s->point = point;
+        }
     }
     if (*distance - s->reach < s->gap) s->gap = *distance - s->reach;
 }
 
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
  * farther away than the closest, whose distance changes as well. */
-static double away_until(double travel, double distance, const survey *s) {
-    double reach = (distance - s->reach) / APPROACH;
-    double least = (distance - s->least) / (2 * APPROACH);
+static double away_until(double travel, double distance, double tie, const survey *s) {
+    double reach = (distance - tie - s->reach) / APPROACH;
+    double least = (distance - 8 * tie - s->least) / (2 * APPROACH);
     return travel + 0.999 * (reach > least ? reach : least);
 }
 
@@ -94,32 +106,35 @@ static void survey_group(lar_collide *collide, const lar_state *state, int32_t g
     s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
                                  &collide->surface->face[face[0]]);
     s->least = s->gap = s->next = INFINITY;
-    survey_face(collide, state, x, face[first], &s->distance[first], s);
+    survey_face(collide, state, x, face[first], first, s);
     for (int32_t i = 0; i < group->count; i++) {
         if (i == first) continue;
         if (collide->travel >= away[i]) {
-            survey_face(collide, state, x, face[i], &s->distance[i], s);
+            survey_face(collide, state, x, face[i], i, s);
             continue;
         }
         s->distance[i] = INFINITY;
         if (away[i] < s->next) s->next = away[i];
     }
     for (int32_t i = 0; i < group->count; i++)
-        if (s->distance[i] < INFINITY) away[i] = away_until(collide->travel, s->distance[i], s);
+        if (s->distance[i] < INFINITY)
+            away[i] = away_until(collide->travel, s->distance[i], tie_of(collide, face[i]), s);
 }
 
 /* The closest face of a group, an entry of it. */
-static int32_t choose_face(lar_collide *collide, const lar_state *state, int32_t g,
+static int32_t choose_face(const lar_collide *collide, const lar_state *state, int32_t g,
                            const double x[3], const survey *s, lar_face_point *point) {
     const lar_contact_group *group = &collide->list.group[g];
     int32_t chosen = -1;
     for (int32_t i = 0; i < group->count; i++) {
         int32_t f = collide->list.face[group->first + i];
-        double corner[4][3], tie = LAR_FACE_TIE * collide->surface->face[f].size;
-        lar_face_point other;
+        double corner[4][3], tie = tie_of(collide, f);
+        lar_face_point other = s->point;
         if (!(s->distance[i] <= s->least + tie) || s->distance[i] > s->reach) continue;
-        corners_of(collide, state, f, corner, NULL);
-        lar_face_closest(x, corner, tie, &other);
+        if (i != s->at) {
+            corners_of(collide, state, f, corner, NULL);
+            lar_face_closest(x, (const double(*)[3])corner, tie, &other);
+        }
         if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
         *point = other;
         chosen = i;
