@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/pin.h"
 
 enum { RING = 16384 };                /* records: a second of sixteen tools, many of one */
 static const int64_t LOOK = 50000000; /* [ns] */
@@ -50,6 +51,7 @@ static void drain(lar_recorder *recorder) {
 
 static void *write_records(void *argument) {
     lar_recorder *recorder = argument;
+    lar_pin_nowhere(); /* not where a processor computes, which may have started it */
     pthread_mutex_lock(&recorder->lock);
     while (!recorder->finish) {
         int64_t until = lar_clock_ns() + LOOK;

@@ -111,7 +111,7 @@ static void rest(lar_session *session, double *fade) {
     bool device = lar_session_idle_tools(session, *fade > 0 ? left / *fade : 0);
     if (device) session->pace.total.exchanges++;
     bool look = lar_pace_look(&session->pace, lar_clock_ns());
-    if (*fade > 0 || (device && look)) lar_session_publish(session, look);
+    if (*fade > 0 || look) lar_session_publish(session, look);
     if (*fade <= 0 && !device) wake += LONG;
     *fade = left;
     serve_snapshots(session);
