@@ -547,8 +547,8 @@ typedef struct lar_replay_report {
 } lar_replay_report;
 
 /* Plays a recording on a simulation of the same model and time step, on any grid, and compares the
- * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does a
- * file that is damaged or cut off where it is; what comes before is played and compared, and
+ * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does
+ * a file that is damaged or cut off where it is; what comes before is played and compared, and
  * `different` says that it is equal. `watch` may be NULL: called with the number of steps at the
  * beginning, after every tick, reset and load, between two advances, so that it may look at the
  * simulation; 0 ends the replay. */
@@ -561,19 +561,23 @@ LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_
 typedef struct lar_server lar_server;
 
 typedef struct lar_server_options {
-    const char *address;     /* NULL: 127.0.0.1. Any other one needs a token */
-    int port;                /* 0: a free one */
-    const char *token;       /* what viewers must show; NULL: none */
-    const char *folder;      /* of the viewer's files; NULL: those installed with the library */
-    const char *save_folder; /* where the viewer's record and save go; NULL: they are refused */
+    const char *address; /* NULL: 127.0.0.1. Any other one needs a token */
+    int port;            /* 0: a free one */
+    const char *token;   /* what viewers must show: 8 to 128 letters, digits, - and _; NULL: none */
+    const char *folder;  /* of the viewer's files; NULL: those installed with the library */
+    const char *save_folder; /* where the viewer's record and save go, made when it is missing;
+                                NULL: they are refused */
 } lar_server_options;
 
-/* Serves a session to viewers on a thread of its own. The session must outlive it.
- * LAR_ERROR_UNSUPPORTED when this build has no libwebsockets. */
+/* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be
+ * NULL. LAR_ERROR_IO when it cannot listen there, LAR_ERROR_UNSUPPORTED when this build has no
+ * libwebsockets. docs/viewer-protocol.md. */
 LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
                                    const lar_server_options *options, lar_server **server,
                                    lar_error *error);
-LAR_API const char *lar_server_url(const lar_server *server); /* "http://127.0.0.1:8000/" */
+/* "http://127.0.0.1:8000/", with "#token=..." behind when there is one; lives as long as the
+ * server. */
+LAR_API const char *lar_server_url(const lar_server *server);
 LAR_API int32_t lar_server_viewers(const lar_server *server); /* connected now */
 LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
 
