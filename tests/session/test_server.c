@@ -395,6 +395,35 @@ static void saves_where_it_may(void **unused) {
     end_serving(&s);
 }
 
+static void shows_why_it_stopped_and_begins_again(void **unused) {
+    (void)unused;
+    served s = {.b = {.model = served_model()}};
+    s.b.model->gravity[2] = -1e5; /* breaks it within some milliseconds */
+    s.b.simulation = served_simulation(s.b.model, NULL);
+    DONE(lar_session_open(s.b.simulation, NULL, &s.b.session, &failure));
+    DONE(lar_server_open(s.b.session, s.b.model, NULL, &s.server, &failure));
+    DONE(lar_session_start(s.b.session, &failure));
+    client c = open_client(port_of(s.server));
+    await_status(&c, "\"state\":\"stopped\"");
+    assert_null(strstr((char *)c.data, "\"message\":\"\""));
+    double ticks = number_of((char *)c.data, "ticks");
+    /* A picture of the last state, or a word that there is none. */
+    say(&c, "{\"do\":\"frame\",\"field\":\"pressure\"}");
+    bool answered = false;
+    for (int i = 0; i < 50 && !answered && next_frame(&c); i++)
+        answered = (c.opcode == BINARY_FRAME && word_at(&c, 0) == 2) ||
+                   strstr((char *)c.data, "no_frame") != NULL;
+    assert_true(answered);
+    say(&c, "{\"do\":\"play\"}"); /* takes nothing up */
+    say(&c, "{\"do\":\"reset\"}");
+    for (int i = 0; i < 100; i++)
+        if (number_of(await_text(&c, "status"), "ticks") > ticks) break;
+    assert_true(number_of((char *)c.data, "ticks") > ticks);
+    await_status(&c, "\"state\":\"stopped\"");
+    close_client(&c);
+    end_serving(&s);
+}
+
 static void tells_when_it_ends(void **unused) {
     (void)unused;
     served s = serve(NULL);
@@ -417,6 +446,7 @@ int main(void) {
                                        cmocka_unit_test(instruments_have_one_owner),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
                                        cmocka_unit_test(saves_where_it_may),
+                                       cmocka_unit_test(shows_why_it_stopped_and_begins_again),
                                        cmocka_unit_test(tells_when_it_ends)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
