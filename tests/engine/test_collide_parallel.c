@@ -1,5 +1,5 @@
 /* Contact of bodies has the same bits on every grid, with any number of threads, by every scheme,
- * with random delays, and whenever the search is made. */
+ * by every instruction set, with random delays, and whenever the search is made. */
 #include "engine/collide_test.h"
 
 #include "base/hash.h"
@@ -84,6 +84,7 @@ static void bits_do_not_depend_on_the_division(void **unused) {
                     options.grid = grids[g];
                     options.threads = threads;
                     options.scheme = schemes[scheme];
+                    options.isa = g % 2 ? LAR_ISA_C : LAR_ISA_AUTO;
                     compare(model, &one, options, steps);
                 }
         lar_model_destroy(model);
