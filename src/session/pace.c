@@ -12,6 +12,9 @@ static const int64_t WINDOW_STEP = 100000000, SECOND = 1000000000; /* [ns] */
  * on an idle machine. */
 static const int64_t WAKE_EARLY = 20000;
 
+/* A tick: three years, which a number of nanoseconds holds [ns]. */
+static const double LONGEST = 1e17;
+
 static double played(const lar_pace *pace, int64_t now) {
     return pace->before +
            (pace->running && now > pace->since ? 1e-9 * (double)(now - pace->since) : 0);
@@ -50,6 +53,11 @@ void lar_pace_stop(lar_pace *pace, int64_t now) {
 void lar_pace_set(lar_pace *pace, double wanted, int64_t now) {
     if (wanted == pace->pace) return;
     lar_pace_restart(pace, now);
+    /* What is left of the tick under way goes at the new pace. */
+    if (pace->running && wanted > 0 && pace->due > now) {
+        double left = (double)(pace->due - now) * (pace->pace / wanted);
+        pace->due = now + (int64_t)fmin(left, LONGEST);
+    }
     pace->pace = wanted;
 }
 
@@ -67,7 +75,7 @@ static void give_up(lar_pace *pace, int64_t now) {
 }
 
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
-    pace->period = pace->pace > 0 ? 1e9 * seconds / pace->pace : 0;
+    pace->period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
     if (pace->pace > 0)
         give_up(pace, now);
     else

@@ -8,6 +8,8 @@
 /* How long a force takes to fade when the engine pauses [s]. */
 static const double FADE = 0.05;
 static const int64_t LONG = 3600000000000; /* [ns] */
+/* A tick that is due later than this is not just waited for [ns]. */
+static const int64_t FAR = 20000000;
 
 /* ---- telling ------------------------------------------------------------------------------- */
 
@@ -118,6 +120,19 @@ static void rest(lar_session *session, double *fade) {
     lar_requests_sleep(&session->requests, snapshot_is_wanted, session, wake);
 }
 
+/* Until the next tick is due. In very slow motion that is long: requests and snapshots are served
+ * meanwhile, as in a pause. */
+static void wait_for_tick(lar_session *session) {
+    lar_pace *pace = &session->pace;
+    while (!session->ended && session->status.state == LAR_SESSION_PLAYING && pace->pace > 0 &&
+           pace->due - lar_clock_ns() > FAR) {
+        serve_snapshots(session);
+        lar_requests_sleep(&session->requests, snapshot_is_wanted, session, pace->due - FAR);
+        obey_requests(session);
+    }
+    if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);
+}
+
 void *lar_session_run(void *argument) {
     lar_session *session = argument;
     double fade = FADE;
@@ -129,7 +144,7 @@ void *lar_session_run(void *argument) {
         if (session->status.state == LAR_SESSION_PLAYING) {
             tick(session);
             fade = FADE;
-            if (session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(&session->pace);
+            wait_for_tick(session);
         } else {
             rest(session, &fade);
         }

@@ -145,6 +145,23 @@ static void without_pace_nothing_is_due(void **unused) {
     assert_int_equal(pace.due, now - MS + 1000 * MS);
 }
 
+/* A pace holds from now on, also in the middle of a tick that would have lasted longer; and no pace
+ * is so slow that its ticks are beyond all numbers. */
+static void another_pace_holds_at_once(void **unused) {
+    (void)unused;
+    begin_with(0.001);
+    tick(0.001, MS);
+    assert_int_equal(pace.due, 2000 * MS);
+    lar_pace_set(&pace, 1, now);
+    assert_int_equal(pace.due, now + 999000);
+    lar_pace_set(&pace, 0.5, now);
+    assert_int_equal(pace.due, now + 2 * 999000);
+    lar_pace_set(&pace, 1e-300, now);
+    assert_true(pace.due > now && pace.due < INT64_MAX / 2);
+    tick(0.001, MS);
+    assert_true(pace.due > now && pace.due < INT64_MAX / 2);
+}
+
 static void rates_are_of_the_last_second(void **unused) {
     (void)unused;
     begin_with(1);
@@ -174,6 +191,7 @@ int main(void) {
                                        cmocka_unit_test(too_much_is_given_up),
                                        cmocka_unit_test(pauses_do_not_count),
                                        cmocka_unit_test(without_pace_nothing_is_due),
+                                       cmocka_unit_test(another_pace_holds_at_once),
                                        cmocka_unit_test(rates_are_of_the_last_second)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

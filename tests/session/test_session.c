@@ -66,6 +66,30 @@ static void keeps_its_pace(void **unused) {
     close_bench(&b);
 }
 
+/* However far away the next tick is, nobody waits for it. */
+static void listens_in_slow_motion(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    options.pace = 1e-9; /* ticks of 11 days */
+    bench b = open_bench(NULL, 0, &options);
+    lar_snapshot *snapshot = NULL;
+    DONE(lar_snapshot_create(b.session, &snapshot, &failure));
+    DONE(lar_session_start(b.session, &failure));
+    assert_int_equal(await(&b, LAR_SESSION_PLAYING, 10).step, 10);
+    DONE(lar_session_snapshot(b.session, snapshot, 20, &failure));
+    assert_int_equal(snapshot->step, 10);
+    lar_session_pause(b.session);
+    await(&b, LAR_SESSION_PAUSED, 10);
+    lar_session_play(b.session);
+    await(&b, LAR_SESSION_PLAYING, 20);
+    lar_session_set_pace(b.session, 100);
+    await(&b, LAR_SESSION_PLAYING, 200);
+    lar_session_set_pace(b.session, 1e-300);
+    DONE(lar_session_reset(b.session, &failure));
+    lar_snapshot_destroy(snapshot);
+    close_bench(&b);
+}
+
 /* A pace that no machine can hold is announced as slow motion, and what is lost is counted. */
 static void slow_motion_is_announced(void **unused) {
     (void)unused;
@@ -388,6 +412,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(plays_pauses_and_steps),
                                        cmocka_unit_test(waits_when_it_starts_paused),
                                        cmocka_unit_test(keeps_its_pace),
+                                       cmocka_unit_test(listens_in_slow_motion),
                                        cmocka_unit_test(slow_motion_is_announced),
                                        cmocka_unit_test(status_is_finite_and_complete),
                                        cmocka_unit_test(snapshots_are_of_one_step),
