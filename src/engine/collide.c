@@ -173,7 +173,8 @@ static bool contact(lar_collide *collide, const lar_state *state, int32_t g, tou
     lar_face_point point;
     place_of(collide, state, group->node, x, NULL);
     survey_group(collide, state, g, x, &s);
-    collide->due[g] = s.gap > 0 ? fmin(collide->travel + s.gap / APPROACH, s.next) : 0;
+    /* A little earlier, for rounding. */
+    collide->due[g] = s.gap > 0 ? fmin(collide->travel + 0.999 * s.gap / APPROACH, s.next) : 0;
     if (!(s.least < INFINITY)) return false;
     int32_t chosen = choose_face(collide, state, g, x, &s, &point);
     if (chosen < 0) return false;
@@ -346,7 +347,10 @@ static void keep_list(lar_collide *collide, const lar_state *state, double way) 
     if (!motion->searching && collide->moved > 0.3 * collide->list.skin) look(collide, state, way);
     bool last = !(collide->moved < 0.5 * collide->list.skin);
     if (motion->searching) {
-        int32_t nodes = collide->surface->node_count / PART_STEPS + 1;
+        /* As many as must be, when the rest of the way is to be enough for the others. */
+        double steps = way > 0 ? (0.5 * collide->list.skin - collide->moved) / (1.25 * way) : 1e9;
+        int32_t left = lar_contact_search_left(motion->search);
+        int32_t nodes = (int32_t)(left / fmax(fmin(steps, PART_STEPS), 1)) + 1;
         lar_contact_progress progress =
             lar_contact_search_go_on(motion->search, last ? INT32_MAX : nodes);
         if (progress == LAR_SEARCH_DONE) take_list(collide, motion->since);
@@ -424,7 +428,7 @@ lar_status lar_collide_create(const lar_model *model, const double *mass, const 
     collide->list = motion->search->list;
     motion->always = search_always;
     motion->skin_least = 0.25 * surface->reach;
-    motion->skin_most = surface->reach_most;
+    motion->skin_most = 2 * surface->reach_most;
     status = allocate(collide, local, error);
     if (status)
         lar_collide_destroy(collide);
