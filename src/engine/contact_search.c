@@ -116,11 +116,16 @@ static lar_box box_of(const lar_contact_surface *s, const lar_contact_face *face
     return box;
 }
 
-/* Halves stand behind what they are halves of. */
-static void fit_boxes(lar_contact_search *search, const double (*x)[3], double skin) {
+/* The boxes of some more faces; with the last ones, those of all patches. Halves stand behind what
+ * they are halves of. */
+static void fit_boxes(lar_contact_search *search, int32_t faces) {
     const lar_contact_surface *s = &search->surface;
-    for (int32_t i = 0; i < s->face_count; i++)
-        search->face_box[i] = box_of(s, &s->face[search->order[i]], x, skin);
+    int32_t left = s->face_count - search->boxes,
+            end = search->boxes + (faces < left ? faces : left);
+    for (int32_t i = search->boxes; i < end; i++)
+        search->face_box[i] = box_of(s, &s->face[search->order[i]], search->x, search->next.skin);
+    search->boxes = end;
+    if (end < s->face_count) return;
     for (int32_t p = search->patch_count - 1; p >= 0; p--) {
         const lar_patch *patch = &search->patch[p];
         lar_box *box = &search->patch_box[p];
@@ -225,13 +230,25 @@ void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], 
     list->group_count = list->face_count = 0;
     list->skin = skin;
     search->x = x;
-    search->at = 0;
-    fit_boxes(search, x, skin);
+    search->at = search->boxes = 0;
+}
+
+/* Boxes are made several times as fast as nodes are looked for. */
+enum { BOXES_PER_NODE = 4 };
+
+int32_t lar_contact_search_left(const lar_contact_search *search) {
+    return search->surface.node_count - search->at +
+           (search->surface.face_count - search->boxes) / BOXES_PER_NODE;
 }
 
 lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes) {
     const lar_contact_surface *s = &search->surface;
     lar_contact_list *list = &search->next;
+    if (search->boxes < s->face_count) {
+        fit_boxes(search,
+                  nodes < s->face_count / BOXES_PER_NODE ? nodes * BOXES_PER_NODE : s->face_count);
+        if (search->boxes < s->face_count || nodes < s->node_count) return LAR_SEARCH_UNDER_WAY;
+    }
     int32_t end = nodes < s->node_count - search->at ? search->at + nodes : s->node_count;
     for (int32_t n = search->at; n < end; n++) {
         if (!s->node[n].passes) continue;

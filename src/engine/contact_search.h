@@ -63,6 +63,7 @@ typedef struct lar_contact_search {
     lar_contact_list list; /* of the last search */
     lar_contact_list next; /* of the one under way */
     const double (*x)[3];  /* its places, not owned */
+    int32_t boxes;         /* of faces made anew so far */
     int32_t at;            /* the node that comes next */
 } lar_contact_search;
 
@@ -85,5 +86,7 @@ typedef enum lar_contact_progress {
     LAR_SEARCH_FULL  /* too many pairs: take lar_contact_search_run */
 } lar_contact_progress;
 lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes);
+/* What is left to do, in nodes. */
+int32_t lar_contact_search_left(const lar_contact_search *search);
 
 #endif
