@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <time.h>
@@ -12,6 +11,7 @@
 
 #include "base/memory.h"
 #include "base/pin.h"
+#include "base/thread.h"
 #include "comm/socket.h"
 
 static const double BEAT = 0.1; /* between signs of life [s] */
@@ -227,16 +227,6 @@ static void *watch_thread(void *context) {
     }
 }
 
-/* The thread takes no signals: they are the program's. */
-static int start_thread(lar_comm_watch *w) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    int refused = pthread_create(&w->thread, NULL, watch_thread, w);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return refused;
-}
-
 lar_status lar_watch_start(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
     size_t count = (size_t)comm->options.count;
@@ -250,7 +240,8 @@ lar_status lar_watch_start(lar_comm *comm, lar_error *error) {
     if (!w->links || !w->polled) return lar_fail_memory(error, count * 48, "watched processors");
     double now = lar_comm_now();
     for (size_t p = 0; p < count; p++) w->links[p].heard = now;
-    if (pipe2(w->wake, O_CLOEXEC | O_NONBLOCK) != 0 || start_thread(w) != 0)
+    if (pipe2(w->wake, O_CLOEXEC | O_NONBLOCK) != 0 ||
+        lar_thread_start(&w->thread, watch_thread, w) != 0)
         return lar_fail(error, LAR_ERROR_IO,
                         "the thread that watches the other processors cannot be started; raise the "
                         "limits on threads and open files");

@@ -30,8 +30,10 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "base/text.h"
+#include "base/pin.h"
 #include "base/quaternion.h"
+#include "base/text.h"
+#include "base/thread.h"
 
 enum { LOOKS_PER_SECOND = 250, RUMBLE_MS = 100 };
 static const double SPEED = 0.05, ROLL = 1.5;        /* at full stick [m/s] [rad/s] */
@@ -124,6 +126,7 @@ static void look(gamepad_state *state) {
 static void *watch_controller(void *data) {
     gamepad_state *state = data;
     uint16_t told = 0;
+    lar_pin_nowhere(); /* not where a processor computes, which may have started it */
     for (int looks = 0; !atomic_load(&state->ended); looks++) {
         look(state);
         /* A rumble lasts RUMBLE_MS and is renewed before it ends. */
@@ -193,7 +196,7 @@ static lar_status gamepad_open(lar_device_spec *spec, void **data, lar_error *er
     lar_status status = open_controller(state, spec, number, error);
     pthread_mutex_unlock(&sdl_lock);
     if (status) return status;
-    if (pthread_create(&state->thread, NULL, watch_controller, state))
+    if (lar_thread_start(&state->thread, watch_controller, state))
         return lar_fail(error, LAR_ERROR_MEMORY, "device '%s': the system gives no thread",
                         spec->text);
     state->started = true;

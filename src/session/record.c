@@ -1,7 +1,6 @@
 #include "session/record.h"
 
 #include <inttypes.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -9,6 +8,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/pin.h"
+#include "base/thread.h"
 
 enum { RING = 16384 };                /* records: a second of sixteen tools, many of one */
 static const int64_t LOOK = 50000000; /* [ns] */
@@ -88,11 +88,7 @@ static lar_recorder *make(const char *path) {
 }
 
 static lar_status start_thread(lar_recorder *recorder, lar_error *error) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    int cause = pthread_create(&recorder->thread, NULL, write_records, recorder);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    int cause = lar_thread_start(&recorder->thread, write_records, recorder);
     if (!cause) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MEMORY,
                     "the system gives no thread for a recording: %s; raise the limit (ulimit -u)",

@@ -13,6 +13,7 @@
 
 #include "base/folder.h"
 #include "base/pin.h"
+#include "base/thread.h"
 #include "comm/socket.h"
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
@@ -326,7 +327,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     if (!status) status = copy_texts(server, &asked, error);
     if (!status) status = prepare(server, error);
     if (!status) {
-        int cause = lar_server_thread(&server->thread, run, server);
+        int cause = lar_thread_start(&server->thread, run, server);
         server->started = cause == 0;
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,

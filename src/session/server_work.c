@@ -1,10 +1,10 @@
 #include "session/server_work.h"
 
-#include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
 
 #include "base/pin.h"
+#include "base/thread.h"
 
 /* A tick that takes longer than this is no real time at all [s]. */
 static const double SNAPSHOT_SECONDS = 2;
@@ -91,7 +91,7 @@ lar_status lar_work_start(lar_work *work, lar_session *session, const lar_model 
     if (!status) {
         pthread_mutex_init(&work->lock, NULL);
         pthread_cond_init(&work->bell, NULL);
-        int cause = lar_server_thread(&work->thread, run, work);
+        int cause = lar_thread_start(&work->thread, run, work);
         work->started = cause == 0;
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
@@ -117,15 +117,6 @@ void lar_work_stop(lar_work *work) {
     lar_picture_destroy(&work->canvas);
     lar_painter_destroy(&work->painter);
     *work = (lar_work){0};
-}
-
-int lar_server_thread(pthread_t *thread, void *(*run_it)(void *), void *context) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    int cause = pthread_create(thread, NULL, run_it, context);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return cause;
 }
 
 bool lar_work_want(lar_work *work, unsigned fields) {

@@ -16,9 +16,6 @@
 
 enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
 
-/* A thread that hears no signals: they are for the program. Returns 0 or an errno. */
-int lar_server_thread(pthread_t *thread, void *(*run)(void *), void *context);
-
 typedef struct lar_job {
     lar_wish_kind kind; /* reset, save, load, record */
     uint64_t viewer;

@@ -1,11 +1,11 @@
 #include "session/session.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/thread.h"
 
 lar_session_options lar_session_options_default(void) {
     return (lar_session_options){.pace = 1};
@@ -120,16 +120,6 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     return status;
 }
 
-/* Signals are for the threads of the program, not for the engine. */
-static int start_thread(lar_session *session) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    int cause = pthread_create(&session->thread, NULL, lar_session_run, session);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return cause;
-}
-
 lar_status lar_session_start(lar_session *session, lar_error *error) {
     if (!session)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_start needs a session, not NULL");
@@ -142,7 +132,7 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
-        int cause = start_thread(session);
+        int cause = lar_thread_start(&session->thread, lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
             session->status.state = LAR_SESSION_IDLE;

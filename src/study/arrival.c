@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "base/error.h"
+#include "base/thread.h"
 
 /* Looks every 2 ms; who is stopped for a second, other than by a terminal that stops all, will not
  * come. */
@@ -41,13 +42,8 @@ static void *arrival_thread(void *context) {
     return NULL;
 }
 
-/* The thread takes no signals: they are the program's. */
 void lar_arrival_begin(lar_arrival *a) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    a->runs = pthread_create(&a->thread, NULL, arrival_thread, a) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    a->runs = lar_thread_start(&a->thread, arrival_thread, a) == 0;
 }
 
 static void describe(const lar_arrival *a, lar_error *error) {
