@@ -1,11 +1,13 @@
 #include "base/folder.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/memory.h"
 
@@ -44,4 +46,17 @@ char *lar_folder_join(const char *folder, const char *name) {
     const char *slash = length > 0 && folder[length - 1] == '/' ? "" : "/";
     if (path) snprintf(path, size, "%s%s%s", folder, slash, name);
     return path;
+}
+
+lar_status lar_file_spare(const char *path, const void *magic, const char *what, lar_error *error) {
+    char begin[8];
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return LAR_OK; /* none there, or writing will tell */
+    ssize_t got = read(file, begin, sizeof begin);
+    close(file);
+    if (got == 0 || (got == (ssize_t)sizeof begin && memcmp(begin, magic, sizeof begin) == 0))
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is there and is %s; it is not overwritten, choose another name", path,
+                    what);
 }

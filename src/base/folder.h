@@ -1,4 +1,4 @@
-/* Folders for what a run writes. */
+/* Folders and files for what a run writes. */
 #ifndef LAR_BASE_FOLDER_H
 #define LAR_BASE_FOLDER_H
 
@@ -10,5 +10,10 @@ lar_status lar_folder_make(const char *folder, lar_error *error);
 
 /* "folder/name" or NULL when memory is refused. Free with free(). */
 char *lar_folder_join(const char *folder, const char *name);
+
+/* A mesh or a scene that is named by mistake stays as it is: what stands at `path` must be empty or
+ * begin with the 8 bytes `magic`, or else "is there and is `what`" (LAR_ERROR_IO). Nothing there is
+ * fine. */
+lar_status lar_file_spare(const char *path, const void *magic, const char *what, lar_error *error);
 
 #endif

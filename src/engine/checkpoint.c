@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/folder.h"
 #include "base/hash.h"
 #include "engine/identity.h"
 
@@ -76,21 +77,6 @@ static lar_status check_finite(const char *path, const lar_domain *whole, const 
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "%s: the state has left the range of numbers and is not saved; go back to an "
                     "earlier checkpoint or to the start",
-                    path);
-}
-
-/* A mesh or a scene that is named by mistake stays as it is. */
-static lar_status spare_others(const char *path, lar_error *error) {
-    char begin[sizeof MAGIC];
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return LAR_OK; /* none there, or writing will tell */
-    ssize_t got = read(file, begin, sizeof begin);
-    close(file);
-    if (got == 0 || (got == (ssize_t)sizeof begin && memcmp(begin, MAGIC, sizeof begin) == 0))
-        return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is there and is not a checkpoint; it is not overwritten, choose another "
-                    "name",
                     path);
 }
 
@@ -191,7 +177,7 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
 }
 
 lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
-    lar_status status = spare_others(path, error);
+    lar_status status = lar_file_spare(path, MAGIC, "not a checkpoint", error);
     return status ? status : write_file(path, bytes->data, bytes->size, error);
 }
 

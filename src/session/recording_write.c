@@ -1,7 +1,9 @@
 #include <errno.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include "base/folder.h"
 #include "session/recording_words.h"
 
 static void put_words(lar_recording_writer *writer, const uint64_t *word, size_t count) {
@@ -19,29 +21,29 @@ static void put_checksum(lar_recording_writer *writer) {
     writer->checksum = checksum; /* is no part of itself */
 }
 
-/* A mesh or a scene that is named by mistake stays as it is. */
-static lar_status spare_others(const char *path, lar_error *error) {
-    char begin[8];
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return LAR_OK; /* none there, or writing will tell */
-    ssize_t got = read(file, begin, sizeof begin);
+/* The file, empty, and nobody else's: two recordings in one file would be none. -1: errno says why.
+ * A pipe would wait for a reader. */
+static int open_empty(const char *path) {
+    int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (file < 0) return -1;
+    bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!taken && ftruncate(file, 0) == 0) return file;
+    int cause = taken ? EBUSY : errno;
     close(file);
-    if (got == 0 ||
-        (got == (ssize_t)sizeof begin && memcmp(begin, LAR_RECORDING_MAGIC, sizeof begin) == 0))
-        return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is there and is no recording; it is not overwritten, choose another name",
-                    path);
+    errno = cause;
+    return -1;
 }
 
 lar_status lar_recording_create(const char *path, const lar_recording_header *header,
                                 lar_recording_writer *writer, lar_error *error) {
-    lar_status status = spare_others(path, error);
+    lar_status status = lar_file_spare(path, LAR_RECORDING_MAGIC, "no recording", error);
     if (status) return status;
-    /* A pipe would wait for a reader. */
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
+    int file = open_empty(path);
     *writer = (lar_recording_writer){.path = path, .file = file < 0 ? NULL : fdopen(file, "wb")};
     if (!writer->file && file >= 0) close(file);
+    if (!writer->file && errno == EBUSY)
+        return lar_fail(error, LAR_ERROR_IO,
+                        "%s: another recording is being written to it; choose another name", path);
     if (!writer->file)
         return lar_fail(error, LAR_ERROR_IO,
                         "%s: cannot be written: %s; check the folder and its permissions", path,

@@ -337,6 +337,26 @@ static void other_files_are_spared(void **unused) {
     assert_int_equal(replay(LAR_TEST_BUILD, NULL, 0, &report), LAR_ERROR_IO);
 }
 
+/* Two recordings in one file would be none. */
+static void a_file_has_one_recording(void **unused) {
+    (void)unused;
+    lar_replay_report report;
+    bench b = open_bench(NULL, 0, NULL), other = open_bench(NULL, 0, NULL);
+    DONE(lar_session_start(b.session, &failure));
+    DONE(lar_session_record(b.session, PATH, &failure));
+    assert_int_equal(lar_session_record(b.session, PATH, &failure), LAR_ERROR_IO);
+    assert_non_null(strstr(failure.message, "another recording"));
+    assert_int_equal(lar_session_record(other.session, PATH, &failure), LAR_ERROR_IO);
+    assert_int_equal(status_of(&b).recording, 1);
+    lead(&b, 200);
+    DONE(lar_session_record(b.session, NULL, &failure));
+    assert_int_equal(replay(PATH, NULL, 0, &report), LAR_OK);
+    assert_true(report.hashes > 0);
+    DONE(lar_session_record(other.session, PATH, &failure));
+    close_bench(&b);
+    close_bench(&other);
+}
+
 /* A disk that is full: the session goes on, and closing tells. */
 static void full_disks_are_told(void **unused) {
     (void)unused;
@@ -394,6 +414,7 @@ int main(void) {
                                        cmocka_unit_test(other_models_are_refused),
                                        cmocka_unit_test(killed_writers_leave_a_beginning),
                                        cmocka_unit_test(other_files_are_spared),
+                                       cmocka_unit_test(a_file_has_one_recording),
                                        cmocka_unit_test(full_disks_are_told),
                                        cmocka_unit_test(replays_can_be_ended)};
     return cmocka_run_group_tests(tests, NULL, NULL);
