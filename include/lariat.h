@@ -139,7 +139,7 @@ typedef struct lar_surface_info {
 /* The arrays live as long as the model. `info` is the caller's. */
 LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 
-/* The material of an element: index into those of lar_model_material. */
+/* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
 /* What may touch what: one entry of a model's contact. */
@@ -417,9 +417,9 @@ LAR_API lar_status lar_session_open(lar_simulation *simulation, const lar_sessio
                                     lar_session **session, lar_error *error);
 /* Starts the thread. */
 LAR_API lar_status lar_session_start(lar_session *session, lar_error *error);
-/* Ends the thread within a tick, closes devices and the recording. NULL is fine. The simulation may
- * be used again, and is the caller's to destroy. Closing fails only when a recording could not be
- * completed. */
+/* Ends the thread within a tick, closes devices and the recording. NULL is fine. No other call may
+ * be under way or come after it, and servers are closed before. The simulation may be used again,
+ * and is the caller's to destroy. Closing fails only when a recording could not be completed. */
 LAR_API lar_status lar_session_close(lar_session *session, lar_error *error);
 
 /* Asked for here, done at the end of the tick under way, in this order. */
@@ -431,7 +431,8 @@ LAR_API void lar_session_set_pace(lar_session *session, double pace);
 LAR_API lar_status lar_session_reset(lar_session *session, lar_error *error);
 LAR_API lar_status lar_session_save(lar_session *session, const char *path, lar_error *error);
 LAR_API lar_status lar_session_load(lar_session *session, const char *path, lar_error *error);
-/* Begins a recording at `path`; NULL ends the one under way. */
+/* Begins a recording at `path`, after the end of the one under way; NULL ends that only.
+ * LAR_ERROR_IO when there is another file at `path`, or a recording that is being written. */
 LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
 
 /* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
