@@ -111,12 +111,13 @@ static double step_travel(const lar_condition_context *context, const lar_state 
 }
 
 /* Looks so far that at the present speed the next search is some dozens of steps away, and never
- * less far than a falling body gets in ten steps. */
+ * less far than a falling body gets in a hundred steps: the update kernel sees a resting node fall
+ * in every step, before it is stopped. */
 static void search(lar_planes *planes, const lar_condition_context *context, const lar_state *state,
                    lar_contact_info *seen) {
     enum { AHEAD = 64 };
     double dt = context->time_step;
-    planes->reach = AHEAD * step_travel(context, state) + 1000 * dt * dt;
+    planes->reach = AHEAD * step_travel(context, state) + 50000 * dt * dt;
     planes->travel = 0;
     planes->near_count = 0;
     for (int32_t i = 0; i < planes->count; i++) {
