@@ -74,7 +74,7 @@ static void survey_face(lar_collide *collide, const lar_state *state, const doub
     double corner[4][3], tie = tie_of(collide, f), *distance = &s->distance[i];
     corners_of(collide, state, f, corner, NULL);
     *distance = nearest_possible(x, (const double(*)[3])corner);
-    if (*distance <= s->least + tie && *distance <= s->reach) {
+    if (*distance <= s->least + tie && *distance <= s->reach + tie) {
         lar_face_point point;
         collide->info.tested++;
         lar_face_closest(x, (const double(*)[3])corner, tie, &point);
@@ -130,7 +130,7 @@ static int32_t choose_face(const lar_collide *collide, const lar_state *state, i
         int32_t f = collide->list.face[group->first + i];
         double corner[4][3], tie = tie_of(collide, f);
         lar_face_point other = s->point;
-        if (!(s->distance[i] <= s->least + tie) || s->distance[i] > s->reach) continue;
+        if (!(s->distance[i] <= s->least + tie) || s->distance[i] > s->reach + tie) continue;
         if (i != s->at) {
             corners_of(collide, state, f, corner, NULL);
             lar_face_closest(x, (const double(*)[3])corner, tie, &other);
