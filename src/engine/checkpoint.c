@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/folder.h"
@@ -177,6 +178,11 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
 }
 
 lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
+    /* The new file takes the place of the old one, which may be a device. */
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return lar_fail(error, LAR_ERROR_IO, "%s: is there and is no file; choose another name",
+                        path);
     lar_status status = lar_file_spare(path, MAGIC, "not a checkpoint", error);
     return status ? status : write_file(path, bytes->data, bytes->size, error);
 }
@@ -219,6 +225,19 @@ static lar_status check_file(const char *path, const lar_bytes *bytes, file_head
         return refuse(error, path,
                       "is damaged: its checksum does not fit; take another checkpoint");
     return LAR_OK;
+}
+
+lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *error) {
+    /* The head first: what is much longer than a checkpoint is not worth reading. */
+    file_head head, again;
+    struct stat about;
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool whole = file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
+                 read(file, &head, sizeof head) == (ssize_t)sizeof head;
+    if (file >= 0) close(file);
+    lar_bytes begin = {(unsigned char *)&head, whole ? (size_t)about.st_size : 0};
+    if (whole && begin.size != head.bytes) return check_file(path, &begin, &again, error);
+    return lar_bytes_read(path, bytes, error);
 }
 
 static lar_status refuse_model(lar_error *error, const char *path, const char *what) {

@@ -30,6 +30,10 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
  * else stands is refused. */
 lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error);
 
+/* Reads the file into memory, unless its size already shows that it is no whole checkpoint. The
+ * caller frees the bytes. */
+lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *error);
+
 /* Checks every byte. `path` is for messages; `bytes` must stay, at an address that is a multiple of
  * 8, as malloc gives it. */
 lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,

@@ -62,7 +62,7 @@ lar_status lar_simulation_load(lar_simulation *simulation, const char *path, lar
     lar_bytes bytes = {0};
     lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_load", error);
     if (!status) status = check_path(path, "lar_simulation_load", error);
-    if (!status) status = lar_bytes_read(path, &bytes, error);
+    if (!status) status = lar_checkpoint_read(path, &bytes, error);
     if (!status) status = lar_simulation_unpack(simulation, path, &bytes, error);
     lar_bytes_free(&bytes);
     return status;

@@ -82,7 +82,7 @@ lar_status lar_session_load(lar_session *session, const char *path, lar_error *e
     lar_request_answer answer = {0};
     lar_bytes state = {0};
     lar_status status = check_file(session, path, "lar_session_load", error);
-    if (!status) status = lar_bytes_read(path, &state, error);
+    if (!status) status = lar_checkpoint_read(path, &state, error);
     if (!status)
         status = ask_and_wait(
             session,

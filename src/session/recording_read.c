@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -91,7 +92,9 @@ static lar_status read_header(lar_recording_reader *reader, lar_error *error) {
 
 lar_status lar_recording_open(const char *path, lar_recording_reader *reader, lar_error *error) {
     struct stat about;
-    *reader = (lar_recording_reader){.path = path, .file = fopen(path, "rb")};
+    /* A pipe would keep an ordinary open waiting for somebody who writes into it. */
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    *reader = (lar_recording_reader){.path = path, .file = file < 0 ? NULL : fdopen(file, "rb")};
     if (!reader->file || fstat(fileno(reader->file), &about)) {
         lar_status status = lar_fail(error, LAR_ERROR_IO, "%s: cannot be read: %s; check the path",
                                      path, strerror(errno));

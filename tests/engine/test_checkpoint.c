@@ -395,6 +395,8 @@ static void damaged_files_are_refused(void **unused) {
     bad.size = good.size + 8;
     write_bytes(BAD, &bad);
     refuse(simulation, BAD, LAR_ERROR_FORMAT, "altered");
+    assert_int_equal(truncate(BAD, (off_t)1 << 40), 0); /* more than any memory */
+    refuse(simulation, BAD, LAR_ERROR_FORMAT, "altered");
     bad.size = good.size;
     for (size_t at = 24; at < good.size; at += at < 200 ? 1 : 1009) {
         bad.data[at] ^= 0x10;
@@ -514,6 +516,11 @@ static void saving_spares_what_is_there(void **unused) {
     assert_int_equal(lar_simulation_save(simulation, LAR_TEST_BUILD "/nowhere/x", &error),
                      LAR_ERROR_IO);
     assert_int_equal(lar_simulation_save(simulation, LAR_TEST_BUILD, &error), LAR_ERROR_IO);
+    remove(BAD);
+    assert_int_equal(mkfifo(BAD, 0600), 0);
+    assert_int_equal(lar_simulation_save(simulation, BAD, &error), LAR_ERROR_IO);
+    assert_int_equal(lar_simulation_load(simulation, BAD, &error), LAR_ERROR_IO);
+    remove(BAD);
     save(simulation, PATH);
     save(simulation, PATH); /* a checkpoint is */
     assert_int_equal(access(PATH ".part", F_OK), -1);

@@ -324,10 +324,11 @@ static void other_files_are_spared(void **unused) {
     remove(BAD);
     assert_int_equal(mkfifo(BAD, 0600), 0);
     assert_int_equal(lar_session_record(b.session, BAD, &failure), LAR_ERROR_IO);
+    lar_replay_report report;
+    assert_int_equal(replay(BAD, NULL, 0, &report), LAR_ERROR_IO); /* and does not wait */
     remove(BAD);
     assert_int_equal(status_of(&b).recording, 0);
     close_bench(&b);
-    lar_replay_report report;
     assert_int_equal(replay(LAR_TEST_BUILD "/none", NULL, 0, &report), LAR_ERROR_IO);
     assert_int_equal(replay(NULL, NULL, 0, &report), LAR_ERROR_ARGUMENT);
     lar_recording_info info;
