@@ -40,10 +40,27 @@ cp -r "$SOURCE/examples" examples # a copy: its meshes are named relative to it
 awk '/^```sh/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page" |
     sed -n 's/ *#.*//; s/^build\/lariat //p' >commands
 [ "$(wc -l <commands)" -ge 3 ] || fail "the commands of README.md were not found"
+port=$((20000 + $$ % 20000)) # for the device's: another test may be at the one of the page
+sed -i "s/:9000/:$port/; s/--open/--port 0 --seconds 8/; s/--seconds 60/--seconds 1/" commands
+viewer=
 while read -r line; do
+    case $line in
+    view*) # goes on until it is ended: the next command talks to it
+        # shellcheck disable=SC2086
+        "$LARIAT" $line >viewed 2>&1 </dev/null &
+        viewer=$!
+        for _ in 1 2 3 4 5 6 7 8 9 10; do grep -q 'http\|libwebsockets' viewed || sleep 0.3; done
+        continue
+        ;;
+    device*) grep -q libwebsockets viewed && continue ;;
+    esac
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $line </dev/null
 done <commands
+wait "$viewer" || grep -q libwebsockets viewed || {
+    fail "lariat view of README.md failed:"
+    sed 's/^/    /' viewed >&2
+}
 
 # Links: the file is there, and so is the heading.
 anchors() {
