@@ -117,23 +117,7 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
     return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, round, error);
 }
 
-/* ---- waiting for the other threads --------------------------------------------------------- */
-
-static lar_status wait_for_batch(lar_processor *p, const lar_batch_mark *mark, uint64_t round,
-                                 lar_error *error) {
-    enum { POLLS = 50 };
-    for (;;) {
-        for (int i = 0; i < POLLS; i++)
-            if (__atomic_load_n(&mark->round, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
-        /* The other thread itself has a deadline in everything that it waits for. */
-        if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
-            return lar_fail(error, LAR_ERROR_PEER,
-                            "another thread of processor %d has given up in step %llu; see what "
-                            "it says",
-                            (int)p->self, (unsigned long long)(round - 1 + (uint64_t)p->ahead));
-        sched_yield();
-    }
-}
+/* ---- the step ------------------------------------------------------------------------------ */
 
 /* Random delays, to see that nothing depends on who is first (T 6.9): mostly none, sometimes a few
  * microseconds, now and then long enough for others to run ahead as far as they can. */
@@ -148,8 +132,6 @@ static void dawdle(lar_worker *worker) {
     struct timespec nap = {0, (long)(dice / 128 % 60000)};
     nanosleep(&nap, NULL);
 }
-
-/* ---- the step ------------------------------------------------------------------------------ */
 
 /* The displacements that other threads have computed are in their cores' caches. */
 static void fetch_foreign(const lar_worker *worker) {
@@ -225,7 +207,8 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_e
      * whose recovery the places of others come. */
     if (p->board && b == worker->batch_first) status = lar_contact_apply(worker, round, error);
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
-        status = wait_for_batch(p, &p->mark[p->wait[batch->waits.first + i]], round, error);
+        status =
+            lar_processor_await(p, &p->mark[p->wait[batch->waits.first + i]].round, round, error);
     dawdle(worker);
     for (int32_t i = 0; i < batch->receives.count && !status; i++)
         status = receive(worker, &p->packet[batch->receives.first + i], round, error);

@@ -1,31 +1,14 @@
 #include "engine/contact_exchange.h"
 
 #include <math.h>
-#include <sched.h>
 #include <string.h>
 
 /* ---- waiting --------------------------------------------------------------------------------- */
 
-static lar_status wait_for_mark(const lar_processor *p, const lar_contact_mark *mark,
-                                uint64_t round, lar_error *error) {
-    enum { POLLS = 50 };
-    for (;;) {
-        for (int i = 0; i < POLLS; i++)
-            if (__atomic_load_n(&mark->round, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
-        /* The other thread itself has a deadline in everything that it waits for. */
-        if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
-            return lar_fail(error, LAR_ERROR_PEER,
-                            "another thread of processor %d has given up in step %llu; see what "
-                            "it says",
-                            (int)p->self, (unsigned long long)(round - 1 + (uint64_t)p->ahead));
-        sched_yield();
-    }
-}
-
 static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = wait_for_mark(p, &p->board->mark[t], round, error);
+        status = lar_processor_await(p, &p->board->mark[t].round, round, error);
     return status;
 }
 
@@ -125,7 +108,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     if (worker->thread == 0)
         status = receive_places(p, round, error);
     else
-        status = wait_for_mark(p, &board->arrived, round, error);
+        status = lar_processor_await(p, &board->arrived.round, round, error);
     if (status) return status;
     double speed = board->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)

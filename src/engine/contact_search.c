@@ -71,7 +71,7 @@ static lar_status build_tree(lar_contact_search *search, lar_error *error) {
     search->apart = lar_calloc(faces, sizeof *search->apart);
     search->place = lar_calloc(faces, sizeof *search->place);
     bool fits = middle && search->order && search->patch && search->patch_box && search->face_box &&
-                search->apart;
+                search->apart && search->place;
     for (int32_t f = 0; f < s->face_count && fits; f++) {
         search->order[f] = f;
         for (int a = 0; a < 4; a++)

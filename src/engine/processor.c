@@ -1,5 +1,6 @@
 #include "engine/processor.h"
 
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -300,4 +301,20 @@ void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
            !__atomic_compare_exchange_n(&p->stop, &known, step, false, __ATOMIC_RELAXED,
                                         __ATOMIC_RELAXED))
         continue;
+}
+
+lar_status lar_processor_await(const lar_processor *p, const uint64_t *mark, uint64_t round,
+                               lar_error *error) {
+    enum { POLLS = 50 };
+    for (;;) {
+        for (int i = 0; i < POLLS; i++)
+            if (__atomic_load_n(mark, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
+        /* The other thread itself has a deadline in everything that it waits for. */
+        if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
+            return lar_fail(error, LAR_ERROR_PEER,
+                            "another thread of processor %d has given up in step %llu; see what "
+                            "it says",
+                            (int)p->self, (unsigned long long)(round - 1 + (uint64_t)p->ahead));
+        sched_yield();
+    }
 }

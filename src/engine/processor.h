@@ -114,6 +114,10 @@ void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
 /* Asks all processors to stop before `step`: earlier requests stand. */
 void lar_processor_ask_stop(lar_processor *processor, uint64_t step);
 
+/* Waits until another thread of the processor has set its mark (atomic) to `round` or further. */
+lar_status lar_processor_await(const lar_processor *processor, const uint64_t *mark, uint64_t round,
+                               lar_error *error);
+
 /* One step of one thread: batches, packets, waits (batch.c). Fails when a peer is lost, another
  * thread of the processor failed, or verification finds a difference; the processor is then of no
  * more use. A trip is no failure: the step is completed. */
