@@ -34,13 +34,7 @@ lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index, 
                                lar_error *error) {
     lar_status status = check_tool(simulation, index, info, error);
     if (status) return status;
-    const lar_tool *tool = &simulation->list.tool[index];
-    *info = (lar_tool_info){.name = tool->name,
-                            .shape = tool->shape,
-                            .radius = tool->radius,
-                            .length = tool->length,
-                            .spread = tool->spread,
-                            .rest = tool->rest};
+    *info = lar_tool_inspect(&simulation->list.tool[index]);
     return LAR_OK;
 }
 

@@ -100,12 +100,6 @@ lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *
     if (!model || !info) return refuse_null("lar_model_tool", error);
     if (index < 0 || index >= model->tool_count)
         return refuse_index("tool", index, model->tool_count, error);
-    const lar_tool *tool = &model->tool[index];
-    *info = (lar_tool_info){.name = tool->name,
-                            .shape = tool->shape,
-                            .radius = tool->radius,
-                            .length = tool->length,
-                            .spread = tool->spread,
-                            .rest = tool->rest};
+    *info = lar_tool_inspect(&model->tool[index]);
     return LAR_OK;
 }

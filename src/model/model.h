@@ -78,6 +78,16 @@ typedef struct lar_tool {
     lar_tool_pose rest;
 } lar_tool;
 
+/* What the public header tells of it; the name stays its own. */
+static inline lar_tool_info lar_tool_inspect(const lar_tool *tool) {
+    return (lar_tool_info){.name = tool->name,
+                           .shape = tool->shape,
+                           .radius = tool->radius,
+                           .length = tool->length,
+                           .spread = tool->spread,
+                           .rest = tool->rest};
+}
+
 /* One line of probes.csv: the mean displacement of some nodes, or the sum of the reactions of
  * their supports. */
 typedef struct lar_probe {
