@@ -25,6 +25,9 @@ int cli_complain(const cli_command *command, int status, const char *format, ...
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    /* What a message quotes from a file must not steer the terminal. */
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
     char who[32] = "";
     if (speaker > 0) snprintf(who, sizeof who, "processor %d: ", (int)speaker);
     fprintf(stderr, "lariat%s%s: %s%s\n", command ? " " : "", command ? command->name : "", who,

@@ -15,6 +15,11 @@ ln -s /dev/zero "$SCRATCH/zero.vtk"
 expect 1 timeout 20 "$LARIAT" info "$SCRATCH/zero.vtk"
 complains 'is not a regular file'
 
+# What a file says to the terminal is not passed on.
+printf '\033[31mred,x\n' >"$SCRATCH/red.csv"
+expect 1 "$LARIAT" device udp:127.0.0.1:9 --script "$SCRATCH/red.csv"
+complains "red.csv:1: '?\[31mred' is no column"
+
 # Loads and motions beyond all numbers. Each line is put into the scene of the beam.
 violent() {
     printf '%s\n' "$2" | cat "$beam" - >"$SCRATCH/violent.yaml"
