@@ -474,7 +474,7 @@ typedef enum lar_session_state {
     LAR_SESSION_IDLE = 0, /* not started */
     LAR_SESSION_PLAYING,
     LAR_SESSION_PAUSED,
-    LAR_SESSION_STOPPED /* the run broke, see message; reset or load takes it up again */
+    LAR_SESSION_STOPPED /* see error and message */
 } lar_session_state;
 
 /* How it goes. Times are of the clock, in seconds; rates over about the last second. */
@@ -494,7 +494,10 @@ typedef struct lar_session_status {
                                                        given up, and counted in `skipped` */
     double skipped;
     int recording;
-    char message[1016]; /* why it stopped; "" */
+    lar_status error;   /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
+                           broke, reset or load takes it up again; LAR_ERROR_PEER: a processor is
+                           lost, nothing but closing the session is left */
+    char message[1012]; /* the same as a sentence; "" */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);

@@ -36,10 +36,12 @@ typedef struct view {
     lar_server *server;
     view_report report;
     char *url;
+    pid_t browser;           /* its starter; 0: none */
     lar_session_state state; /* as last told */
     bool slow;
     double slow_told; /* when slow motion was last announced [s] */
     double progress_at;
+    double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
 } view;
 
@@ -180,11 +182,10 @@ static bool has_display(void) {
     return (x && *x) || (wayland && *wayland);
 }
 
-static void open_browser(const char *url) {
-    char *const argv[] = {"xdg-open", (char *)url, NULL};
+static void open_browser(view *v) {
+    char *const argv[] = {"xdg-open", v->url, NULL};
     extern char **environ;
     posix_spawn_file_actions_t quiet;
-    pid_t child;
     if (!has_display()) {
         cli_complain(&cli_view, CLI_DONE,
                      "note: there is no display here to open a browser on; open the address "
@@ -194,9 +195,11 @@ static void open_browser(const char *url) {
     posix_spawn_file_actions_init(&quiet);
     posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    if (posix_spawnp(&child, argv[0], &quiet, NULL, argv, environ) != 0)
+    if (posix_spawnp(&v->browser, argv[0], &quiet, NULL, argv, environ) != 0) {
+        v->browser = 0;
         cli_complain(&cli_view, CLI_DONE,
                      "note: there is no xdg-open here; open the address in a browser yourself");
+    }
     posix_spawn_file_actions_destroy(&quiet);
 }
 
@@ -235,7 +238,12 @@ static void announce(view *v, const lar_session_status *s, double at) {
         }
     }
     v->slow = s->slow_motion != 0;
-    if (s->state == LAR_SESSION_STOPPED && v->state != LAR_SESSION_STOPPED) {
+    if (s->error == LAR_ERROR_PEER && v->failure != LAR_ERROR_PEER) {
+        clear_progress(v);
+        cli_complain(&cli_view, CLI_FAILED, "%s", s->message);
+        v->failure = LAR_ERROR_PEER;
+        v->lost_at = at;
+    } else if (s->state == LAR_SESSION_STOPPED && v->state != LAR_SESSION_STOPPED) {
         clear_progress(v);
         cli_complain(&cli_view, CLI_DONE, "note: the run has stopped, reset takes it up again: %s",
                      s->message);
@@ -259,11 +267,18 @@ static void note_devices(view *v) {
     }
 }
 
+/* Viewers are told why for a second, then it is over: without a processor nothing goes on. */
+static bool is_over(const view *v, double begin, double at) {
+    static const double TELL = 1; /* [s] */
+    return stop_asked || (v->settings.seconds > 0 && at >= begin + v->settings.seconds) ||
+           (v->failure == LAR_ERROR_PEER && at >= v->lost_at + TELL);
+}
+
 static void look_after(view *v) {
     const struct timespec nap = {0, 50000000};
     double begin = now();
     v->slow_told = -1e9;
-    while (!stop_asked && (v->settings.seconds <= 0 || now() < begin + v->settings.seconds)) {
+    while (!is_over(v, begin, now())) {
         lar_session_status status;
         nanosleep(&nap, NULL);
         lar_session_status_get(v->session, &status);
@@ -271,7 +286,7 @@ static void look_after(view *v) {
         if (viewers > v->report.viewers_most) v->report.viewers_most = viewers;
         announce(v, &status, now());
         show_progress(v, &status, now());
-        while (waitpid(-1, NULL, WNOHANG) > 0) continue; /* the browser's starter */
+        if (v->browser && waitpid(v->browser, NULL, WNOHANG)) v->browser = 0;
     }
     clear_progress(v);
     v->report.elapsed = now() - begin;
@@ -282,12 +297,12 @@ static void look_after(view *v) {
 /* ---- the command --------------------------------------------------------------------------------
  */
 
-static void greet(const view *v) {
+static void greet(view *v) {
     FILE *out = v->settings.json ? stderr : stdout;
     fprintf(out, "%s\n", v->url ? v->url : "");
     fprintf(out, "Open this address in a browser; Ctrl-C ends.\n");
     fflush(out);
-    if (v->settings.open && v->url) open_browser(v->url);
+    if (v->settings.open && v->url) open_browser(v);
 }
 
 static int report(view *v, int status) {
@@ -311,6 +326,7 @@ static int present(view *v) {
     if (!status) {
         greet(v);
         look_after(v);
+        if (v->failure) status = CLI_FAILED;
     }
     lar_server_close(v->server);
     if (lar_session_close(v->session, &error) && !status) status = fail_by(v, &error);

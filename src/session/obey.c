@@ -55,6 +55,7 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
 /* The simulation is somewhere else now. */
 static void arrive(lar_session *session) {
     lar_session_take_tools(session);
+    session->status.error = LAR_OK;
     session->status.message[0] = '\0';
     session->good_step = session->hashed = lar_simulation_steps(session->simulation);
     if (session->status.state == LAR_SESSION_STOPPED) lar_session_go_on(session);
@@ -135,6 +136,9 @@ void lar_session_obey(lar_session *session, const lar_request *request) {
     }
     lar_error error = {LAR_OK, ""};
     lar_status status = change(session, request, &error);
+    /* Whoever finds that a processor is lost: from now on nothing goes any more. */
+    if (status == LAR_ERROR_PEER && session->status.error != LAR_ERROR_PEER)
+        lar_session_stop(session, &error);
     lar_session_publish(session, true);
     request->answer->error = error;
     request->answer->status = status;

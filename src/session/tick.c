@@ -45,6 +45,7 @@ static void serve_snapshots(lar_session *session) {
 void lar_session_stop(lar_session *session, const lar_error *error) {
     session->status.state = LAR_SESSION_STOPPED;
     session->stepping = false;
+    session->status.error = error->status;
     memcpy(session->status.message, error->message, sizeof session->status.message);
     lar_pace_stop(&session->pace, lar_clock_ns());
     lar_session_idle_tools(session, 0);

@@ -68,6 +68,36 @@ status=$?
 [ $status -eq 0 ] || fail "Ctrl-C ends it with $status"
 grep -q '^state hash' first || fail "there is no report after Ctrl-C"
 
+# A process is lost: who, and an end within two seconds.
+"$LARIAT" view $scene --port 0 --grid 2x1x1 --comm shm --json >out 2>err &
+zero=$!
+one=
+for _ in $(seq 200); do
+    if grep -q '^http' err; then
+        for stat in /proc/[0-9]*/stat; do
+            read -r pid _ _ parent _ 2>/dev/null <"$stat" && [ "$parent" = $zero ] && one=$pid
+        done
+        break
+    fi
+    sleep 0.05
+done
+sleep 0.3
+[ -n "$one" ] && kill -KILL "$one" || fail "no process to lose"
+for _ in $(seq 30); do
+    [ "$(cut -d ' ' -f 3 /proc/$zero/stat 2>/dev/null)" = Z ] && break
+    sleep 0.1
+done
+[ "$(cut -d ' ' -f 3 /proc/$zero/stat 2>/dev/null)" = Z ] || [ ! -e /proc/$zero ] || {
+    fail "it goes on without its other process"
+    kill -KILL $zero
+}
+wait $zero
+status=$?
+[ $status -eq 1 ] || fail "a lost process ends it with $status"
+complains '^lariat view: processor 1 is lost: '
+complains 'processor 1 was ended by signal 9'
+! grep -q 'reset takes it up' err || fail "reset is offered in vain"
+
 # Others may come in with a token only.
 expect 1 "$LARIAT" view $scene --port 0 --seconds 0.2 --listen 0.0.0.0
 complains 'token'

@@ -335,6 +335,7 @@ static void stops_with_a_message(void **unused) {
         lar_session_status status = await(&b, LAR_SESSION_STOPPED, 200);
         numbers_are_finite(&status);
         assert_non_null(strstr(status.message, "element"));
+        assert_int_equal(status.error, LAR_ERROR_UNSTABLE);
         lar_session_play(b.session); /* in vain */
         lar_session_step(b.session, 10);
         assert_int_equal(lar_session_save(b.session, LAR_TEST_BUILD "/torn", &failure),

@@ -8,6 +8,7 @@ import { listenToKeys } from './keys';
 import { Hints, Trouble, note } from './notices';
 import { Panel, StateLine } from './panel';
 import { Pointer } from './pointer';
+import type { Status } from './protocol';
 import { Session } from './session';
 import { ToolCard } from './toolcard';
 import { Transport } from './transport';
@@ -15,6 +16,7 @@ import { View } from './view';
 import { publish } from './window';
 
 const trouble = new Trouble();
+const START_AGAIN = 'If it has ended, start it anew: lariat view SCENE';
 
 function start(): void {
     const canvas = element<HTMLCanvasElement>('picture');
@@ -44,7 +46,7 @@ function start(): void {
             hand.forget();
             force.clear();
             instrument.choose(-1);
-            stopped = false;
+            stopped = '';
             trouble.hide();
         },
         surface(surface) {
@@ -63,7 +65,7 @@ function start(): void {
             panel.update(status);
             line.update(status);
             toolCard.update(status);
-            showStop(status.state === 'stopped', status.message);
+            showStop(status);
         },
         hand(news) {
             hand.news(news);
@@ -86,9 +88,10 @@ function start(): void {
                 );
             trouble.show(
                 'No connection to the engine',
-                loss.because || 'It has ended, or cannot be reached.',
-                'This page connects by itself as soon as the engine is there again. ' +
-                    'If you have ended it, start it anew: lariat view SCENE',
+                (session.status?.lost && session.status.message) ||
+                    loss.because ||
+                    'It has ended, or cannot be reached.',
+                'This page connects by itself as soon as the engine is there again. ' + START_AGAIN,
                 again,
             );
         },
@@ -119,16 +122,19 @@ function start(): void {
         force.name(pulling ? 'Your pull' : (hello.tools[tool]?.name ?? 'Force'));
     }
 
-    let stopped = false;
-    function showStop(now: boolean, because: string): void {
-        if (now === stopped) return;
-        stopped = now;
-        if (!now) return trouble.hide();
+    let stopped = ''; // why, as shown
+    function showStop(status: Status): void {
+        const because = status.state === 'stopped' ? status.message || 'It does not say why.' : '';
+        if (because === stopped) return;
+        stopped = because;
+        if (!because) return trouble.hide();
         hints.hide();
         pointer.end();
         hand.forget();
+        if (status.lost)
+            return trouble.show('The engine has lost a processor and ends', because, START_AGAIN);
         const ways = [{ text: 'Reset', do: () => transport.reset() }];
-        if (session.status?.saved.length)
+        if (status.saved.length)
             ways.push({ text: 'Load the last checkpoint', do: () => transport.loadLast() });
         trouble.show(
             'The simulation has stopped',

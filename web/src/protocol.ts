@@ -77,6 +77,7 @@ export interface Status {
     lag: number;
     skipped: number;
     recording: boolean;
+    lost: boolean;
     message: string;
     viewers: number;
     saved: string[];

@@ -56,7 +56,8 @@ export class Transport {
         this.record.setAttribute('aria-pressed', String(status.recording));
         write(this.record.querySelector('span')!, status.recording ? 'Stop' : 'Record');
         this.record.setAttribute('aria-label', status.recording ? 'Stop recording' : 'Record');
-        this.load.disabled = !this.saves || status.saved.length === 0;
+        this.load.disabled = !this.saves || status.saved.length === 0 || status.lost;
+        element('reset').toggleAttribute('disabled', status.lost);
         if (performance.now() > this.paceUntil) this.showPace(status.pace);
     }
 
@@ -69,6 +70,7 @@ export class Transport {
     }
 
     reset(): void {
+        if (this.session.status?.lost) return; // nothing takes it up again
         this.session.send({ do: 'reset' });
         if (this.session.status?.state === 'stopped') this.session.send({ do: 'play' });
     }

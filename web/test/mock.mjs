@@ -54,7 +54,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
     const materials = 1 + Math.max(...mesh.m);
 
     const state = {
-        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, message: '', saved: [],
+        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
         slow: false, refuse: false, mute: false, connections: 0,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
@@ -136,7 +136,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         tick_us: { p50: 231.0, p99: 320.0, p999: 450.0, max: 1520.0 },
         ticks: state.tick, misses: 0, real_time_factor: 1, real_time_factor_now: state.slow ? 0.4 : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, lag: 0, skipped: 0,
-        recording: state.recording, message: state.message, viewers: 1, saved: state.saved,
+        recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             touching: 0, held: 0, by: 'nobody' })),
     });

@@ -49,6 +49,18 @@ test('a stop of the engine is shown with its reason and a way out', async () => 
     await v.close();
 });
 
+test('a lost processor is named, and nothing that would be in vain is offered', async () => {
+    const v = await openPage(browser, server.url);
+    Object.assign(server.state, { state: 'stopped', lost: true, message: 'processor 1 is lost' });
+    await v.page.getByRole('heading', { name: 'has lost a processor' }).waitFor({ timeout: 3000 });
+    assert.match(await v.page.locator('#trouble-text').innerText(), /processor 1 is lost/);
+    assert.equal(await v.page.locator('#trouble-do').isVisible(), false);
+    assert.equal(await v.page.locator('#reset').isDisabled(), true);
+    Object.assign(server.state, { state: 'playing', lost: false, message: '' });
+    await v.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 3000 });
+    await v.close();
+});
+
 test('when all hands are taken, or nothing is within reach, a sentence says so', async () => {
     const v = await openPage(browser, server.url);
     server.state.refuse = true;
