@@ -548,12 +548,15 @@ typedef struct lar_replay_report {
     uint64_t hashes;    /* compared */
     uint64_t different; /* the first step whose hash differs; UINT64_MAX: none does */
     uint64_t recorded_hash, replayed_hash; /* there */
+    int broken; /* not 0: the run broke where the recorded one did, at the recording's end, and all
+                   hashes before are equal */
 } lar_replay_report;
 
 /* Plays a recording on a simulation of the same model and time step, on any grid, and compares the
  * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does
  * a file that is damaged or cut off where it is; what comes before is played and compared, and
- * `different` says that it is equal. `watch` may be NULL: called with the number of steps at the
+ * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
+ * `broken` says whether the recording ends with that, too. `watch` may be NULL: called with the number of steps at the
  * beginning, after every tick, reset and load, between two advances, so that it may look at the
  * simulation; 0 ends the replay. */
 LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,

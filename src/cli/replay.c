@@ -33,6 +33,7 @@ typedef struct replay {
     lar_simulation *simulation;
     lar_replay_report report;
     lar_status failure;   /* of the library, LAR_OK: none */
+    char fault[1024];     /* with which the recording ends; "": none */
     lar_results *results; /* NULL without --out */
     lar_status written;   /* of the results */
     lar_error written_error;
@@ -129,7 +130,8 @@ static void write_json(const replay *r) {
     json_number(&json, "wall_time", r->elapsed);
     json_integer(&json, "hashes", (int64_t)r->report.hashes);
     json_boolean(&json, "equal", true);
-    json_text(&json, "state_hash", hash);
+    json_text(&json, "fault", r->fault);
+    json_text(&json, "state_hash", *r->fault ? "" : hash);
     json_integer(&json, "frames", r->frames);
     json_boolean(&json, "interrupted", stop_asked != 0);
     json_end(&json);
@@ -144,7 +146,10 @@ static void write_table(const replay *r) {
            r->recorded.time_step, r->elapsed, stop_asked ? ", interrupted" : "");
     printf("%-17sall %" PRIu64 " hashes are equal to those of the recording\n", "compared",
            r->report.hashes);
-    printf("%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(r->simulation));
+    if (*r->fault)
+        printf("%-17sas the recording did, by a fault: %s\n", "ended", r->fault);
+    else
+        printf("%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(r->simulation));
     if (!r->settings.out) return;
     printf("%-17s%s: %d frame%s, .pvd, probes.csv", "results", r->settings.out, r->frames,
            r->frames == 1 ? "" : "s");
@@ -200,7 +205,10 @@ static int compare(replay *r) {
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     if (r->progress_at > 0) fputs("\r\033[K", stderr);
     lar_status closed = lar_results_close(r->results, &closing);
-    if (status) return fail_by(r, &error);
+    if (status == LAR_ERROR_UNSTABLE && r->report.broken)
+        snprintf(r->fault, sizeof r->fault, "%s", error.message);
+    else if (status)
+        return fail_by(r, &error);
     if (r->written) return fail_by(r, &r->written_error);
     if (closed) return fail_by(r, &closing);
     if (r->settings.json)
@@ -265,7 +273,8 @@ const cli_command cli_replay = {
         "Plays what a session has recorded, as fast as it goes and on any grid, and compares the\n"
         "state hashes. The exit status is 0 only when all of them are equal; otherwise the "
         "message\n"
-        "names the first step that differs. With --out the motion is written as a run's is.",
+        "names the first step that differs. A run that broke breaks again in the same step, which\n"
+        "is told. With --out the motion is written as a run's is.",
     .examples =
         "  lariat replay session.recording demo/uterus_live.yaml\n"
         "  lariat replay session.recording demo/uterus_live.yaml --grid 2x1x1 --json\n"

@@ -61,6 +61,23 @@ expect 0 "$LARIAT" replay two.recording $scene --json --out frames --every 0.01
 [ "$(value_of frames)" -gt 1 ] || fail "no frames"
 [ -s frames/uterus_live.pvd ] && [ -s frames/uterus_live_000001.vtu ] || fail "no series of frames"
 
+# A run that broke: again with the same fault, behind hashes that are all equal.
+cp "$SOURCE/examples/beam.vtk" beam.vtk
+sed 's/^fix:/load: [ { nodes: all, force: [0, 0, -1.0e5] } ]\nfix:/' "$SOURCE/examples/beam.yaml" \
+    >violent.yaml
+expect 3 "$LARIAT" view violent.yaml --port 0 --seconds 0.5 --record broken.recording
+complains 'unstable at step'
+fault=$(grep -o 'unstable at step.*' err)
+for divided in '' '--grid 2x1x1' '--grid 2x1x1 --comm shm'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" replay broken.recording violent.yaml $divided
+    says '^ended  *as the recording did, by a fault: '
+    grep -qF "$fault" out || fail "another fault: $divided"
+    says '^compared  *all [0-9]* hashes are equal'
+done
+expect 0 "$LARIAT" replay broken.recording violent.yaml --json
+has_keys fault equal state_hash
+
 # Another model, and a file that was cut or altered.
 expect 1 "$LARIAT" replay one.recording demo/uterus.yaml
 complains 'one.recording'

@@ -103,6 +103,7 @@ static void broken_runs_break_again(void **unused) {
         lar_status status = lar_replay(simulation, PATH, NULL, NULL, &report, &failure);
         assert_int_equal(status, taken_up ? LAR_OK : LAR_ERROR_UNSTABLE);
         if (!taken_up) assert_string_equal(failure.message, stopped.message);
+        assert_int_equal(report.broken, !taken_up);
         assert_true(report.different == UINT64_MAX);
         finish(simulation, model);
     }
