@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mechanics/face_contact.h"
+#include "model/contact_check.h"
 
 enum { PATCH_FACES = 8, DEPTH = 64 };
 
@@ -289,20 +290,79 @@ static lar_status allocate_list(const lar_contact_surface *surface, lar_contact_
                            "pairs in contact");
 }
 
+/* Where a node stands to a face when nothing has moved. */
+static void stand_at_rest(const lar_contact_surface *s, int32_t node, int32_t face,
+                          lar_face_point *point) {
+    const lar_contact_face *f = &s->face[face];
+    double corner[4][3];
+    for (int a = 0; a < 4; a++) memcpy(corner[a], s->rest[f->corner[a]], sizeof corner[a]);
+    lar_face_closest(s->rest[node], (const double(*)[3])corner, LAR_FACE_TIE * f->size, point);
+}
+
 /* The node lies in the layer below the face although nothing has moved. */
 static bool overlaps_at_rest(const lar_contact_surface *s, int32_t node, int32_t face) {
     const lar_contact_face *f = &s->face[face];
-    double corner[4][3];
     lar_face_point point;
-    for (int a = 0; a < 4; a++) memcpy(corner[a], s->rest[f->corner[a]], sizeof corner[a]);
-    lar_face_closest(s->rest[node], corner, LAR_FACE_TIE * f->size, &point);
+    stand_at_rest(s, node, face, &point);
     return point.distance <= lar_contact_reach(s, &s->node[node], f) &&
            point.height < -LAR_FACE_TIE * f->size;
 }
 
-/* Within one body that is its shape, and nothing to be pushed apart. Between two bodies it is an
- * overlap, which contact undoes. */
-static lar_status keep_shape(lar_contact_search *search, lar_error *error) {
+/* A node inside another body, at rest. */
+typedef struct overlap {
+    int32_t node, face;
+    double depth; /* [m] */
+} overlap;
+
+/* What contact would do to the node of a group at rest: of its faces within reach the closest one
+ * counts, of equally close ones the one over or under whose plane it is farthest (collide.h). */
+static void find_overlap(const lar_contact_surface *s, const lar_contact_list *list,
+                         const lar_contact_group *group, overlap *deepest) {
+    const int32_t *face = list->face + group->first;
+    double reach = lar_contact_reach(s, &s->node[group->node], &s->face[face[0]]), least = reach;
+    lar_face_point point, chosen = {0};
+    int32_t at = -1;
+    for (int32_t i = 0; i < group->count; i++) {
+        stand_at_rest(s, group->node, face[i], &point);
+        least = lesser(least, point.distance);
+    }
+    for (int32_t i = 0; i < group->count; i++) {
+        stand_at_rest(s, group->node, face[i], &point);
+        if (point.distance > least + LAR_FACE_TIE * s->face[face[i]].size) continue;
+        if (at >= 0 && !lar_face_point_before(&point, &chosen)) continue;
+        chosen = point;
+        at = face[i];
+    }
+    if (at < 0 || !(chosen.height < 0) || !(chosen.distance > deepest->depth) ||
+        !lar_contact_active(&s->node[group->node], &s->face[at]))
+        return;
+    *deepest = (overlap){group->node, at, chosen.distance};
+}
+
+/* Contact would throw the two apart, with energy from nowhere. */
+static lar_status refuse_overlap(const lar_model *model, const lar_contact_search *search,
+                                 lar_error *error) {
+    const lar_contact_surface *s = &search->surface;
+    const lar_contact_list *list = &search->list;
+    overlap deepest = {-1, -1, lar_overlap_rounding(&model->mesh)};
+    for (int32_t g = 0; g < list->group_count; g++) {
+        const lar_contact_group *group = &list->group[g];
+        if (s->face[list->face[group->first]].body != s->node[group->node].body)
+            find_overlap(s, list, group, &deepest);
+    }
+    if (deepest.node < 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: node %lld lies %.3g m inside another body at the start, below the surface "
+                    "at element %lld, and contact would throw the two apart; move the bodies "
+                    "apart, or leave contact between them out",
+                    lar_model_source(model),
+                    (long long)model->mesh.node_id[s->node[deepest.node].node], deepest.depth,
+                    (long long)model->mesh.element_id[s->face[deepest.face].element]);
+}
+
+/* Within one body that is its shape, and nothing to be pushed apart. Bodies that lie in each other
+ * are refused. */
+static lar_status keep_shape(const lar_model *model, lar_contact_search *search, lar_error *error) {
     lar_contact_surface *s = &search->surface;
     const lar_contact_list *list = &search->list;
     if (!lar_contact_search_run(search, (const double(*)[3])s->rest, 0))
@@ -310,6 +370,8 @@ static lar_status keep_shape(lar_contact_search *search, lar_error *error) {
                         "more than %d faces in contact are near one node: the surfaces overlap at "
                         "many places; take a mesh whose bodies lie beside each other",
                         LAR_PAIRS_PER_NODE);
+    lar_status status = refuse_overlap(model, search, error);
+    if (status) return status;
     int32_t(*pair)[2] = lar_calloc((size_t)list->face_count, sizeof *pair), count = 0;
     if (!pair) return lar_fail_memory(error, 8 * (size_t)list->face_count, "pairs at rest");
     for (int32_t g = 0; g < list->group_count; g++) {
@@ -323,7 +385,7 @@ static lar_status keep_shape(lar_contact_search *search, lar_error *error) {
             pair[count++][1] = face;
         }
     }
-    lar_status status = lar_contact_surface_keep_apart(s, (const int32_t(*)[2])pair, count, error);
+    status = lar_contact_surface_keep_apart(s, (const int32_t(*)[2])pair, count, error);
     free(pair);
     return status;
 }
@@ -337,7 +399,7 @@ lar_status lar_contact_search_create(const lar_model *model, const double *mass,
     status = build_tree(search, error);
     if (!status) status = allocate_list(&search->surface, &search->list, error);
     if (!status) status = allocate_list(&search->surface, &search->next, error);
-    if (!status) status = keep_shape(search, error);
+    if (!status) status = keep_shape(model, search, error);
     if (status) lar_contact_search_clear(search);
     return status;
 }

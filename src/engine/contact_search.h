@@ -67,7 +67,8 @@ typedef struct lar_contact_search {
     int32_t at;            /* the node that comes next */
 } lar_contact_search;
 
-/* Without contacts between bodies surface.node_count is 0. */
+/* Without contacts between bodies surface.node_count is 0. Bodies that lie in each other at rest
+ * are refused (LAR_ERROR_MODEL). */
 lar_status lar_contact_search_create(const lar_model *model, const double *mass,
                                      const int32_t *local, lar_contact_search *search,
                                      lar_error *error);

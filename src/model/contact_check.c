@@ -22,6 +22,10 @@ static double size_of(const lar_mesh *mesh) {
     return sqrt(square);
 }
 
+double lar_overlap_rounding(const lar_mesh *mesh) {
+    return ROUNDING * size_of(mesh);
+}
+
 static bool finite3(const double v[3]) {
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }

@@ -25,6 +25,9 @@ bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
 bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]);
 bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]);
 
+/* What lies on or at something may be inside it by so much, from rounding [m]. */
+double lar_overlap_rounding(const lar_mesh *mesh);
+
 /* Distance from the tool's skin to the surface at rest [m]: negative when they overlap, also when
  * the tool lies inside a body. `face` is the index into model->surface of the face next to it. */
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face);

@@ -81,10 +81,14 @@ static void forces_come_in_pairs(void **unused) {
     (void)unused;
     brick shifted = upper_brick;
     shifted.shift = 0.1;
-    lar_model *model = two_bricks(&lower_brick, &shifted, -0.001, false);
+    lar_model *model = two_bricks(&lower_brick, &shifted, 0.001, false);
     lar_simulation *s = start(model);
     lar_domain *domain = &s->domain;
     const lar_layout *layout = &domain->layout;
+    int32_t first =
+        (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
+    for (int32_t n = first; n < model->mesh.node_count; n++)
+        s->state.u[4 * layout->local[n] + 2] = -0.002;
     lar_condition_context context = lar_domain_context(domain);
     lar_collide_forget(&domain->acting.collide);
     lar_collide_apply(&domain->acting.collide, &context, &s->state);
@@ -110,6 +114,36 @@ static void forces_come_in_pairs(void **unused) {
         assert_below(fabs(moment[i]), 1e-12 * size);
     }
     finish(s, model);
+}
+
+/* ---- at the start --------------------------------------------------------------------------- */
+
+static void refuse_start(double gap, bool self, const char *how_deep) {
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, gap, false);
+    lar_simulation *s = NULL;
+    lar_error error = {0};
+    if (self) touch_self(model);
+    assert_int_equal(lar_model_check(model, &error), LAR_OK);
+    assert_int_equal(lar_simulation_create(model, NULL, &s, &error), LAR_ERROR_MODEL);
+    assert_null(s);
+    if (!strstr(error.message, how_deep)) fail_msg("%s", error.message);
+    assert_non_null(strstr(error.message, "inside another body"));
+    assert_non_null(strstr(error.message, "at element "));
+    assert_non_null(strstr(error.message, "move the bodies apart, or leave contact"));
+    lar_model_destroy(model);
+}
+
+/* What lies in each other would burst; what touches, but for rounding, may begin. */
+static void bodies_in_each_other_are_refused(void **unused) {
+    (void)unused;
+    refuse_start(-0.002, true, "lies 0.002 m inside");
+    refuse_start(-0.002, false, "lies 0.002 m inside");
+    refuse_start(-2e-7, false, "lies 2e-07 m inside");
+    for (int i = 0; i < 3; i++) {
+        lar_model *model = two_bricks(&lower_brick, &upper_brick, (1 - i) * 2e-8, false);
+        lar_simulation *s = start(model);
+        finish(s, model);
+    }
 }
 
 /* ---- energy --------------------------------------------------------------------------------- */
@@ -316,6 +350,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_collision_keeps_momentum),
         cmocka_unit_test(forces_come_in_pairs),
+        cmocka_unit_test(bodies_in_each_other_are_refused),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(corners_that_graze_add_no_energy),
         cmocka_unit_test(every_joule_of_contact_is_accounted_for),
