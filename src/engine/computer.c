@@ -366,6 +366,7 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
         lar_contact_count(computer, *step - begin);
         if (status || trip->kind || computer->called_off) break;
     }
+    trip->crowded = trip->kind == LAR_TRIP_RUSH && computer->contact.crowded;
     if (status) computer->broken = true;
     return status;
 }

@@ -41,6 +41,7 @@ typedef struct lar_computer_contact {
     double skin;                    /* of that search [m] */
     double moved, way;              /* since then, and in the last step, at most [m] */
     bool valid;                     /* the search belongs to the state */
+    bool crowded;                   /* it had to be made with a thinner skin than asked for */
     bool always;                    /* search in every step */
     lar_contact_info info;          /* what concerns all processors together */
 } lar_computer_contact;

@@ -213,6 +213,7 @@ static lar_status search(lar_computer *computer, double way, lar_trip *trip, lar
     const lar_contact_list *list = &contact->search->list;
     memcpy(contact->searched, contact->x, (size_t)surface->node_count * sizeof *contact->x);
     contact->skin = list->skin;
+    contact->crowded = list->skin < skin;
     contact->moved = 0;
     contact->info.searches++;
     contact->info.boxed += (uint64_t)list->face_count;

@@ -32,6 +32,7 @@ typedef struct lar_trip {
     double volume_ratio; /* of the element */
     double growth;       /* of its frequency */
     double speed;        /* of the node [m/s] */
+    bool crowded;        /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
     /* What lar_trip_blame found. */
     bool blamed, tool_pulls;
     int32_t tool;      /* counted from 1; 0: none has to do with it */

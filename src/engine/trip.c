@@ -144,18 +144,36 @@ static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, l
 }
 
 static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const char *crowd =
+        trip->crowded ? ", the less since many faces are crowded around the nodes that may touch "
+                        "them"
+                      : "";
+    if (trip->tool > 0)
+        return lar_trip_report_tool(
+            domain, trip, trip->crowded ? "crowds the surface and hurls away" : "hurls away",
+            error);
+    if (trip->element < 0)
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): the surface became so fast within a few "
+                        "steps that the search for contact on several processors could not "
+                        "follow%s; use slower or smaller loads and motions, or one processor",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        crowd);
     return lar_fail(error, LAR_ERROR_UNSTABLE,
-                    "unstable at step %llu (%.6g s): the surface became so fast within a few steps "
-                    "that the search for contact on several processors could not follow; use "
-                    "slower or smaller loads and motions, or one processor",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step);
+                    "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m became so "
+                    "fast within a few steps (%.3g m/s) that the search for contact on several "
+                    "processors could not follow%s; use slower or smaller loads and motions, or "
+                    "one processor",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)domain->model->mesh.node_id[trip->element], trip->place[0],
+                    trip->place[1], trip->place[2], trip->speed, crowd);
 }
 
 void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
     if (trip->kind == LAR_TRIP_ELEMENT) {
         examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
         examine_place(domain, state, trip);
-    } else if (trip->kind == LAR_TRIP_SPEED) {
+    } else if (trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH) {
         examine_speed(domain, state, trip);
     }
 }

@@ -45,7 +45,8 @@ static double holding_distance(const lar_domain *domain, int32_t tool, const dou
 
 void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
     const lar_touch *touch = &domain->acting.touch;
-    if (trip->blamed || (trip->kind != LAR_TRIP_ELEMENT && trip->kind != LAR_TRIP_SPEED)) return;
+    bool moves = trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH;
+    if (trip->blamed || !(moves || trip->kind == LAR_TRIP_ELEMENT)) return;
     trip->blamed = true;
     if (touch->face_count == 0 || trip->element < 0) return;
     double rest[3], edge = 0, closest = 1;

@@ -3,6 +3,7 @@
 #include "engine/collide_test.h"
 
 #include "base/hash.h"
+#include "engine/computer.h"
 
 static const brick lower_brick = {{6, 4, 2}, 0.01, 0.08, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
 static const brick upper_brick = {{4, 3, 2}, 0.008, 0.05, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
@@ -164,6 +165,49 @@ static void going_back_repeats_every_bit(void **unused) {
     finish(s, model);
 }
 
+/* The upper body becomes fast from one step to the next, in all processors that have its nodes. */
+static void hurl(lar_simulation *s) {
+    int32_t first =
+        (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
+    for (int32_t i = 0; i < s->computer->hosted; i++) {
+        lar_processor *p = &s->computer->processor[i];
+        for (int32_t n = first; n < s->domain.model->mesh.node_count; n++) {
+            lar_lid local = p->domain.layout.local[n];
+            if (local >= 0) p->worker[0].state.v[4 * local + 2] = 60;
+        }
+    }
+}
+
+/* Who is too fast for the search is named, and where it is, and the tool beside it. */
+static void a_rush_says_who_and_where(void **unused) {
+    (void)unused;
+    for (int with_tool = 0; with_tool < 2; with_tool++)
+        for (int crowded = 0; crowded < 2; crowded++) {
+            lar_model *model = sliding_model(false);
+            if (with_tool)
+                *(lar_tool *)LAR_MODEL_APPEND(model, tool) =
+                    (lar_tool){.name = lar_strdup("probe"),
+                               .shape = LAR_TOOL_SPHERE,
+                               .radius = 0.02,
+                               .rest = {{0.03, 0.02, 0.066}, {1, 0, 0, 0}, 1}};
+            lar_options options = lar_options_default();
+            options.grid = "2x1x1";
+            lar_simulation *s = start_with(model, options);
+            lar_error error = {0};
+            advance(s, 1);
+            hurl(s);
+            s->computer->contact.crowded = crowded;
+            assert_int_equal(lar_simulation_advance(s, 50, &error), LAR_ERROR_UNSTABLE);
+            print_message("%s\n", error.message);
+            assert_int_equal(s->trip.kind, LAR_TRIP_RUSH);
+            assert_non_null(strstr(error.message, "node "));
+            assert_non_null(strstr(error.message, " near ("));
+            assert_true((strstr(error.message, "tool probe") != NULL) == with_tool);
+            assert_true((strstr(error.message, "crowd") != NULL) == crowded);
+            finish(s, model);
+        }
+}
+
 int main(int count, char **argument) {
     everywhere = count > 1 && strcmp(argument[1], "everywhere") == 0;
     const struct CMUnitTest tests[] = {
@@ -171,6 +215,7 @@ int main(int count, char **argument) {
         cmocka_unit_test(nor_on_delays_nor_on_searches),
         cmocka_unit_test(searches_are_not_seen_from_outside),
         cmocka_unit_test(going_back_repeats_every_bit),
+        cmocka_unit_test(a_rush_says_who_and_where),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
