@@ -137,14 +137,28 @@ static void sync_folder(const char *path) {
     free(folder);
 }
 
+/* A file of a name that nobody else has, "PATH.PROCESS-NUMBER.part" in `part` (`size` bytes):
+ * several may save to one path at once. Names that are there were left by a process that was
+ * killed. */
+static int open_part(const char *path, char *part, size_t size) {
+    static unsigned latest; /* atomic */
+    enum { TRIES = 1000 };
+    int file = -1;
+    errno = EEXIST;
+    for (int i = 0; i < TRIES && file < 0 && errno == EEXIST; i++) {
+        unsigned number = __atomic_add_fetch(&latest, 1, __ATOMIC_RELAXED);
+        snprintf(part, size, "%s.%ld-%u.part", path, (long)getpid(), number);
+        file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+    }
+    return file;
+}
+
 static lar_status write_file(const char *path, const unsigned char *data, size_t bytes,
                              lar_error *error) {
-    size_t size = strlen(path) + sizeof ".part";
+    size_t size = strlen(path) + sizeof ".-9223372036854775807-4294967295.part";
     char *part = lar_calloc(size, 1);
     if (!part) return lar_fail_memory(error, size, path);
-    snprintf(part, size, "%s.part", path);
-    errno = 0;
-    int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+    int file = open_part(path, part, size);
     bool good = file >= 0 && write_all(file, data, bytes) && fsync(file) == 0;
     int cause = errno;
     if (file >= 0 && close(file) != 0 && good) {

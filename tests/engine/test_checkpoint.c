@@ -1,4 +1,5 @@
 /* Saving, loading and going back: from then on everything is as if nothing had been. */
+#include <dirent.h>
 #include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -502,6 +503,19 @@ static void other_models_are_refused(void **unused) {
     lar_model_destroy(model);
 }
 
+/* Checkpoints that were begun and are still there. */
+static int count_parts(void) {
+    DIR *folder = opendir(LAR_TEST_BUILD);
+    int count = 0;
+    assert_non_null(folder);
+    for (const struct dirent *entry; (entry = readdir(folder));)
+        count += (strncmp(entry->d_name, "test.checkpoint.", 16) == 0 ||
+                  strncmp(entry->d_name, "shared.checkpoint.", 18) == 0) &&
+                 strstr(entry->d_name, ".part");
+    closedir(folder);
+    return count;
+}
+
 /* A file is whole or not there; what is no checkpoint is not overwritten. */
 static void saving_spares_what_is_there(void **unused) {
     (void)unused;
@@ -523,8 +537,50 @@ static void saving_spares_what_is_there(void **unused) {
     remove(BAD);
     save(simulation, PATH);
     save(simulation, PATH); /* a checkpoint is */
-    assert_int_equal(access(PATH ".part", F_OK), -1);
+    assert_int_equal(count_parts(), 0);
     finish(simulation, model);
+}
+
+#define SHARED LAR_TEST_BUILD "/shared.checkpoint"
+
+typedef struct saver {
+    lar_bytes bytes;
+    int failures;
+} saver;
+
+static void *save_often(void *argument) {
+    saver *s = argument;
+    for (int i = 0; i < 15; i++) s->failures += lar_checkpoint_store(SHARED, &s->bytes, NULL) != 0;
+    return NULL;
+}
+
+/* Each writes a file of its own, and the last name given stands. */
+static void several_save_to_one_path(void **unused) {
+    (void)unused;
+    enum { SAVERS = 4, MOST = 400000 };
+    saver s[SAVERS];
+    pthread_t thread[SAVERS];
+    lar_bytes left;
+    remove(SHARED);
+    for (int k = 0; k < SAVERS; k++) {
+        s[k] = (saver){.bytes = {malloc(MOST), (size_t)(MOST / (k + 1))}};
+        memset(s[k].bytes.data, 'a' + k, MOST);
+        memcpy(s[k].bytes.data, "LARIATCP", 8);
+        assert_int_equal(pthread_create(&thread[k], NULL, save_often, &s[k]), 0);
+    }
+    for (int k = 0; k < SAVERS; k++) pthread_join(thread[k], NULL);
+    assert_int_equal(lar_bytes_read(SHARED, &left, NULL), LAR_OK);
+    int whose = left.data[8] - 'a';
+    assert_in_range(whose, 0, SAVERS - 1);
+    assert_int_equal(left.size, s[whose].bytes.size);
+    assert_memory_equal(left.data, s[whose].bytes.data, left.size);
+    for (int k = 0; k < SAVERS; k++) {
+        assert_int_equal(s[k].failures, 0);
+        lar_bytes_free(&s[k].bytes);
+    }
+    lar_bytes_free(&left);
+    assert_int_equal(count_parts(), 0);
+    remove(SHARED);
 }
 
 int main(void) {
@@ -539,6 +595,7 @@ int main(void) {
         cmocka_unit_test(forged_files_are_refused),
         cmocka_unit_test(other_models_are_refused),
         cmocka_unit_test(saving_spares_what_is_there),
+        cmocka_unit_test(several_save_to_one_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
