@@ -81,25 +81,15 @@ static int32_t holds_of(const lar_tools *tools, int32_t tool) {
     return count;
 }
 
-/* How far the point at height z of the tool's axis goes. */
-static double way_of(const lar_tool_pose *from, const lar_tool_pose *to, double z) {
-    double shaft[3] = {0, 0, z}, begin[3], end[3], square = 0;
-    lar_turn(from->orientation, shaft, begin);
-    lar_turn(to->orientation, shaft, end);
-    for (int i = 0; i < 3; i++) {
-        double way = to->position[i] + end[i] - from->position[i] - begin[i];
-        square += way * way;
-    }
-    return sqrt(square);
-}
-
 /* Contact is looked for once in a step: what goes farther could pass through a surface. */
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
                               lar_error *error) {
-    double far = tool->shape == LAR_TOOL_GRASPER ? -tool->length : tool->length; /* jaws, shaft */
-    double tip = way_of(now, pose, 0), end = way_of(now, pose, far);
-    double way = tip > end ? tip : end, most = 0.5 * tool->radius * (double)steps;
+    lar_tool_body body;
+    lar_segment from[2], to[2];
+    lar_tool_place(tool, now, &body, from);
+    lar_tool_place(tool, pose, &body, to);
+    double way = lar_tool_way(from, to, body.count), most = 0.5 * tool->radius * (double)steps;
     if (way <= most) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "

@@ -149,9 +149,7 @@ void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_bo
     }
 }
 
-/* How far a tool goes between two places: no point of a segment goes farther than one of its ends.
- */
-static double way_between(const lar_segment *from, const lar_segment *to, int32_t count) {
+double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t count) {
     double farthest = 0;
     for (int32_t s = 0; s < count; s++)
         for (int e = 0; e < 2; e++) {
@@ -176,7 +174,7 @@ static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool
     lar_tool_at(motion, step + 1, time_step, &pose, NULL);
     lar_tool_place(tool, &pose, body, body->next);
     watch->rests = step >= motion->end;
-    return watch->known ? way_between(old.now, body->now, body->count) : 0;
+    return watch->known ? lar_tool_way(old.now, body->now, body->count) : 0;
 }
 
 /* ---- contact of one face ------------------------------------------------------------------- */
@@ -406,7 +404,7 @@ static void apply_tool(lar_touch *touch, const lar_condition_context *context,
     if (touch->always || !watch->known || !(watch->path < watch->limit))
         lar_touch_search(touch, t, state,
                          travel +
-                             way_between(watch->body.now, watch->body.next, watch->body.count));
+                             lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
     /* What jaws have closed upon is theirs: the holds keep it, and to press it as well would crush
      * it between them. */
     if (tool->shape == LAR_TOOL_GRASPER && holds_anything(touch, t)) return;

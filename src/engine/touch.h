@@ -141,6 +141,9 @@ double lar_touch_ball(const double x[4][3], double center[3]);
 /* Where a tool's segments are in a pose. */
 void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
                     lar_segment segment[2]);
+/* How far a tool goes between two places of its segments [m]: no point of a segment goes farther
+ * than one of its ends. */
+double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t count);
 /* Distance of a point from a tool's segments, less its radius. */
 double lar_touch_distance(const lar_tool_body *body, double radius, const double point[3]);
 /* How far the path may grow before a gap can have closed: less than the gap by more than what

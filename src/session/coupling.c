@@ -38,10 +38,12 @@ static bool shorten(double v[3], double most) {
 
 void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                          const lar_coupling_limits *limits) {
-    /* Some room below what the engine refuses: the turn takes its part too. */
+    /* Some room below what the engine refuses: the turn and the jaws take their parts too. */
     double engine = REACH * tool->radius / limits->time_step;
-    double speed = fmin(limits->tool_speed, 0.4 * engine), lever = fmax(tool->length, LEVER_LEAST);
     double jaw = 0.5 * tool->length * tool->spread; /* way of a jaw's end from open to closed */
+    double share = jaw > 0 ? 0.3 : 0.4;             /* of a way, a turn, and jaws */
+    double speed = fmin(limits->tool_speed, share * engine),
+           lever = fmax(tool->length, LEVER_LEAST);
     double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
     *coupling = (lar_coupling){.shape = tool->shape,
                                .mass = MASS,

@@ -227,6 +227,12 @@ static void senseless_motions_are_refused(void **unused) {
     pose.orientation[1] = 1;
     refuse(simulation, TEST_ROD, pose, 14, "half its radius");
     assert_int_equal(lar_simulation_tool_move(simulation, TEST_ROD, &pose, 16, NULL), LAR_OK);
+    lar_simulation_reset(simulation, NULL);
+    /* Jaws that close go 9 mm at their ends; the radius is 3 mm. */
+    pose = model->tool[TEST_GRASPER].rest;
+    pose.opening = 0;
+    refuse(simulation, TEST_GRASPER, pose, 5, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_GRASPER, &pose, 7, NULL), LAR_OK);
     /* A hand that holds nothing may be put anywhere. */
     pose = (lar_tool_pose){{100, -100, 3}, {1, 0, 0, 0}, 1};
     assert_int_equal(lar_simulation_tool_move(simulation, TEST_HAND, &pose, 1, NULL), LAR_OK);
