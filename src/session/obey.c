@@ -7,13 +7,13 @@
 /* ---- the recording ------------------------------------------------------------------------- */
 
 void lar_session_note(lar_session *session, const lar_record *record) {
-    if (session->recorder && !lar_recorder_put(session->recorder, record))
+    if (session->status.recording && !lar_recorder_put(session->recorder, record))
         session->status.recording = 0; /* the file is at fault; whoever closes it is told */
 }
 
 void lar_session_note_hash(lar_session *session) {
     lar_error error;
-    if (!session->recorder) return;
+    if (!session->status.recording) return;
     if (lar_simulation_gather(session->simulation, &error)) {
         lar_session_stop(session, &error);
         return;
@@ -26,7 +26,7 @@ void lar_session_note_hash(lar_session *session) {
 
 /* A run that broke has no hash there: when it is played it breaks in the same step. */
 void lar_session_note_end(lar_session *session) {
-    if (!session->recorder) return;
+    if (!session->status.recording) return;
     bool broken = session->status.state == LAR_SESSION_STOPPED;
     if (!broken) lar_session_note_hash(session);
     lar_session_note(session, &(lar_record){.kind = LAR_RECORD_END,
@@ -75,9 +75,12 @@ static lar_status load(lar_session *session, const lar_request *request, lar_err
         lar_simulation_unpack(session->simulation, request->path, request->state, error);
     if (status) return status;
     arrive(session);
-    if (session->recorder)
-        status = lar_recorder_put_state(session->recorder, session->simulation, error);
-    return status;
+    if (!session->status.recording ||
+        !lar_recorder_put_state(session->recorder, session->simulation, error))
+        return LAR_OK;
+    /* The state is loaded all the same; whoever closes the recording is told. */
+    session->status.recording = 0;
+    return error->status == LAR_ERROR_PEER ? LAR_ERROR_PEER : LAR_OK;
 }
 
 static lar_status attach(lar_session *session, const lar_request *request, lar_error *error) {

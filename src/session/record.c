@@ -22,7 +22,7 @@ struct lar_recorder {
     char *path;
     lar_recording_writer writer; /* the thread's; of whoever holds the lock */
     uint64_t put, written;       /* atomic: records */
-    bool full;                   /* the engine's: the recording is over */
+    lar_error over;              /* the engine's: why it breaks off; LAR_OK: it goes on */
     uint64_t step;               /* the engine's: of the latest record */
     bool finish;                 /* under the lock */
     pthread_mutex_t lock;
@@ -119,19 +119,20 @@ lar_status lar_recorder_close(lar_recorder *recorder, lar_error *error) {
     pthread_join(recorder->thread, NULL);
     drain(recorder);
     lar_status status = lar_recording_finish(&recorder->writer, error);
-    if (!status && recorder->full)
-        status = lar_fail(error, LAR_ERROR_IO,
-                          "%s: the disk was too slow for the recording, which breaks off at step "
-                          "%" PRIu64 "; record to another one",
-                          recorder->path, recorder->step);
+    if (!status && recorder->over.status)
+        status = lar_fail(error, recorder->over.status, "%s", recorder->over.message);
     destroy(recorder);
     return status;
 }
 
 static bool put(lar_recorder *recorder, const place *p) {
     uint64_t written = __atomic_load_n(&recorder->written, __ATOMIC_ACQUIRE);
-    recorder->full = recorder->full || recorder->put - written == RING;
-    if (recorder->full) return false;
+    if (!recorder->over.status && recorder->put - written == RING)
+        lar_fail(&recorder->over, LAR_ERROR_IO,
+                 "%s: the disk was too slow for the recording, which breaks off at step %" PRIu64
+                 "; record to another one",
+                 recorder->path, recorder->step);
+    if (recorder->over.status) return false;
     recorder->ring[recorder->put % RING] = *p;
     recorder->step = p->record.step;
     __atomic_store_n(&recorder->put, recorder->put + 1, __ATOMIC_RELEASE);
@@ -145,7 +146,16 @@ bool lar_recorder_put(lar_recorder *recorder, const lar_record *record) {
 lar_status lar_recorder_put_state(lar_recorder *recorder, const lar_simulation *simulation,
                                   lar_error *error) {
     place p = {.record = {.kind = LAR_RECORD_STATE, .step = lar_simulation_steps(simulation)}};
-    lar_status status = lar_simulation_pack(simulation, recorder->path, &p.state, error);
-    if (!status && !put(recorder, &p)) lar_bytes_free(&p.state);
-    return status;
+    lar_error cause;
+    lar_status status = lar_simulation_pack(simulation, recorder->path, &p.state, &cause);
+    /* What follows would be played from another state. */
+    if (status && !recorder->over.status)
+        lar_fail(&recorder->over, status,
+                 "%s: the recording breaks off at step %" PRIu64
+                 ", where the simulation went to another state that could not be recorded: %s",
+                 recorder->path, recorder->step, cause.message);
+    if (status) return lar_fail(error, status, "%s", cause.message);
+    if (put(recorder, &p)) return LAR_OK;
+    lar_bytes_free(&p.state);
+    return lar_fail(error, recorder->over.status, "%s", recorder->over.message);
 }

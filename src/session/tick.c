@@ -83,7 +83,8 @@ static void tick(lar_session *session) {
     lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
     session->good_step = session->status.step;
     serve_snapshots(session);
-    if (session->recorder && session->good_step - session->hashed >= session->options.hash_every)
+    if (session->status.recording &&
+        session->good_step - session->hashed >= session->options.hash_every)
         lar_session_note_hash(session);
     if (!session->stepping) return;
     session->steps_left -= steps;

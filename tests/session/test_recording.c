@@ -7,7 +7,9 @@
 #include <sys/wait.h>
 
 #include "base/folder.h"
+#include "session/record.h"
 #include "session/recording_words.h"
+#include "session/session.h"
 #include "session/session_test.h"
 
 #define PATH  LAR_TEST_BUILD "/session.recording"
@@ -380,6 +382,52 @@ static void full_disks_are_told(void **unused) {
     close_bench(&b);
 }
 
+/* A state that cannot be recorded ends the recording: nothing may follow from another one. */
+static void lost_states_end_a_recording(void **unused) {
+    (void)unused;
+    bench b = open_bench_of(torn_block(), NULL, 0, NULL);
+    const lar_recording_header header = lar_session_recording_header(b.session);
+    lar_recorder *recorder = NULL;
+    DONE(lar_recorder_create(PATH, &header, &recorder, &failure));
+    DONE(lar_recorder_put_state(recorder, b.simulation, &failure));
+    DONE(lar_session_start(b.session, &failure));
+    await(&b, LAR_SESSION_STOPPED, 200);
+    assert_int_equal(lar_recorder_put_state(recorder, b.simulation, &failure), LAR_ERROR_UNSTABLE);
+    assert_false(lar_recorder_put(recorder, &(lar_record){.kind = LAR_RECORD_END, .step = 1}));
+    assert_int_equal(lar_recorder_close(recorder, &failure), LAR_ERROR_UNSTABLE);
+    assert_non_null(strstr(failure.message, "breaks off at step 0, where"));
+    close_bench(&b);
+}
+
+static lar_session_status play_for(const bench *b, double seconds) {
+    lar_session_play(b->session);
+    nap(seconds);
+    lar_session_pause(b->session);
+    return await(b, LAR_SESSION_PAUSED, 0);
+}
+
+/* A recording that has ended by itself costs nothing any more. */
+static void full_rings_are_not_hashed_for(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    options.record = PATH;
+    options.hash_every = 20;
+    bench b = open_bench(NULL, 0, &options);
+    const lar_record any = {.kind = LAR_RECORD_HASH};
+    DONE(lar_session_start(b.session, &failure));
+    play_for(&b, 0.05);
+    assert_int_equal(status_of(&b).recording, 1);
+    while (lar_recorder_put(b.session->recorder, &any)) continue; /* the engine sleeps */
+    assert_int_equal(play_for(&b, 0.1).recording, 0);
+    uint64_t hashed = b.session->hashed;
+    assert_true(play_for(&b, 0.1).step > hashed + 3 * options.hash_every);
+    assert_true(b.session->hashed == hashed);
+    assert_int_equal(lar_session_record(b.session, NULL, &failure), LAR_ERROR_IO);
+    assert_non_null(strstr(failure.message, "too slow"));
+    close_bench(&b);
+    remove(PATH);
+}
+
 static int few(void *context, uint64_t step) {
     (void)step;
     return ++*(int *)context < 5;
@@ -418,6 +466,8 @@ int main(void) {
                                        cmocka_unit_test(other_files_are_spared),
                                        cmocka_unit_test(a_file_has_one_recording),
                                        cmocka_unit_test(full_disks_are_told),
+                                       cmocka_unit_test(lost_states_end_a_recording),
+                                       cmocka_unit_test(full_rings_are_not_hashed_for),
                                        cmocka_unit_test(replays_can_be_ended)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
