@@ -88,6 +88,16 @@ export class Panel {
     }
 }
 
+/* What the badge says of a run that plays: slower than asked for is never called real time, also
+ * where the engine does not call it slow motion (yet). 0: no second has passed yet. */
+export function playing(status: Pick<Status, 'pace' | 'real_time_factor_now'>): { text: string; slow: boolean } {
+    const factor = status.real_time_factor_now ?? 0;
+    if (status.pace === 0)
+        return { text: `as fast as it goes: ${number(status.real_time_factor_now, 1)} × real time`, slow: false };
+    if (factor > 0 && factor < 0.97 * status.pace) return { text: `${factor.toFixed(2)} × real time`, slow: true };
+    return { text: status.pace === 1 ? 'real time' : `${status.pace} × real time, as asked for`, slow: false };
+}
+
 /* The title line and the banner. */
 export class StateLine {
     private readonly line = element('state');
@@ -101,14 +111,15 @@ export class StateLine {
     }
 
     update(status: Status): void {
+        const run = playing(status);
         const texts: Record<Status['state'], string> = {
             idle: 'not started',
-            playing: status.pace === 1 ? 'real time' : this.pace(status),
+            playing: run.text,
             paused: 'paused',
             stopped: 'stopped',
         };
         const slow = status.slow_motion && status.state === 'playing';
-        this.line.className = slow ? 'slow' : status.state;
+        this.line.className = slow || (run.slow && status.state === 'playing') ? 'slow' : status.state;
         write(this.text, slow ? 'slow motion' : texts[status.state]);
         const now = performance.now();
         if (slow) this.shownSince = now;
@@ -130,11 +141,5 @@ export class StateLine {
         this.slow.hidden = true;
         this.shownSince = 0;
         write(this.text, 'no connection');
-    }
-
-    private pace(status: Status): string {
-        return status.pace === 0
-            ? `as fast as it goes: ${number(status.real_time_factor_now, 1)} × real time`
-            : `${status.pace} × real time, as asked for`;
     }
 }

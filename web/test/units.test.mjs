@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain'];
+    const names = ['surface', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -173,4 +173,16 @@ test('messages of a wrong length are refused', () => {
     new DataView(message).setUint32(4, 5, true);
     assert.throws(() => parts.protocol.readFrame(message, parts.protocol.emptyFrame()), /wrong length/);
     assert.throws(() => parts.protocol.readSurface(new ArrayBuffer(20)), /wrong length/);
+});
+
+test('the badge says real time only where it is', () => {
+    const { playing } = parts.panel;
+    const at = (pace, factor) => playing({ pace, real_time_factor_now: factor });
+    assert.deepEqual(at(1, 1), { text: 'real time', slow: false });
+    assert.deepEqual(at(1, 0.98), { text: 'real time', slow: false });
+    assert.deepEqual(at(1, 0), { text: 'real time', slow: false }); // not known yet
+    assert.deepEqual(at(1, 0.82), { text: '0.82 × real time', slow: true });
+    assert.deepEqual(at(0.1, 0.1), { text: '0.1 × real time, as asked for', slow: false });
+    assert.deepEqual(at(0.1, 0.05), { text: '0.05 × real time', slow: true });
+    assert.equal(at(0, 0.3).slow, false);
 });
