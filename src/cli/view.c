@@ -115,7 +115,7 @@ static int attach(view *v, const char *device) {
     const char *equals = strchr(device, '=');
     size_t length = equals ? (size_t)(equals - device) : 0;
     lar_error error;
-    if (!equals)
+    if (!equals || !equals[1])
         return cli_complain(&cli_view, CLI_USAGE,
                             "--device %s: write TOOL=DEVICE, such as probe=udp:127.0.0.1:9000",
                             device);

@@ -109,8 +109,10 @@ expect 1 "$LARIAT" view $scene --port 0 --viewer "$SCRATCH/none"
 complains "$SCRATCH/none"
 expect 2 "$LARIAT" view $scene --port 0 --device "nothing=script:x.csv"
 complains 'there is no such tool; there are: '
-expect 2 "$LARIAT" view $scene --port 0 --device probe
-complains 'TOOL=DEVICE'
+for incomplete in probe probe=; do
+    expect 2 "$LARIAT" view $scene --port 0 --device $incomplete
+    complains 'TOOL=DEVICE'
+done
 
 # What is recorded from the command line is there.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording
