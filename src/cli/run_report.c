@@ -109,11 +109,15 @@ static void print_contact(const lar_simulation *simulation, FILE *out) {
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
     if (info.tested == 0) return;
+    double tested = 100 * (double)info.tested / (double)info.possible;
     fprintf(out,
             "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
-            " searches, %.2g %% of all pairs tested\n",
+            " searches, %.*f %% of all pairs tested\n",
             "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
-            100 * (double)info.tested / (double)info.possible);
+            tested < 0.1  ? 4
+            : tested < 10 ? 2
+                          : 0,
+            tested);
 }
 
 static void print_body(const run_report *report, FILE *out) {
