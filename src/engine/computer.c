@@ -379,6 +379,17 @@ static lar_status refuse_order(lar_error *error) {
                     "again, from the same installation");
 }
 
+/* Faces and tools are looked up by these. */
+static bool holds_fit(const lar_computer *computer, const lar_tools *tools) {
+    int32_t faces = computer->whole->model->surface.face_count;
+    for (int32_t i = 0; i < tools->hold_count; i++) {
+        const lar_hold *hold = &tools->hold[i];
+        if (hold->tool < 0 || hold->tool >= tools->count || hold->face < 0 || hold->face >= faces)
+            return false;
+    }
+    return true;
+}
+
 static lar_status take_tools(lar_computer *computer, const void *payload, size_t bytes,
                              lar_error *error) {
     if (bytes == 0) return LAR_OK;
@@ -387,7 +398,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     int32_t count = tools->count;
     memcpy(tools, payload, bytes);
     bool fits = tools->count == count && tools->hold_count >= 0 &&
-                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes;
+                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
+                holds_fit(computer, tools);
     return fits ? LAR_OK : refuse_order(error);
 }
 

@@ -138,6 +138,43 @@ static void tools_reach_other_processes(void **unused) {
     lar_model_destroy(model);
 }
 
+/* What another process sends is looked at before it is used: the number of a face or tool that is
+ * not there. */
+static void holds_of_others_are_looked_at(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    static const int32_t wrong[4][2] = {{-1, 0}, {TEST_TOOLS, 0}, {0, -1}, {0, 1 << 20}};
+    for (int i = 0; i < 4; i++) {
+        lar_error error;
+        char master[LAR_COMM_ADDRESS_TEXT];
+        lar_options options = setting(2);
+        pthread_t thread;
+        if (lar_comm_listen("127.0.0.1:0", &options.listener, master, &error))
+            fail_msg("%s", error.message);
+        options.comm = "shm";
+        options.master = master;
+        participant other = {.model = model, .options = options};
+        other.options.processor = 1;
+        other.options.listener = -1;
+        assert_int_equal(pthread_create(&thread, NULL, serve, &other), 0);
+        lar_simulation *simulation = NULL;
+        if (lar_simulation_create(model, &options, &simulation, &error))
+            fail_msg("%s", error.message);
+        lar_tools tools = simulation->tools;
+        tools.hold_count = 1;
+        tools.hold[0] = (lar_hold){.tool = wrong[i][0], .face = wrong[i][1]};
+        const lar_order order = {LAR_ORDER_ADVANCE, 0};
+        assert_int_equal(lar_control_order(simulation->computer->control, &order, &tools,
+                                           lar_tools_bytes(&tools), &error),
+                         LAR_OK);
+        lar_simulation_destroy(simulation);
+        pthread_join(thread, NULL);
+        assert_int_equal(other.status, LAR_ERROR_PEER);
+        if (!strstr(other.error.message, "does not know")) fail_msg("%s", other.error.message);
+    }
+    lar_model_destroy(model);
+}
+
 /* ---- where they are ------------------------------------------------------------------------- */
 
 static lar_tool_pose pose_of(const lar_simulation *simulation, int32_t tool) {
@@ -303,6 +340,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tools_do_and_feel_the_same_on_every_grid),
         cmocka_unit_test(tools_reach_other_processes),
+        cmocka_unit_test(holds_of_others_are_looked_at),
         cmocka_unit_test(a_tool_moves_evenly_and_rests),
         cmocka_unit_test(senseless_motions_are_refused),
         cmocka_unit_test(forces_are_means_of_the_last_advance),
