@@ -497,7 +497,7 @@ typedef struct lar_session_status {
     lar_status error;   /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
                            broke, reset or load takes it up again; LAR_ERROR_PEER: a processor is
                            lost, nothing but closing the session is left */
-    char message[1012]; /* the same as a sentence; "" */
+    char message[1016]; /* the same as a sentence; "" */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);

@@ -42,6 +42,9 @@ static void serve_snapshots(lar_session *session) {
 
 /* ---- playing ------------------------------------------------------------------------------- */
 
+_Static_assert(sizeof((lar_session_status *)0)->message == sizeof((lar_error *)0)->message,
+               "copied whole, with its end");
+
 void lar_session_stop(lar_session *session, const lar_error *error) {
     session->status.state = LAR_SESSION_STOPPED;
     session->stepping = false;
