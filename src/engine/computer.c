@@ -358,6 +358,8 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     computer->watch = watch;
     computer->watch_context = context;
     computer->called_off = false;
+    /* A trip before the first stretch leaves no step over which these could be a mean. */
+    memset(computer->report.tool, 0, sizeof computer->report.tool);
     for (bool first = true; first || *step < end; first = false) {
         uint64_t begin = *step;
         status = lar_contact_refresh(computer, trip, error);

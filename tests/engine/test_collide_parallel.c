@@ -208,6 +208,31 @@ static void a_rush_says_who_and_where(void **unused) {
         }
 }
 
+/* A run that stops before its first step has felt nothing. */
+static void a_crowd_before_the_first_step_leaves_no_forces(void **unused) {
+    (void)unused;
+    lar_model *model = sliding_model(false);
+    *(lar_tool *)LAR_MODEL_APPEND(model, tool) =
+        (lar_tool){.name = lar_strdup("probe"),
+                   .shape = LAR_TOOL_SPHERE,
+                   .radius = 0.01,
+                   .rest = {{0.03, 0.02, 0.2}, {1, 0, 0, 0}, 1}};
+    lar_options options = lar_options_default();
+    options.grid = "2x1x1";
+    lar_simulation *s = start_with(model, options);
+    lar_error error = {0};
+    lar_tool_force force;
+    advance(s, 10);
+    s->computer->report.tool[0].force[0] = 1 << 20; /* as if it had felt something */
+    s->computer->contact.valid = false;
+    s->computer->contact.search->list.face_room = s->computer->contact.search->next.face_room = 0;
+    assert_int_equal(lar_simulation_advance(s, 10, &error), LAR_ERROR_UNSTABLE);
+    assert_int_equal(s->trip.kind, LAR_TRIP_CROWD);
+    assert_int_equal(lar_simulation_tool_force(s, 0, &force, NULL), LAR_OK);
+    assert_true(force.force[0] == 0);
+    finish(s, model);
+}
+
 int main(int count, char **argument) {
     everywhere = count > 1 && strcmp(argument[1], "everywhere") == 0;
     const struct CMUnitTest tests[] = {
@@ -216,6 +241,7 @@ int main(int count, char **argument) {
         cmocka_unit_test(searches_are_not_seen_from_outside),
         cmocka_unit_test(going_back_repeats_every_bit),
         cmocka_unit_test(a_rush_says_who_and_where),
+        cmocka_unit_test(a_crowd_before_the_first_step_leaves_no_forces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
