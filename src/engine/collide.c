@@ -232,7 +232,7 @@ static void look_ahead(lar_collide *collide) {
     collide->horizon = collide->travel + 0.5 * collide->list.skin / PARTS;
     collide->near_count = 0;
     for (int32_t g = 0; g < collide->list.group_count; g++)
-        if (collide->due[g] <= collide->horizon) collide->near[collide->near_count++] = g;
+        if (!(collide->due[g] > collide->horizon)) collide->near[collide->near_count++] = g;
 }
 
 void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
@@ -290,10 +290,8 @@ static double fetch_places(lar_collide *collide, const lar_state *state) {
     double most = 0;
     for (int32_t n = 0; n < collide->surface->node_count; n++) {
         place_of(collide, state, n, motion->x[n], NULL);
-        for (int i = 0; i < 3; i++) {
-            double moved = fabs(motion->x[n][i] - motion->searched[n][i]);
-            if (!(moved <= most)) most = moved;
-        }
+        for (int i = 0; i < 3; i++)
+            most = lar_most(most, fabs(motion->x[n][i] - motion->searched[n][i]));
     }
     return most;
 }

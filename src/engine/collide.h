@@ -25,9 +25,16 @@
 #ifndef LAR_ENGINE_COLLIDE_H
 #define LAR_ENGINE_COLLIDE_H
 
+#include <math.h>
+
 #include "engine/conditions.h"
 #include "engine/contact_search.h"
 #include "mechanics/contact.h"
+
+/* The larger of two ways or speeds. What is not a number stays: nothing is larger. */
+static inline double lar_most(double most, double other) {
+    return other <= most || isnan(most) ? most : other;
+}
 
 /* Where the contact nodes are: in the state of whoever has all of them, or on a board. */
 typedef struct lar_contact_view {

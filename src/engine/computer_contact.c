@@ -95,9 +95,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
         values_of(computer, n, &u, &v);
         for (int i = 0; i < 3; i++) {
             contact->x[n][i] = surface->rest[n][i] + u[i];
-            double far = fabs(contact->x[n][i] - contact->searched[n][i]);
-            if (!(far <= farthest)) farthest = far;
-            if (!(fabs(v[i]) <= fastest)) fastest = fabs(v[i]);
+            farthest = lar_most(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
+            fastest = lar_most(fastest, fabs(v[i]));
         }
     }
     *moved = farthest;

@@ -15,8 +15,7 @@ static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_e
 /* ---- the board ------------------------------------------------------------------------------- */
 
 static double fastest_of(const double place[6], double most) {
-    for (int i = 3; i < 6; i++)
-        if (!(fabs(place[i]) <= most)) most = fabs(place[i]);
+    for (int i = 3; i < 6; i++) most = lar_most(most, fabs(place[i]));
     return most;
 }
 
@@ -112,7 +111,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     if (status) return status;
     double speed = board->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)
-        speed = fmax(speed, board->mark[t].speed[round & 1]);
+        speed = lar_most(speed, board->mark[t].speed[round & 1]);
     collide->view.place = (const double(*)[6])board->place[round & 1];
     /* What stands on the board has come here in the last step with this speed. */
     collide->travel += speed * worker->context.time_step;

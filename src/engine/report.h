@@ -40,8 +40,8 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->held += from->held;
     }
     lar_report_contact(&sum->contact, &other->contact);
-    if (!(other->moved <= sum->moved)) sum->moved = other->moved;
-    if (!(other->way <= sum->way)) sum->way = other->way;
+    sum->moved = lar_most(sum->moved, other->moved);
+    sum->way = lar_most(sum->way, other->way);
 }
 
 /* Adds what one thread has felt since lar_report_begin. */

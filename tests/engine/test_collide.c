@@ -146,6 +146,17 @@ static void bodies_in_each_other_are_refused(void **unused) {
     }
 }
 
+/* Whatever comes after it: a node that has left the range of numbers is not forgotten. */
+static void what_is_no_number_is_the_most(void **unused) {
+    (void)unused;
+    lar_report sum = {0}, other = {.moved = NAN, .way = 1}, last = {.moved = 2, .way = NAN};
+    assert_true(lar_most(1, 2) == 2 && lar_most(2, 1) == 2);
+    lar_report_join(&sum, &other);
+    lar_report_join(&sum, &last);
+    lar_report_join(&sum, &(lar_report){.moved = 3, .way = 3});
+    assert_true(isnan(sum.moved) && isnan(sum.way));
+}
+
 /* ---- energy --------------------------------------------------------------------------------- */
 
 /* Largest total energy over the first one of a body that is thrown on another. */
@@ -351,6 +362,7 @@ int main(void) {
         cmocka_unit_test(a_collision_keeps_momentum),
         cmocka_unit_test(forces_come_in_pairs),
         cmocka_unit_test(bodies_in_each_other_are_refused),
+        cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(corners_that_graze_add_no_energy),
         cmocka_unit_test(every_joule_of_contact_is_accounted_for),
