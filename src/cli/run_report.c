@@ -109,15 +109,17 @@ static void print_contact(const lar_simulation *simulation, FILE *out) {
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
     if (info.tested == 0) return;
+    static const double LEAST = 0.001; /* what is worth its digits [%] */
     double tested = 100 * (double)info.tested / (double)info.possible;
     fprintf(out,
             "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
-            " searches, %.*f %% of all pairs tested\n",
+            " searches, %s%.*f %% of all pairs tested\n",
             "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
-            tested < 0.1  ? 4
-            : tested < 10 ? 2
+            tested < LEAST ? "less than " : "",
+            tested < 1    ? 3
+            : tested < 10 ? 1
                           : 0,
-            tested);
+            fmax(tested, LEAST));
 }
 
 static void print_body(const run_report *report, FILE *out) {
