@@ -405,6 +405,8 @@ typedef struct lar_session_options {
     double tool_speed;   /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
     double hand_force;   /* hands pull no harder than this [N]; 0: 1 N */
     const char *record;  /* path of a recording to write, from the start; NULL: none */
+    int priority;        /* 1 to 99: the engine's thread goes before all ordinary ones of the
+                            machine (SCHED_FIFO), where the system allows it; 0: ordinary */
     uint64_t hash_every; /* steps between the hashes of a recording; 0: 100 */
 } lar_session_options;
 
@@ -556,9 +558,9 @@ typedef struct lar_replay_report {
  * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does
  * a file that is damaged or cut off where it is; what comes before is played and compared, and
  * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
- * `broken` says whether the recording ends with that, too. `watch` may be NULL: called with the number of steps at the
- * beginning, after every tick, reset and load, between two advances, so that it may look at the
- * simulation; 0 ends the replay. */
+ * `broken` says whether the recording ends with that, too. `watch` may be NULL: called with the
+ * number of steps at the beginning, after every tick, reset and load, between two advances, so that
+ * it may look at the simulation; 0 ends the replay. */
 LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
                               void *context, lar_replay_report *report, lar_error *error);
 

@@ -17,7 +17,7 @@
 typedef struct view_settings {
     const char *scene, *listen, *token, *record, *save_folder, *viewer;
     cli_texts devices; /* TOOL=SPEC */
-    int64_t port;
+    int64_t port, priority;
     double pace, seconds, time_step;
     int isa;
     bool paused, open, json;
@@ -165,6 +165,7 @@ static int open_session(view *v) {
     lar_error error;
     options.pace = s->pace;
     options.paused = s->paused;
+    options.priority = (int)s->priority;
     options.record = s->record;
     if (lar_session_open(v->simulation, &options, &v->session, &error)) return fail_by(v, &error);
     int status = CLI_DONE;
@@ -381,6 +382,10 @@ static int view_main(int argc, char **argv) {
                  "simulated seconds per second of the clock (1); 0: as fast as it goes", &s.pace, 0,
                  100),
         CLI_FLAG("--paused", "wait for play", &s.paused),
+        CLI_COUNT("--priority", "N",
+                  "the engine's thread goes before all ordinary ones of the\nmachine (SCHED_FIFO); "
+                  "needs the right to (ulimit -r)",
+                  &s.priority, 1, 99),
         CLI_REAL("--seconds", "S", "end after so many seconds of the clock; without: at Ctrl-C",
                  &s.seconds, 1e-3, 1e9),
         CLI_FLAG("--open", "open the address in a browser, where there is a display", &s.open),

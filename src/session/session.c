@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,10 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
     lar_status status = check_number("tick", o->tick, error);
     if (!status) status = check_number("pace", o->pace, error);
     if (!status) status = check_number("tool_speed", o->tool_speed, error);
+    if (!status && (o->priority < 0 || o->priority > 99))
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "a session cannot have the priority %d; give 1 to 99, or 0 for none",
+                          o->priority);
     if (!status) status = check_number("hand_force", o->hand_force, error);
     if (status) return status;
     if (o->tick == 0) o->tick = 1e-3;
@@ -41,8 +46,7 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
 static lar_status make_tools(lar_session *session, lar_error *error) {
     const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
                                         .hand_force = session->options.hand_force,
-                                        .seconds =
-                                            (double)session->tick_steps * session->time_step,
+                                        .seconds = (double)session->tick_steps * session->time_step,
                                         .time_step = session->time_step};
     lar_status status = LAR_OK;
     session->tools = lar_simulation_tool_count(session->simulation);
@@ -120,6 +124,17 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     return status;
 }
 
+static lar_status refuse_thread(const lar_session *session, int cause, lar_error *error) {
+    if (cause == EPERM || cause == EINVAL)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "the system does not allow the session a real-time priority of %d: %s; "
+                        "raise the limit (ulimit -r), run as root, or leave the priority out",
+                        session->options.priority, strerror(cause));
+    return lar_fail(error, LAR_ERROR_MEMORY,
+                    "the system gives no thread for the session: %s; raise the limit (ulimit -u)",
+                    strerror(cause));
+}
+
 lar_status lar_session_start(lar_session *session, lar_error *error) {
     if (!session)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_start needs a session, not NULL");
@@ -132,15 +147,13 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
-        int cause = lar_thread_start(&session->thread, lar_session_run, session);
+        int cause = lar_thread_start_urgent(&session->thread, session->options.priority,
+                                            lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
             session->status.state = LAR_SESSION_IDLE;
             lar_session_publish(session, true);
-            status = lar_fail(error, LAR_ERROR_MEMORY,
-                              "the system gives no thread for the session: %s; raise the limit "
-                              "(ulimit -u)",
-                              strerror(cause));
+            status = refuse_thread(session, cause, error);
         }
     }
     pthread_mutex_unlock(&session->requests.lock);

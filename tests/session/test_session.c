@@ -258,6 +258,9 @@ static void wrong_calls_are_refused(void **unused) {
     options = lar_session_options_default();
     options.pace = NAN;
     REFUSED(lar_session_open(b.simulation, &options, &session, &failure));
+    options = lar_session_options_default();
+    options.priority = 100;
+    REFUSED(lar_session_open(b.simulation, &options, &session, &failure));
     assert_null(session);
     REFUSED(lar_session_start(NULL, &failure));
     REFUSED(lar_session_reset(NULL, &failure));
