@@ -6,7 +6,12 @@ import { OUT } from './browser.mjs';
 
 const LARIAT = process.env.LARIAT ?? '../build/lariat';
 const engines = new Set();
-process.on('exit', () => engines.forEach((child) => child.kill('SIGKILL')));
+process.on('exit', endAll);
+
+/* Those that a failed test has left: without this they would keep the process alive. */
+export function endAll() {
+    engines.forEach((child) => child.kill('SIGKILL'));
+}
 
 /* A folder of its own with the demonstration organ. */
 export function demo() {
@@ -16,11 +21,12 @@ export function demo() {
     return { folder, scene: join(folder, 'uterus_live.yaml'), saved: join(folder, 'saved') };
 }
 
-/* The same organ torn by a force that no tissue bears. */
+/* The same organ torn by a force that no tissue bears, after a second or so: what comes before can be
+ * seen, also when it is reset. */
 export function tornDemo({ folder, scene }) {
     const torn = join(folder, 'torn.yaml');
     const text = readFileSync(scene, 'utf8').replace(/^load:[\s\S]*?(?=^\S)/m, '');
-    writeFileSync(torn, `${text}\nload: [ { nodes: fundus, force: [0, 0, 500], over: 0.5 } ]\n`);
+    writeFileSync(torn, `${text}\nload: [ { nodes: fundus, force: [0, 0, 40], over: 4 } ]\n`);
     return torn;
 }
 

@@ -4,7 +4,7 @@ import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
-import { demo, tornDemo, view } from './engine.mjs';
+import { demo, endAll, tornDemo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
 const model = demo();
@@ -24,6 +24,7 @@ before(async () => {
 after(async () => {
     await browser?.close();
     await engine?.end();
+    endAll();
 });
 
 const button = (name) => v.page.getByRole('button', { name, exact: true });
