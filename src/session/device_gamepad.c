@@ -62,14 +62,14 @@ static const double RUMBLE_FULL = 5, SLOW = 1 / 5.0; /* [N] */
 
 #define MEMBER(call) __typeof__(call) *call;
 static struct {
-    void *library;
+    void *loaded;
     SDL_CALLS(MEMBER)
 } sdl;
 static pthread_mutex_t sdl_lock = PTHREAD_MUTEX_INITIALIZER; /* opening and closing */
 
 /* Stays loaded until the program ends. The caller has the lock. */
 static lar_status load_sdl(const lar_device_spec *spec, lar_error *error) {
-    if (sdl.library) return LAR_OK;
+    if (sdl.loaded) return LAR_OK;
     void *library = dlopen("libSDL2-2.0.so.0", RTLD_NOW | RTLD_LOCAL);
     const char *lacking = library ? NULL : "libSDL2-2.0.so.0";
 #define FIND(call)                                                                                 \
@@ -81,7 +81,7 @@ static lar_status load_sdl(const lar_device_spec *spec, lar_error *error) {
                         "device '%s': %s cannot be loaded; install libsdl2-2.0-0", spec->text,
                         lacking);
     }
-    sdl.library = library;
+    sdl.loaded = library;
     return LAR_OK;
 }
 
