@@ -1,7 +1,6 @@
 /* lariat replay: a recording of a session again, compared hash by hash, and as pictures. */
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/json.h"
 #include "cli/parallel.h"
+#include "cli/stop.h"
 #include "study/step_clock.h"
 
 typedef struct replay_settings {
@@ -44,22 +44,6 @@ typedef struct replay {
     lar_step_clock clock;
     double elapsed, progress_at; /* [s] */
 } replay;
-
-/* ---- stopping ------------------------------------------------------------------------------ */
-
-static volatile sig_atomic_t stop_asked;
-
-static void ask_stop(int signal_number) {
-    stop_asked = signal_number;
-}
-
-/* The first signal ends the replay with what there is, a second one the program. */
-static void catch_signals(void) {
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
 
 /* ---- frames -------------------------------------------------------------------------------- */
 
@@ -105,7 +89,7 @@ static int look(void *context, uint64_t step) {
     if (r->settings.out) r->written = add_frame(r, step, &r->written_error);
     r->step = step;
     show_progress(r);
-    return !r->written && !stop_asked;
+    return !r->written && !cli_stop_asked;
 }
 
 /* ---- telling ------------------------------------------------------------------------------- */
@@ -133,7 +117,7 @@ static void write_json(const replay *r) {
     json_text(&json, "fault", r->fault);
     json_text(&json, "state_hash", *r->fault ? "" : hash);
     json_integer(&json, "frames", r->frames);
-    json_boolean(&json, "interrupted", stop_asked != 0);
+    json_boolean(&json, "interrupted", cli_stop_asked != 0);
     json_end(&json);
 }
 
@@ -143,7 +127,7 @@ static void write_table(const replay *r) {
            (int)r->info.nodes, cli_element_names[r->recorded.element],
            lar_simulation_isa(r->simulation));
     printf("%-17s%" PRIu64 " steps of %.4g s in %.4g s%s\n", "played", r->report.steps,
-           r->recorded.time_step, r->elapsed, stop_asked ? ", interrupted" : "");
+           r->recorded.time_step, r->elapsed, cli_stop_asked ? ", interrupted" : "");
     printf("%-17sall %" PRIu64 " hashes are equal to those of the recording\n", "compared",
            r->report.hashes);
     if (*r->fault)
@@ -215,7 +199,7 @@ static int compare(replay *r) {
         write_json(r);
     else
         write_table(r);
-    return stop_asked ? CLI_INTERRUPTED : CLI_DONE;
+    return cli_stop_asked ? CLI_INTERRUPTED : CLI_DONE;
 }
 
 /* Processor zero hears Ctrl-C too, and ends the replay for all. */
@@ -226,7 +210,7 @@ static int serve(replay *r) {
 
 static int replay_recording(const replay_settings *settings) {
     replay r = {.settings = *settings};
-    catch_signals();
+    cli_catch_stop();
     int status = prepare(&r);
     if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compare(&r);
     bool failed = status && status != CLI_INTERRUPTED;

@@ -1,7 +1,6 @@
 /* lariat run: a scene in, motion, figures and results out. */
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/parallel.h"
+#include "cli/stop.h"
 #include "cli/run_report.h"
 
 typedef struct run_settings {
@@ -41,26 +41,6 @@ typedef struct run {
     double elapsed;     /* [s] */
     double progress_at; /* when progress was last shown [s]; 0: it is not on the screen */
 } run;
-
-/* ---- stopping --------------------------------------------------------------------------- */
-
-static volatile sig_atomic_t stop_asked;
-
-static void ask_stop(int signal_number) {
-    stop_asked = signal_number;
-}
-
-/* The first signal ends the run with what there is, a second one ends the program. A closed
- * terminal does the same, but not under nohup. */
-static void catch_signals(void) {
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
-    struct sigaction hangup;
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
-        sigaction(SIGHUP, &action, NULL);
-}
 
 /* ---- progress --------------------------------------------------------------------------- */
 
@@ -121,7 +101,7 @@ static uint64_t next_stop(const run *r) {
 static run_report report_of(const run *r) {
     return (run_report){.scene = r->settings.scene,
                         .element = cli_element_names[r->settings.element],
-                        .interrupted = stop_asked != 0,
+                        .interrupted = cli_stop_asked != 0,
                         .verify = r->settings.verify,
                         .parallel = &r->parallel,
                         .folder = r->settings.out,
@@ -184,10 +164,10 @@ static int advance(run *r) {
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
     r->next_frame = 1;
     lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
-    while (!status && !stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
+    while (!status && !cli_stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
         uint64_t now = lar_simulation_steps(r->simulation), stop = next_stop(r);
         lar_error error;
-        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &stop_asked,
+        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &cli_stop_asked,
                                    &error))
             return report_failure(r, &error);
         if (r->interval > 0 && lar_simulation_steps(r->simulation) == stop) {
@@ -252,19 +232,19 @@ static int compute(run *r) {
         lar_results_open(r->settings.out, r->simulation, &r->results, &error))
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status) {
-        catch_signals();
+        cli_catch_stop();
         status = advance(r);
     }
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status) status = report(r);
-    return !status && stop_asked ? CLI_INTERRUPTED : status;
+    return !status && cli_stop_asked ? CLI_INTERRUPTED : status;
 }
 
 /* Processor zero hears Ctrl-C too, and ends the run for all. */
 static int serve(run *r) {
     lar_error error;
-    catch_signals();
+    cli_catch_stop();
     return lar_simulation_serve(r->simulation, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/parallel.h"
+#include "cli/stop.h"
 #include "cli/view_report.h"
 
 typedef struct view_settings {
@@ -44,24 +45,6 @@ typedef struct view {
     double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
 } view;
-
-/* ---- stopping ---------------------------------------------------------------------------------
- */
-
-static volatile sig_atomic_t stop_asked;
-
-static void ask_stop(int signal_number) {
-    stop_asked = signal_number;
-}
-
-/* The first signal ends the program with its report, a second one at once. */
-static void catch_signals(void) {
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
-}
 
 static double now(void) {
     struct timespec at;
@@ -271,7 +254,7 @@ static void note_devices(view *v) {
 /* Viewers are told why for a second, then it is over: without a processor nothing goes on. */
 static bool is_over(const view *v, double begin, double at) {
     static const double TELL = 1; /* [s] */
-    return stop_asked || (v->settings.seconds > 0 && at >= begin + v->settings.seconds) ||
+    return cli_stop_asked || (v->settings.seconds > 0 && at >= begin + v->settings.seconds) ||
            (v->failure == LAR_ERROR_PEER && at >= v->lost_at + TELL);
 }
 
@@ -322,7 +305,7 @@ static int report(view *v, int status) {
 
 static int present(view *v) {
     lar_error error;
-    catch_signals();
+    cli_catch_stop();
     int status = open_session(v);
     if (!status) {
         greet(v);
@@ -339,7 +322,7 @@ static int present(view *v) {
 /* Processor zero hears Ctrl-C too, and ends the session for all. */
 static int serve(view *v) {
     lar_error error;
-    catch_signals();
+    cli_catch_stop();
     return lar_simulation_serve(v->simulation, &error) ? fail_by(v, &error) : CLI_DONE;
 }
 

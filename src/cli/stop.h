@@ -1,0 +1,14 @@
+/* How a command that takes time is asked to stop. */
+#ifndef LAR_CLI_STOP_H
+#define LAR_CLI_STOP_H
+
+#include <signal.h>
+
+/* The signal that asked; 0: none has. */
+extern volatile sig_atomic_t cli_stop_asked;
+
+/* The first Ctrl-C (or SIGTERM, or SIGHUP where it is not ignored, as under nohup) ends the command
+ * with what there is: it looks at cli_stop_asked. A second one ends the program at once. */
+void cli_catch_stop(void);
+
+#endif
