@@ -47,11 +47,15 @@ export class Endoscope {
     /* By fractions of the picture's height. */
     pan(dx: number, dy: number): void {
         const scale = 2 * this.now.distance * Math.tan((this.camera.fov * Math.PI) / 360);
+        this.shift(this.wanted.target, -dx * scale, dy * scale, 0);
+    }
+
+    /* Moves a point along the picture's axes, in metres: right, up, towards the viewer. */
+    shift(point: THREE.Vector3, right: number, up: number, near: number): void {
         const e = this.camera.matrixWorld.elements;
-        const target = this.wanted.target;
         for (let k = 0; k < 3; k++) {
-            const by = (-dx * e[k]! + dy * e[4 + k]!) * scale;
-            target.setComponent(k, target.getComponent(k) + by);
+            const by = right * e[k]! + up * e[4 + k]! + near * e[8 + k]!;
+            point.setComponent(k, point.getComponent(k) + by);
         }
     }
 

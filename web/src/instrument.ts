@@ -67,11 +67,7 @@ export class Instrument {
 
     moveBy(right: number, up: number, near: number): void {
         if (!this.held) return;
-        const e = this.view.endoscope.camera.matrixWorld.elements;
-        for (let k = 0; k < 3; k++) {
-            const by = right * e[k]! + up * e[4 + k]! + near * e[8 + k]!;
-            this.target.setComponent(k, this.target.getComponent(k) + by);
-        }
+        this.view.endoscope.shift(this.target, right, up, near);
         this.setPlane();
         this.moved = true;
     }

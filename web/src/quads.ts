@@ -56,8 +56,9 @@ export function trianglesOf(quads: Uint32Array): Uint32Array {
     return out;
 }
 
-/* Unit normal of the quad that starts at quads[q], into out[q / 4]. */
-export function faceNormal(x: Float32Array, quads: Uint32Array, q: number, out: Float32Array): void {
+/* The cross product of the diagonals of the quad that starts at quads[q]: normal to it, and twice as
+ * long as its area is large. */
+function diagonalsCross(x: Float32Array, quads: Uint32Array, q: number, out: Float64Array): void {
     const a = quads[q]! * 3;
     const b = quads[q + 1]! * 3;
     const c = quads[q + 2]! * 3;
@@ -68,14 +69,18 @@ export function faceNormal(x: Float32Array, quads: Uint32Array, q: number, out: 
     const vx = x[d]! - x[b]!;
     const vy = x[d + 1]! - x[b + 1]!;
     const vz = x[d + 2]! - x[b + 2]!;
-    const nx = uy * vz - uz * vy;
-    const ny = uz * vx - ux * vz;
-    const nz = ux * vy - uy * vx;
-    const length = Math.sqrt(nx * nx + ny * ny + nz * nz) || 1;
-    const to = (q / 4) * 3;
-    out[to] = nx / length;
-    out[to + 1] = ny / length;
-    out[to + 2] = nz / length;
+    out[0] = uy * vz - uz * vy;
+    out[1] = uz * vx - ux * vz;
+    out[2] = ux * vy - uy * vx;
+}
+
+const cross = new Float64Array(3); // scratch
+
+/* Unit normal of the quad that starts at quads[q], into out[q / 4]. */
+export function faceNormal(x: Float32Array, quads: Uint32Array, q: number, out: Float32Array): void {
+    diagonalsCross(x, quads, q, cross);
+    const length = Math.hypot(cross[0]!, cross[1]!, cross[2]!) || 1;
+    for (let k = 0; k < 3; k++) out[(q / 4) * 3 + k] = cross[k]! / length;
 }
 
 /* Unit normals of the first `nodes` nodes: those of the quads around, weighted by area (the cross
@@ -89,19 +94,14 @@ export function normalsOf(
     const end = nodes * 3;
     out.fill(0, 0, end);
     for (let q = 0; q < quads.length; q += 4) {
+        diagonalsCross(x, quads, q, cross);
+        const nx = cross[0]!;
+        const ny = cross[1]!;
+        const nz = cross[2]!;
         const a = quads[q]! * 3;
         const b = quads[q + 1]! * 3;
         const c = quads[q + 2]! * 3;
         const d = quads[q + 3]! * 3;
-        const ux = x[c]! - x[a]!;
-        const uy = x[c + 1]! - x[a + 1]!;
-        const uz = x[c + 2]! - x[a + 2]!;
-        const vx = x[d]! - x[b]!;
-        const vy = x[d + 1]! - x[b + 1]!;
-        const vz = x[d + 2]! - x[b + 2]!;
-        const nx = uy * vz - uz * vy;
-        const ny = uz * vx - ux * vz;
-        const nz = ux * vy - uy * vx;
         out[a]! += nx;
         out[a + 1]! += ny;
         out[a + 2]! += nz;
