@@ -1,12 +1,12 @@
 /* Saving, loading and going back: from then on everything is as if nothing had been. */
 #include <dirent.h>
-#include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/checkpoint.h"
 #include "engine/collide_test.h"
 #include "engine/engine_test.h"
+#include "engine/fleet_test.h"
 #include "engine/tools_test.h"
 
 static const char *const grids[] = {NULL, "2x1x1", "2x2x1", "1x2x3"};
@@ -180,22 +180,6 @@ static void a_broken_run_is_taken_up_again(void **unused) {
 
 /* ---- other processes: two simulations in two threads ---------------------------------------- */
 
-typedef struct participant {
-    const lar_model *model;
-    lar_options options;
-    lar_error error;
-    lar_status status;
-} participant;
-
-static void *serve(void *context) {
-    participant *p = context;
-    lar_simulation *simulation = NULL;
-    p->status = lar_simulation_create(p->model, &p->options, &simulation, &p->error);
-    if (!p->status) p->status = lar_simulation_serve(simulation, &p->error);
-    lar_simulation_destroy(simulation);
-    return NULL;
-}
-
 static void go_back_and_forth(lar_simulation *simulation, const course *c) {
     act(simulation, 0, 3);
     advance(simulation, 1);
@@ -212,39 +196,6 @@ static void go_back_and_forth(lar_simulation *simulation, const course *c) {
     assert_int_equal(lar_simulation_hash(simulation), c->end);
 }
 
-/* Starts the processes of a computer; the caller plays processor zero. */
-typedef struct fleet {
-    int count;
-    participant other[4];
-    pthread_t thread[4];
-    lar_simulation *zero;
-} fleet;
-
-static void start_fleet(fleet *f, const lar_model *model, lar_options options, int count) {
-    lar_error error;
-    char master[LAR_COMM_ADDRESS_TEXT];
-    int listener;
-    f->count = count;
-    if (lar_comm_listen("127.0.0.1:0", &listener, master, &error)) fail_msg("%s", error.message);
-    options.master = master;
-    for (int p = 1; p < count; p++) {
-        f->other[p] = (participant){.model = model, .options = options};
-        f->other[p].options.processor = p;
-        assert_int_equal(pthread_create(&f->thread[p], NULL, serve, &f->other[p]), 0);
-    }
-    options.listener = listener;
-    f->zero = NULL;
-    if (lar_simulation_create(model, &options, &f->zero, &error)) fail_msg("%s", error.message);
-}
-
-static void end_fleet(fleet *f) {
-    lar_simulation_destroy(f->zero);
-    for (int p = 1; p < f->count; p++) {
-        pthread_join(f->thread[p], NULL);
-        if (f->other[p].status) fail_msg("processor %d: %s", p, f->other[p].error.message);
-    }
-}
-
 static void processes_go_back_together(void **unused) {
     (void)unused;
     static const char *const backends[] = {"shm", "tcp", "shm"};
@@ -257,7 +208,7 @@ static void processes_go_back_together(void **unused) {
         options.threads = 1 + i % 2;
         options.comm = backends[i];
         fleet f;
-        start_fleet(&f, model, options, i == 2 ? 4 : 2);
+        start_fleet(&f, model, options, i == 2 ? 4 : 2, NULL);
         go_back_and_forth(f.zero, &c);
         end_fleet(&f);
         lar_model_destroy(model);
@@ -270,7 +221,7 @@ static void processes_that_broke_off_are_taken_up_again(void **unused) {
     lar_options options = setting(1);
     options.comm = "shm";
     fleet f;
-    start_fleet(&f, model, options, 2);
+    start_fleet(&f, model, options, 2, NULL);
     break_and_take_up(f.zero);
     end_fleet(&f);
     lar_model_destroy(model);
@@ -339,7 +290,7 @@ static void bodies_in_contact_are_taken_up_in_the_middle(void **unused) {
         lar_options options = setting(i + 1);
         options.comm = i ? "shm" : "tcp";
         fleet f;
-        start_fleet(&f, model, options, i ? 4 : 2);
+        start_fleet(&f, model, options, i ? 4 : 2, NULL);
         take_up_impact(f.zero, &w, false);
         end_fleet(&f);
     }

@@ -1,7 +1,6 @@
 /* Tools of a simulation: what may be asked of them, the same bits on every grid, what they feel. */
-#include <pthread.h>
-
 #include "engine/engine_test.h"
+#include "engine/fleet_test.h"
 #include "engine/tools_test.h"
 
 static const char *const grids[] = {NULL, "1x1x1", "2x1x1", "2x2x1", "1x2x3"};
@@ -77,30 +76,16 @@ static void tools_do_and_feel_the_same_on_every_grid(void **unused) {
     lar_model_destroy(model);
 }
 
-typedef struct participant {
-    const lar_model *model;
-    lar_options options;
+/* What is not for processors other than zero. */
+static lar_status try_what_is_zeros(lar_simulation *simulation) {
+    lar_tool_pose pose = {{0}, {1, 0, 0, 0}, 1};
     lar_error error;
-    lar_status status;
-} participant;
-
-static void *serve(void *context) {
-    participant *p = context;
-    lar_simulation *simulation = NULL;
-    p->status = lar_simulation_create(p->model, &p->options, &simulation, &p->error);
-    if (!p->status) {
-        /* Not for this one. */
-        lar_tool_pose pose = {{0}, {1, 0, 0, 0}, 1};
-        lar_error error;
-        if (lar_simulation_tool_move(simulation, 0, &pose, 10, &error) != LAR_ERROR_ARGUMENT ||
-            lar_simulation_reset(simulation, &error) != LAR_ERROR_ARGUMENT ||
-            lar_simulation_save(simulation, "nowhere", &error) != LAR_ERROR_ARGUMENT ||
-            lar_simulation_load(simulation, "nowhere", &error) != LAR_ERROR_ARGUMENT)
-            p->status = LAR_ERROR_ARGUMENT;
-    }
-    if (!p->status) p->status = lar_simulation_serve(simulation, &p->error);
-    lar_simulation_destroy(simulation);
-    return NULL;
+    bool refused =
+        lar_simulation_tool_move(simulation, 0, &pose, 10, &error) == LAR_ERROR_ARGUMENT &&
+        lar_simulation_reset(simulation, &error) == LAR_ERROR_ARGUMENT &&
+        lar_simulation_save(simulation, "nowhere", &error) == LAR_ERROR_ARGUMENT &&
+        lar_simulation_load(simulation, "nowhere", &error) == LAR_ERROR_ARGUMENT;
+    return refused ? LAR_OK : LAR_ERROR_ARGUMENT;
 }
 
 /* Tools travel with the orders, forces with the answers. */
@@ -112,27 +97,12 @@ static void tools_reach_other_processes(void **unused) {
     follow(simulation, &wanted);
     lar_simulation_destroy(simulation);
     for (int i = 0; i < 2; i++) {
-        lar_error error;
-        char master[LAR_COMM_ADDRESS_TEXT];
-        int listener;
-        pthread_t thread;
-        if (lar_comm_listen("127.0.0.1:0", &listener, master, &error))
-            fail_msg("%s", error.message);
-        participant other = {.model = model, .options = setting(2)};
-        other.options.comm = i ? "tcp" : "shm";
-        other.options.master = master;
-        other.options.processor = 1;
-        assert_int_equal(pthread_create(&thread, NULL, serve, &other), 0);
-        lar_options options = other.options;
-        options.processor = 0;
-        options.listener = listener;
-        simulation = NULL;
-        if (lar_simulation_create(model, &options, &simulation, &error))
-            fail_msg("%s", error.message);
-        follow(simulation, &found);
-        lar_simulation_destroy(simulation);
-        pthread_join(thread, NULL);
-        if (other.status) fail_msg("%s", other.error.message);
+        lar_options options = setting(2);
+        options.comm = i ? "tcp" : "shm";
+        fleet f;
+        start_fleet(&f, model, options, 2, try_what_is_zeros);
+        follow(f.zero, &found);
+        end_fleet(&f);
         compare(&found, &wanted);
     }
     lar_model_destroy(model);
@@ -146,31 +116,21 @@ static void holds_of_others_are_looked_at(void **unused) {
     static const int32_t wrong[4][2] = {{-1, 0}, {TEST_TOOLS, 0}, {0, -1}, {0, 1 << 20}};
     for (int i = 0; i < 4; i++) {
         lar_error error;
-        char master[LAR_COMM_ADDRESS_TEXT];
         lar_options options = setting(2);
-        pthread_t thread;
-        if (lar_comm_listen("127.0.0.1:0", &options.listener, master, &error))
-            fail_msg("%s", error.message);
         options.comm = "shm";
-        options.master = master;
-        participant other = {.model = model, .options = options};
-        other.options.processor = 1;
-        other.options.listener = -1;
-        assert_int_equal(pthread_create(&thread, NULL, serve, &other), 0);
-        lar_simulation *simulation = NULL;
-        if (lar_simulation_create(model, &options, &simulation, &error))
-            fail_msg("%s", error.message);
-        lar_tools tools = simulation->tools;
+        fleet f;
+        start_fleet(&f, model, options, 2, NULL);
+        lar_tools tools = f.zero->tools;
         tools.hold_count = 1;
         tools.hold[0] = (lar_hold){.tool = wrong[i][0], .face = wrong[i][1]};
         const lar_order order = {LAR_ORDER_ADVANCE, 0};
-        assert_int_equal(lar_control_order(simulation->computer->control, &order, &tools,
+        assert_int_equal(lar_control_order(f.zero->computer->control, &order, &tools,
                                            lar_tools_bytes(&tools), &error),
                          LAR_OK);
-        lar_simulation_destroy(simulation);
-        pthread_join(thread, NULL);
-        assert_int_equal(other.status, LAR_ERROR_PEER);
-        if (!strstr(other.error.message, "does not know")) fail_msg("%s", other.error.message);
+        leave_fleet(&f);
+        assert_int_equal(f.other[1].status, LAR_ERROR_PEER);
+        if (!strstr(f.other[1].error.message, "does not know"))
+            fail_msg("%s", f.other[1].error.message);
     }
     lar_model_destroy(model);
 }
