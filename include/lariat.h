@@ -142,6 +142,25 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
+/* A fine surface that rides on the mesh, for display (scene key `surface`). */
+typedef struct lar_embedded_info {
+    int32_t vertices, triangles;
+    const int32_t (*triangle)[3]; /* [triangles] vertices, counter-clockwise seen from outside */
+    const double (*rest)[3];      /* [vertices] places at rest [m] */
+    const int32_t *element;       /* [vertices] the element that each is bound to */
+    const float (*weight)[8];     /* [vertices] shares of that element's nodes; they sum to 1 */
+} lar_embedded_info;
+
+/* 0 when the model has none. The arrays live as long as the model. `info` is the caller's. */
+LAR_API int lar_model_embedded(const lar_model *model, lar_embedded_info *info);
+/* Places of its vertices, [vertices][3], when the nodes have moved by u, [nodes][3]; NULL: at
+ * rest. */
+LAR_API void lar_model_embedded_move(const lar_model *model, const double (*u)[3],
+                                     double (*place)[3]);
+
+/* The nodes of an element, eight indices; NULL: no such element. Lives as long as the model. */
+LAR_API const int32_t *lar_model_element_nodes(const lar_model *model, int32_t element);
+
 /* What may touch what: one entry of a model's contact. */
 typedef struct lar_model_contact_info {
     const char *kind;             /* "self", "between" or "plane" */
@@ -197,6 +216,91 @@ typedef struct lar_tool_force {
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
  * its scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). */
 LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
+
+/* ---- meshing: from a scan to a model ------------------------------------------------------ */
+
+/* How good a mesh is, and how well it stands for a true surface. */
+typedef struct lar_mesh_quality {
+    int32_t jacobian_bin[10];   /* elements by scaled Jacobian, bins of 0.1 from 0 */
+    double above_02, above_05;  /* parts of the elements, 0..1 */
+    double mean_edge;           /* [m] */
+    double volume, true_volume; /* of the mesh and inside the true surface [m^3]; 0: unknown */
+    double deviation_mean;      /* between both surfaces, both ways, by area [m] */
+    double deviation_95;        /* 95 % of the area is nearer [m] */
+    double deviation_most;      /* the largest: Hausdorff distance [m] */
+} lar_mesh_quality;
+
+/* Compares a model's mesh with a surface (.stl .obj .vtk .vtp, in the model's metres times
+ * `scale`), or with the fine surface that rides on it (against NULL); without either the deviations
+ * and true_volume are 0. */
+LAR_API lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
+                                     lar_mesh_quality *quality, lar_error *error);
+
+typedef struct lar_meshing lar_meshing;
+
+/* Told now and then what is being done and how much of it is, 0..1; 0 from it asks to stop. */
+typedef int lar_meshing_watch(void *context, const char *what, double part);
+
+typedef struct lar_meshing_options {
+    double size;               /* edge of an element [m]; 0: from `elements` */
+    int32_t elements;          /* about so many; 0: 5,000 */
+    double scale;              /* of surfaces: metres per unit of the file; 0: 1 */
+    const char *const *labels; /* of an image: numbers or names, each a region; NULL: all */
+    int32_t label_count;
+    int fuse;                 /* not 0: all labels become one region */
+    const char *names;        /* a file of label names, "LABEL,NAME" per line; NULL: none */
+    int principal;            /* not 0: along the body's principal axes instead of the image's */
+    int voxel;                /* not 0: cubes on a grid, not fitted; size and elements 0: the
+                                 image's own voxels */
+    const char *title;        /* NULL: the only region's name, or the first file's */
+    const char *fix;          /* where the starter scene holds it: "left", "right", "back", "front",
+                                 "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
+                                 it, else "back" */
+    lar_meshing_watch *watch; /* may be NULL */
+    void *context;
+} lar_meshing_options;
+
+LAR_API lar_meshing_options lar_meshing_options_default(void);
+
+/* Meshes one label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk .vtp), one
+ * region each; where surfaces overlap the later one has the place. World: metres, for images +x
+ * right, +y front, +z head. docs/meshing.md. `options` may be NULL. */
+LAR_API lar_status lar_meshing_create(const char *const *paths, int32_t count,
+                                      const lar_meshing_options *options, lar_meshing **meshing,
+                                      lar_error *error);
+LAR_API void lar_meshing_destroy(lar_meshing *meshing);
+
+typedef struct lar_meshing_info {
+    const char *title; /* strings live as long as the meshing */
+    int32_t nodes, elements, regions;
+    double size;                     /* edge of the grid's cells [m] */
+    int32_t islands, island_cells;   /* loose pieces left out */
+    int32_t pinholes, pinhole_cells; /* hollows filled */
+    int32_t added, removed; /* cells, so that none hang together by an edge or a corner only */
+    int32_t cuts;           /* flat cuts, where the image ends in an organ */
+    const char *fix;        /* the rule that holds the body, as in the options */
+    int32_t fixed_nodes;
+    lar_mesh_quality quality;
+} lar_meshing_info;
+
+typedef struct lar_region_info {
+    const char *name;
+    int32_t tag, elements;
+    double volume, true_volume;  /* in the mesh, and in the image or surface [m^3] */
+    const char *tissue, *source; /* of the starter scene's material: which, from where */
+    double shear_modulus, bulk_modulus, density;
+} lar_region_info;
+
+LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
+/* Region `index` of the count; LAR_ERROR_ARGUMENT beyond. */
+LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
+                                      lar_region_info *info, lar_error *error);
+
+/* Writes FOLDER/TITLE.vtu (tags, named sets), TITLE_surface.vtp (the true surface, to ride on it)
+ * and TITLE.yaml, a scene that runs. The folder is made when it is missing. *scene (may be NULL):
+ * the scene's path, freed with the meshing. */
+LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
+                                     lar_error *error);
 
 /* ---- simulation ------------------------------------------------------------------------- */
 

@@ -1,0 +1,67 @@
+/* A surface of triangles: what scans and modelling programs give, and what people see.
+ *
+ *     .stl .obj .vtk .vtp --> lar_triangles --> the true boundary that meshing fits
+ * (meshing/boundary.h)
+ *                                          '--> the fine surface that rides on a mesh
+ * (model/embedding.h)
+ *
+ * Positions are in metres after scaling. Corners stand counter-clockwise seen from outside.
+ */
+#ifndef LAR_MODEL_TRIANGLES_H
+#define LAR_MODEL_TRIANGLES_H
+
+#include <stdint.h>
+
+#include "base/memory.h"
+
+typedef struct lar_triangles {
+    char *source; /* the file it came from, for messages */
+    int32_t vertex_count;
+    double (*vertex)[3]; /* [vertex_count] */
+    int32_t triangle_count;
+    int32_t (*corner)[3]; /* [triangle_count] vertex indices */
+    int32_t *tag;         /* [triangle_count] an integer per triangle, or NULL: all 0 */
+} lar_triangles;
+
+/* Frees what it owns and zeroes it; a zeroed one is fine. */
+void lar_triangles_clear(lar_triangles *triangles);
+
+/* Reads a surface by the extension of `path`: .stl (ascii and binary), .obj, .vtk (legacy PolyData,
+ * ascii and binary), .vtp. Polygons are cut into triangles; corners at exactly one place become one
+ * vertex; triangles without area (a corner twice) are left out. `triangles` is zeroed before; on
+ * failure it is cleared. Volume meshes (.vtk with cells) are refused by name. */
+lar_status lar_triangles_read(const char *path, double scale, lar_triangles *triangles,
+                              lar_error *error);
+
+/* The readers, also entry points for fuzzing; `path` is for messages only. On failure the caller
+ * clears. Vertices are not yet joined (lar_triangles_join). */
+lar_status lar_stl_parse(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
+                         lar_error *error);
+lar_status lar_obj_parse(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
+                         lar_error *error);
+lar_status lar_vtk_surface_parse(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
+                                 lar_error *error);
+lar_status lar_vtp_parse(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
+                         lar_error *error);
+
+/* Joins vertices at equal places, leaves out triangles without area and vertices without a
+ * triangle. */
+lar_status lar_triangles_join(lar_triangles *triangles, lar_error *error);
+
+/* Writes a .vtp, whole or not at all (as lar_vtu_write); the tags go along as cell array "tag". */
+lar_status lar_vtp_write(const char *path, const lar_triangles *triangles, lar_error *error);
+
+/* Enclosed volume, positive when the corners stand counter-clockwise seen from outside; area. */
+double lar_triangles_volume(const lar_triangles *triangles);
+double lar_triangles_area(const lar_triangles *triangles);
+
+/* Closed: every edge is used as often in one direction as in the other, which is what counting
+ * crossings along a line needs. The message names the number of open edges and the place of one.
+ * Triangles that are turned against their neighbours are turned back, and all are turned when the
+ * volume is negative; *turned counts them (may be NULL). */
+lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_error *error);
+
+/* No triangle goes through another one. The message names their number and the place of one. */
+lar_status lar_triangles_check_crossing(const lar_triangles *triangles, lar_error *error);
+
+#endif
