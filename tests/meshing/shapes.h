@@ -127,16 +127,16 @@ static TEST_UNUSED void shape_image_of(lar_image *image, int (*label)(const doub
 }
 
 /* The shape in cubic voxels with at least two empty ones around it, in any frame. */
-static TEST_UNUSED void shape_image(lar_image *image, const shape *shape, double spacing,
+static TEST_UNUSED void shape_image(lar_image *image, const shape *body, double spacing,
                                     shape_frame frame) {
     int32_t size[3];
-    double widest = fmax(shape->half[0], fmax(shape->half[1], shape->half[2]));
+    double widest = fmax(body->half[0], fmax(body->half[1], body->half[2]));
     for (int a = 0; a < 3; a++) {
-        double half = frame == SHAPE_OBLIQUE ? widest * 1.3 : shape->half[a];
+        double half = frame == SHAPE_OBLIQUE ? widest * 1.3 : body->half[a];
         size[a] = 2 * (int32_t)ceil(half / spacing) + 4;
     }
     double spacings[3] = {spacing, spacing, spacing};
-    shape_image_of(image, shape->label, size, spacings, frame);
+    shape_image_of(image, body->label, size, spacings, frame);
 }
 
 /* ---- triangles ---------------------------------------------------------------------------- */
