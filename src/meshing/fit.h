@@ -14,7 +14,7 @@ typedef struct lar_draft_mesh {
     lar_mesh mesh;       /* element_tag = region number until lar_draft_finish */
     double size;         /* edge of a cell [m] */
     int32_t *meet_start; /* [nodes + 1] into meet */
-    uint16_t *meet;      /* pairs (a, b), a < b, of regions (0 outside, cuts by number) between
+    uint16_t (*meet)[2]; /* pairs (a, b), a < b, of regions (0 outside, cuts by number) between
                             which a face of the mesh lies that has this node; none: the node is
                             inside a region */
 } lar_draft_mesh;
