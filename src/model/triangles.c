@@ -1,0 +1,123 @@
+#include "model/triangles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+
+void lar_triangles_clear(lar_triangles *triangles) {
+    free(triangles->source);
+    free(triangles->vertex);
+    free(triangles->corner);
+    free(triangles->tag);
+    *triangles = (lar_triangles){0};
+}
+
+/* Seen from the first vertex, not from the origin: a body far from it would lose its digits. */
+static void corners_of(const lar_triangles *triangles, int32_t triangle, double corner[3][3]) {
+    for (int a = 0; a < 3; a++)
+        lar_minus(triangles->vertex[triangles->corner[triangle][a]], triangles->vertex[0],
+                  corner[a]);
+}
+
+double lar_triangles_volume(const lar_triangles *triangles) {
+    double volume = 0;
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        double c[3][3], turned[3];
+        corners_of(triangles, t, c);
+        lar_cross(c[1], c[2], turned);
+        volume += lar_dot(c[0], turned);
+    }
+    return volume / 6;
+}
+
+double lar_triangles_area(const lar_triangles *triangles) {
+    double area = 0;
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        double c[3][3], e[3], f[3], normal[3];
+        corners_of(triangles, t, c);
+        lar_minus(c[1], c[0], e);
+        lar_minus(c[2], c[0], f);
+        lar_cross(e, f, normal);
+        area += lar_length(normal);
+    }
+    return area / 2;
+}
+
+/* ---- joining ------------------------------------------------------------------------------ */
+
+typedef struct place {
+    double at[3];
+    int32_t vertex;
+} place;
+
+static int by_place(const void *a, const void *b) {
+    const place *p = a, *q = b;
+    for (int i = 0; i < 3; i++)
+        if (p->at[i] != q->at[i]) return p->at[i] < q->at[i] ? -1 : 1;
+    return (p->vertex > q->vertex) - (p->vertex < q->vertex);
+}
+
+/* same[vertex]: the first vertex at its place. Sorted, not hashed: no file can make it slow. */
+static void find_same(const lar_triangles *triangles, place *sorted, int32_t *same) {
+    int32_t count = triangles->vertex_count;
+    for (int32_t v = 0; v < count; v++) {
+        memcpy(sorted[v].at, triangles->vertex[v], sizeof sorted[v].at);
+        sorted[v].vertex = v;
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, by_place);
+    int32_t first = 0;
+    for (int32_t k = 0; k < count; k++) {
+        const double *at = sorted[k].at, *before = sorted[first].at;
+        if (at[0] != before[0] || at[1] != before[1] || at[2] != before[2]) first = k;
+        same[sorted[k].vertex] = sorted[first].vertex;
+    }
+}
+
+/* Triangles get the first vertices; those with a corner twice go. */
+static void rename_corners(lar_triangles *triangles, const int32_t *same) {
+    int32_t kept = 0;
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        int32_t corner[3];
+        for (int a = 0; a < 3; a++) corner[a] = same[triangles->corner[t][a]];
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+        if (triangles->tag) triangles->tag[kept] = triangles->tag[t];
+        memcpy(triangles->corner[kept++], corner, sizeof corner);
+    }
+    triangles->triangle_count = kept;
+}
+
+/* Vertices without a triangle go; the order of the others stays. `number` is scratch. */
+static void drop_vertices(lar_triangles *triangles, int32_t *number) {
+    for (int32_t v = 0; v < triangles->vertex_count; v++) number[v] = -1;
+    for (int32_t t = 0; t < triangles->triangle_count; t++)
+        for (int a = 0; a < 3; a++) number[triangles->corner[t][a]] = 0;
+    int32_t kept = 0;
+    for (int32_t v = 0; v < triangles->vertex_count; v++) {
+        if (number[v] < 0) continue;
+        if (kept != v)
+            memcpy(triangles->vertex[kept], triangles->vertex[v], sizeof *triangles->vertex);
+        number[v] = kept++;
+    }
+    triangles->vertex_count = kept;
+    for (int32_t t = 0; t < triangles->triangle_count; t++)
+        for (int a = 0; a < 3; a++) triangles->corner[t][a] = number[triangles->corner[t][a]];
+}
+
+lar_status lar_triangles_join(lar_triangles *triangles, lar_error *error) {
+    size_t vertices = (size_t)triangles->vertex_count;
+    place *sorted = lar_calloc(vertices, sizeof *sorted);
+    int32_t *same = lar_calloc(vertices, sizeof *same);
+    lar_status status = LAR_OK;
+    if (sorted && same) {
+        find_same(triangles, sorted, same);
+        rename_corners(triangles, same);
+        drop_vertices(triangles, same);
+    } else {
+        status = lar_fail_memory(error, vertices * (sizeof *sorted + sizeof *same),
+                                 "joining the corners of triangles");
+    }
+    free(sorted);
+    free(same);
+    return status;
+}
