@@ -46,6 +46,8 @@ typedef struct lar_boundary {
     bool nested;        /* surfaces, that may lie in each other: where several hold a place the last
                            one has it. A surface's triangles have side {0, its region} whatever is
                            around. False for images: every place has one region. */
+    uint8_t *region_of_label; /* [LAR_IMAGE_LABEL_MOST + 1] of an image, 0: not asked for; NULL for
+                                 surfaces */
     int32_t cut_count; /* flat cuts that exist; cut[] is indexed by side 0..5, name "" where none */
     lar_cut cut[LAR_CUTS];
     double axis[3][3]; /* rows: directions of the image's axes, made orthogonal, right-handed; the

@@ -21,6 +21,7 @@ typedef struct lar_lattice {
                           is inside, else the region with the largest part */
     uint8_t *inner;    /* [cells] the region with the largest part, whatever is outside; 0: none */
     uint8_t *share;    /* [cells] part of the cell that is inside any region, 0..255 */
+    int32_t repaired;  /* lines that did not come out of the body again and took no part */
 } lar_lattice;
 
 static inline size_t lar_lattice_cell(const lar_lattice *lattice, int i, int j, int k) {
@@ -29,8 +30,10 @@ static inline size_t lar_lattice_cell(const lar_lattice *lattice, int i, int j, 
 }
 
 /* Fills a zeroed lattice along boundary->axis with cells of `size`: regions are sampled on 4 x 4
- * lines per cell by counting crossings (exact along the line). LAR_ERROR_ARGUMENT when the size
- * gives more than LAR_LATTICE_CELLS_MOST cells, LAR_ERROR_MODEL when no cell is half full. */
+ * lines per cell by counting crossings (exact along the line). Flat cuts across an axis lie between
+ * cells; where both ends are cut, the size is changed by up to 1 % for it, or the larger cut is
+ * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_LATTICE_CELLS_MOST cells,
+ * LAR_ERROR_MODEL when no cell is half full. */
 lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
                             lar_error *error);
 
