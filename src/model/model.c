@@ -21,6 +21,7 @@ void lar_model_destroy(lar_model *model) {
     if (!model) return;
     lar_mesh_clear(&model->mesh);
     lar_surface_clear(&model->surface);
+    lar_embedding_clear(&model->embedding);
     for (int i = 0; i < model->mesh_file_count; i++) free(model->mesh_file[i]);
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);

@@ -7,6 +7,7 @@
 #define LAR_MODEL_MODEL_H
 
 #include "model/curve.h"
+#include "model/embedding.h"
 #include "model/material.h"
 #include "model/mesh.h"
 #include "model/surface.h"
@@ -136,7 +137,8 @@ struct lar_model {
 
     lar_output output;
 
-    lar_surface surface; /* of the mesh; lar_model_check fills it */
+    lar_surface surface;     /* of the mesh; lar_model_check fills it */
+    lar_embedding embedding; /* a fine surface for display; without vertices: there is none */
 
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;
