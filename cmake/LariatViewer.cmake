@@ -16,6 +16,7 @@ if(LWS_FOUND)
     session/server_hands.c
     session/server_http.c
     session/server_picture.c
+    session/server_riding.c
     session/server_send.c
     session/server_socket.c
     session/server_work.c)

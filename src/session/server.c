@@ -300,7 +300,8 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);
     if (!status)
-        status = lar_surface_message(session->simulation, server->model, &server->surface, error);
+        status = lar_surface_messages(session->simulation, server->model, &server->surface,
+                                      &server->riding, error);
     if (!status) status = make_context(server, error);
     if (status) return status;
     status = lar_work_start(&server->work, session, server->model, wake, server, error);
@@ -371,6 +372,7 @@ void lar_server_close(lar_server *server) {
     lar_json_clear(&server->hello);
     lar_json_clear(&server->json);
     free(server->surface.memory);
+    free(server->riding.memory);
     free(server->forces.memory);
     free(server->token);
     free(server->save_folder);

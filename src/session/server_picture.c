@@ -75,29 +75,40 @@ static void write_surface(const lar_model *model, const lar_surface_info *surfac
     find_bodies((const uint32_t(*)[4])quad, surface->faces, surface->nodes, parent, body);
 }
 
-lar_status lar_surface_message(const lar_simulation *simulation, const lar_model *model,
-                               lar_blob *message, lar_error *error) {
+static lar_status make_surface(const lar_model *model, const float *processor, lar_blob *message,
+                               lar_error *error) {
     lar_surface_info surface;
     lar_model_surface(model, &surface);
-    size_t nodes = (size_t)model->mesh.node_count;
     size_t n = (size_t)surface.nodes, f = (size_t)surface.faces, length = 16 + 20 * n + 24 * f;
     unsigned char *memory = lar_calloc_aligned(LAR_HEADROOM + length, 1);
     int32_t *parent = lar_calloc(n, sizeof *parent);
+    if (!memory || !parent) {
+        free(memory);
+        free(parent);
+        return lar_fail_memory(error, length, "the surface for viewers");
+    }
+    write_surface(model, &surface, parent, processor, memory + LAR_HEADROOM);
+    free(parent);
+    *message = (lar_blob){memory, length};
+    return LAR_OK;
+}
+
+lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
+                                lar_blob *surface, lar_blob *riding, lar_error *error) {
+    size_t nodes = (size_t)model->mesh.node_count;
     float *processor = lar_calloc(nodes, sizeof *processor);
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
+    lar_shown shown = {0};
     lar_status status = LAR_OK;
-    if (!memory || !parent || !processor || !u)
-        status = lar_fail_memory(error, length, "the surface for viewers");
+    if (!processor || !u)
+        status = lar_fail_memory(error, 28 * nodes, "the processors of nodes for viewers");
     if (!status)
         status = lar_simulation_field(simulation, LAR_FIELD_PROCESSOR, (const double(*)[3])u,
                                       processor, error);
-    if (!status) {
-        write_surface(model, &surface, parent, processor, memory + LAR_HEADROOM);
-        *message = (lar_blob){memory, length};
-        memory = NULL;
-    }
-    free(memory);
-    free(parent);
+    if (!status) status = make_surface(model, processor, surface, error);
+    if (!status) status = lar_shown_create(model, &shown, error);
+    if (!status) status = lar_riding_message(model, &shown, processor, riding, error);
+    lar_shown_destroy(&shown);
     free(processor);
     free(u);
     return status;
@@ -115,7 +126,7 @@ void lar_position_hash(const uint32_t *word, size_t count, uint32_t hash[2]) {
 }
 
 static size_t frame_bytes(const lar_painter *painter, bool values) {
-    return LAR_FRAME_HEADER + (size_t)painter->surface.nodes * (values ? 16 : 12) +
+    return LAR_FRAME_HEADER + (size_t)painter->shown.count * (values ? 16 : 12) +
            (size_t)painter->session->tools * LAR_TOOL_WORDS * 4;
 }
 
@@ -140,26 +151,27 @@ lar_status lar_painter_create(lar_session *session, const lar_model *model, lar_
                               lar_error *error) {
     *painter = (lar_painter){
         .session = session, .rest = lar_model_positions(model), .nodes = model->mesh.node_count};
-    lar_model_surface(model, &painter->surface);
     painter->value = lar_calloc((size_t)painter->nodes, sizeof *painter->value);
     if (!painter->value)
         return lar_fail_memory(error, (size_t)painter->nodes * sizeof *painter->value,
                                "the colours of a picture");
-    lar_status status = lar_snapshot_create(session, &painter->snapshot, error);
+    lar_status status = lar_shown_create(model, &painter->shown, error);
+    if (!status) status = lar_snapshot_create(session, &painter->snapshot, error);
     if (status) lar_painter_destroy(painter);
     return status;
 }
 
 void lar_painter_destroy(lar_painter *painter) {
     lar_snapshot_destroy(painter->snapshot);
+    lar_shown_destroy(&painter->shown);
     free(painter->value);
     *painter = (lar_painter){0};
 }
 
 static lar_status write_positions(const lar_painter *painter, float *out, lar_error *error) {
     const lar_snapshot *snapshot = painter->snapshot;
-    for (int32_t i = 0; i < painter->surface.nodes; i++) {
-        int32_t k = painter->surface.node[i];
+    for (int32_t i = 0; i < painter->shown.count; i++) {
+        int32_t k = painter->shown.node[i];
         for (int axis = 0; axis < 3; axis++) {
             float x = (float)(painter->rest[k][axis] + snapshot->u[k][axis]);
             if (!isfinite(x))
@@ -172,10 +184,10 @@ static lar_status write_positions(const lar_painter *painter, float *out, lar_er
     return LAR_OK;
 }
 
-/* Values at the surface and their range. What is not finite is zero: only the picture suffers. */
+/* Values at the nodes and their range. What is not finite is zero: only the picture suffers. */
 static void write_values(const lar_painter *painter, float *out, double range[2]) {
-    for (int32_t i = 0; i < painter->surface.nodes; i++) {
-        float value = painter->value[painter->surface.node[i]];
+    for (int32_t i = 0; i < painter->shown.count; i++) {
+        float value = painter->value[painter->shown.node[i]];
         if (!isfinite(value)) value = 0;
         out[i] = value;
         if (i == 0) range[0] = range[1] = value;
@@ -219,7 +231,7 @@ _Static_assert(sizeof(frame_head) == LAR_FRAME_HEADER, "the header of a frame ha
 static lar_status write_frame(lar_painter *painter, int field, const float *position,
                               const uint32_t hash[2], lar_blob *frame, lar_error *error) {
     const lar_snapshot *snapshot = painter->snapshot;
-    size_t n = (size_t)painter->surface.nodes;
+    size_t n = (size_t)painter->shown.count;
     unsigned char *out = lar_blob_data(frame);
     float *here = (float *)(void *)(out + LAR_FRAME_HEADER);
     double range[2] = {0, 0};
@@ -261,7 +273,7 @@ lar_status lar_painter_paint(lar_painter *painter, unsigned wanted, double secon
     uint32_t hash[2];
     status = write_positions(painter, position, error);
     if (status) return status;
-    lar_position_hash((const uint32_t *)(const void *)position, 3 * (size_t)painter->surface.nodes,
+    lar_position_hash((const uint32_t *)(const void *)position, 3 * (size_t)painter->shown.count,
                       hash);
     for (int i = first; i < LAR_FIELDS && !status; i++)
         if (wanted & 1u << i)

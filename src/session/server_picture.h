@@ -1,36 +1,26 @@
 /* What viewers see: the surface, once, and frames of it (binary messages 1 and 2 of
- * docs/viewer-protocol.md).
+ * docs/viewer-protocol.md; the fine surface that may ride on it: server_riding.h).
  *
- *     model ------------------> surface message        (once)
+ *     model ------------------> surface messages        (once)
  *     snapshot of one step ---> positions, their hash   (once for all viewers)
  *                         '---> values of a field       (once for all viewers that want this field)
- *
- * Messages lie in memory as they are sent, with room before them for the sender's header.
  */
 #ifndef LAR_SESSION_SERVER_PICTURE_H
 #define LAR_SESSION_SERVER_PICTURE_H
 
 #include "session/server_message.h"
+#include "session/server_riding.h"
 #include "session/session.h"
 
 enum {
-    LAR_HEADROOM = 64, /* bytes before a message */
     LAR_FRAME_HEADER = 72,
     LAR_TOOL_WORDS = 16 /* of a tool in a frame */
 };
 
-typedef struct lar_blob {
-    unsigned char *memory; /* LAR_HEADROOM bytes, then the message */
-    size_t length;         /* 0: there is none */
-} lar_blob;
-
-static inline unsigned char *lar_blob_data(const lar_blob *message) {
-    return message->memory + LAR_HEADROOM;
-}
-
-/* The surface of a simulation's model. The caller frees message->memory. */
-lar_status lar_surface_message(const lar_simulation *simulation, const lar_model *model,
-                               lar_blob *message, lar_error *error);
+/* The surface of a simulation's model, and what rides on it, if anything does. The caller frees
+ * the memory of both. */
+lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
+                                lar_blob *surface, lar_blob *riding, lar_error *error);
 
 /* Frames of one step, one per field that somebody wants. */
 typedef struct lar_picture {
@@ -41,7 +31,7 @@ typedef struct lar_picture {
 /* What makes pictures, with its scratch memory. */
 typedef struct lar_painter {
     lar_session *session;
-    lar_surface_info surface;
+    lar_shown shown;
     const double (*rest)[3]; /* [nodes of the model] */
     int32_t nodes;           /* of the model */
     lar_snapshot *snapshot;

@@ -68,6 +68,23 @@ static void write_fields(lar_json *json) {
     lar_json_close(json, ']');
 }
 
+/* Only what viewers get: not one that is too large. */
+static lar_status write_riding(lar_json *json, const lar_model *model, lar_error *error) {
+    lar_embedded_info riding;
+    lar_shown shown;
+    lar_status status = lar_shown_create(model, &shown, error);
+    if (status) return status;
+    if (shown.rides && lar_model_embedded(model, &riding)) {
+        lar_json_open(json, "riding", '{');
+        lar_json_integer(json, "vertices", riding.vertices);
+        lar_json_integer(json, "triangles", riding.triangles);
+        lar_json_integer(json, "nodes", shown.count - shown.surface);
+        lar_json_close(json, '}');
+    }
+    lar_shown_destroy(&shown);
+    return LAR_OK;
+}
+
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     const lar_session *session = server->session;
     const lar_simulation *simulation = session->simulation;
@@ -88,6 +105,8 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_integer(json, "nodes", surface.nodes);
     lar_json_integer(json, "faces", surface.faces);
     lar_json_close(json, '}');
+    status = write_riding(json, server->model, error);
+    if (status) return status;
     lar_json_vector(json, "lower", info.lower, 3);
     lar_json_vector(json, "upper", info.upper, 3);
     lar_json_number(json, "time_step", session->time_step);
@@ -307,6 +326,10 @@ int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
         break;
     case LAR_DUE_SURFACE:
         failed = send_bytes(viewer, lar_blob_data(&server->surface), server->surface.length,
+                            LWS_WRITE_BINARY);
+        break;
+    case LAR_DUE_RIDING:
+        failed = send_bytes(viewer, lar_blob_data(&server->riding), server->riding.length,
                             LWS_WRITE_BINARY);
         break;
     case LAR_DUE_NOTES:

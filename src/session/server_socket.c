@@ -44,6 +44,17 @@ static bool has_token(const lar_server *server, struct lws *wsi) {
     return found && same_secret(found, server->token);
 }
 
+static void welcome(lar_server *server, lar_viewer *viewer) {
+    unsigned riding = server->riding.length > 0 ? LAR_DUE_RIDING : 0;
+    lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | riding | LAR_DUE_STATUS);
+    if (!lar_riding_is_too_large(server->model)) return;
+    char sentence[160];
+    snprintf(sentence, sizeof sentence,
+             "The scene's fine surface is not drawn: it has more than %d triangles or vertices.",
+             LAR_RIDING_MOST);
+    lar_viewer_note(server, viewer, sentence);
+}
+
 static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
     int32_t others = __atomic_fetch_add(&server->viewers, 1, __ATOMIC_RELAXED);
     int64_t now = lar_clock_ns();
@@ -62,7 +73,7 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
     else if (others >= LAR_VIEWERS_MOST)
         lar_viewer_close(viewer, LAR_CLOSE_FULL, "too many viewers; close another one first");
     else
-        lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | LAR_DUE_STATUS);
+        welcome(server, viewer);
 }
 
 static void end(lar_server *server, lar_viewer *viewer) {

@@ -41,10 +41,11 @@ enum {
 enum {
     LAR_DUE_HELLO = 1,
     LAR_DUE_SURFACE = 2,
-    LAR_DUE_NOTES = 4,
-    LAR_DUE_FORCES = 8,
-    LAR_DUE_PICTURE = 16, /* the server's picture has what it asked for */
-    LAR_DUE_STATUS = 32
+    LAR_DUE_RIDING = 4,
+    LAR_DUE_NOTES = 8,
+    LAR_DUE_FORCES = 16,
+    LAR_DUE_PICTURE = 32, /* the server's picture has what it asked for */
+    LAR_DUE_STATUS = 64
 };
 
 typedef struct lar_viewer {
@@ -107,7 +108,7 @@ struct lar_server {
     lar_work work;
     bool working;
     lar_hands hands;
-    lar_blob surface;
+    lar_blob surface, riding;
     lar_picture picture;
     lar_json hello; /* all but its beginning */
     lar_json json;  /* what is being sent */

@@ -5,6 +5,7 @@ if(LWS_FOUND)
   lar_test(session/test_server.c)
   lar_test(session/test_server_hostile.c)
   lar_test(session/test_server_refused.c)
+  lar_test(session/test_server_riding.c)
   lar_test(session/test_server_many.c slow)
 else() # the preset tsan names them
   add_custom_target(test_session_server)
