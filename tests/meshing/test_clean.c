@@ -1,0 +1,129 @@
+#include "solid_test.h"
+
+/* ---- shapes, in a box of 24 cells -------------------------------------------------------- */
+
+static double squared(const double x[3], double cx, double cy, double cz) {
+    return (x[0] - cx) * (x[0] - cx) + (x[1] - cy) * (x[1] - cy) + (x[2] - cz) * (x[2] - cz);
+}
+
+static int ellipsoid(const double x[3]) {
+    const double a = (x[0] - 12.3) / 10, b = (x[1] - 12.1) / 8, c = (x[2] - 11.9) / 5.5;
+    return a * a + b * b + c * c < 1;
+}
+
+static int torus(const double x[3]) {
+    const double ring = hypot(x[0] - 12.2, x[1] - 11.7) - 7.3;
+    return ring * ring + (x[2] - 12.4) * (x[2] - 12.4) < 2.4 * 2.4;
+}
+
+static int holes(const double x[3]) {
+    const bool box = fabs(x[0] - 12) < 9 && fabs(x[1] - 12) < 7 && fabs(x[2] - 12) < 6;
+    return box && !(hypot(x[0] - 12, x[1] - 12) < 2.6);
+}
+
+static int hollow(const double x[3]) {
+    const double d = squared(x, 12.2, 11.9, 12.1);
+    return d < 10 * 10 && d > 4.3 * 4.3;
+}
+
+static int touching_balls(const double x[3]) {
+    return squared(x, 7.0, 12.2, 12.1) < 5.2 * 5.2 || squared(x, 16.8, 12.1, 12.3) < 5.2 * 5.2;
+}
+
+static int two_balls(const double x[3]) {
+    if (squared(x, 8.4, 12.2, 12.1) < 5.2 * 5.2 && x[0] < 12.5) return 1;
+    return squared(x, 16.4, 12.1, 12.3) < 5.2 * 5.2 ? 2 : 0;
+}
+
+static int thin_sheet(const double x[3]) {
+    return fabs(x[0] - 12) < 9 && fabs(x[1] - 12) < 9 && fabs(x[2] - 12.45) < 0.6;
+}
+
+static int curved_sheet(const double x[3]) {
+    const double radius = sqrt(squared(x, 12, 12, -4));
+    return fabs(x[0] - 12) < 8 && fabs(x[1] - 12) < 8 && x[2] > 0 && fabs(radius - 16) < 0.8;
+}
+
+static int bar(const double x[3]) {
+    return fabs(x[0] - 12) < 9 && fabs(x[1] - 12.5) < 0.6 && fabs(x[2] - 12.45) < 0.6;
+}
+
+static solid_surface cleaned(solid_function *function, lar_lattice *lattice,
+                             lar_cleaning *cleaning) {
+    lar_error error;
+    *lattice = solid_lattice(function, 24, 24, 24);
+    if (lar_lattice_clean(lattice, cleaning, &error)) fail_msg("%s", error.message);
+    const solid_surface surface = solid_judge_lattice(lattice, 0);
+    assert_manifold(surface);
+    return surface;
+}
+
+static void shapes_keep_their_topology(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        solid_function *function;
+        int shells, euler;
+        double most; /* flipped, part of the cells */
+    } shape[] = {{"ellipsoid", ellipsoid, 1, 2, 0.02},      {"torus", torus, 1, 0, 0.03},
+                 {"box with a hole", holes, 1, 0, 0.01},    {"hollow ball", hollow, 2, 4, 0.02},
+                 {"two balls", two_balls, 1, 2, 0.03},      {"sheet", thin_sheet, 1, 2, 0},
+                 {"curved sheet", curved_sheet, 1, 2, 0.1}, {"bar", bar, 1, 2, 0}};
+    for (size_t s = 0; s < sizeof shape / sizeof *shape; s++) {
+        lar_lattice lattice;
+        lar_cleaning cleaning;
+        const solid_surface surface = cleaned(shape[s].function, &lattice, &cleaning);
+        const double cells = (double)solid_cells(&lattice);
+        assert_int_equal(surface.shells, shape[s].shells);
+        assert_int_equal(surface.euler, shape[s].euler);
+        assert_below(cleaning.added + cleaning.removed, shape[s].most * cells);
+        lar_lattice_clear(&lattice);
+    }
+}
+
+static void touching_balls_become_one_solid(void **state) {
+    (void)state;
+    lar_lattice lattice;
+    lar_cleaning cleaning;
+    const solid_surface surface = cleaned(touching_balls, &lattice, &cleaning);
+    assert_int_equal(surface.euler, 2 * surface.shells);
+    assert_in_range(surface.shells, 1, 2);
+    lar_lattice_clear(&lattice);
+}
+
+/* Every cell at random: the worst there is. */
+static void noise_ends_manifold(void **state) {
+    (void)state;
+    uint32_t random = 12345;
+    for (int seed = 0; seed < 200; seed++) {
+        lar_lattice lattice = solid_lattice(ellipsoid, 10, 9, 8);
+        const uint32_t level = (uint32_t)(20 + seed % 8 * 30), regions = 1 + (uint32_t)seed % 3;
+        for (int k = 1; k < 7; k++)
+            for (int j = 1; j < 8; j++)
+                for (int i = 1; i < 9; i++) {
+                    const size_t c = lar_lattice_cell(&lattice, i, j, k);
+                    random = random * 1664525u + 1013904223u;
+                    lattice.share[c] = (uint8_t)(random >> 24);
+                    lattice.inner[c] =
+                        (uint8_t)(lattice.share[c] ? 1 + (random >> 16 & 0xff) % regions : 0);
+                    lattice.region[c] = lattice.share[c] > level ? lattice.inner[c] : 0;
+                }
+        lar_cleaning cleaning;
+        lar_error error;
+        const lar_status status = lar_lattice_clean(&lattice, &cleaning, &error);
+        if (status == LAR_OK)
+            assert_manifold(solid_judge_lattice(&lattice, 0));
+        else
+            assert_int_equal(status, LAR_ERROR_MODEL);
+        lar_lattice_clear(&lattice);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shapes_keep_their_topology),
+        cmocka_unit_test(touching_balls_become_one_solid),
+        cmocka_unit_test(noise_ends_manifold),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
