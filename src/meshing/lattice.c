@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
+
 void lar_lattice_clear(lar_lattice *lattice) {
     free(lattice->region);
     free(lattice->inner);
@@ -74,18 +76,14 @@ lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements
 
 /* ---- the image's own voxels ---------------------------------------------------------------- */
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Steps of a voxel along the image's axes as columns; true when they are a cube's edges. */
 static bool voxels_are_cubes(const lar_image *image, double step[3][3]) {
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) step[a][b] = image->to_world[b][a];
-    double size = sqrt(dot(step[0], step[0]));
+    double size = lar_length(step[0]);
     for (int a = 0; a < 3; a++) {
-        if (fabs(sqrt(dot(step[a], step[a])) - size) > 1e-3 * size) return false;
-        if (fabs(dot(step[a], step[(a + 1) % 3])) > 1e-3 * size * size) return false;
+        if (fabs(lar_length(step[a]) - size) > 1e-3 * size) return false;
+        if (fabs(lar_dot(step[a], step[(a + 1) % 3])) > 1e-3 * size * size) return false;
     }
     return size > 0;
 }
@@ -116,8 +114,8 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
             error, LAR_ERROR_MODEL,
             "%s: its voxels are no cubes (%.4g x %.4g x %.4g mm), which elements of the "
             "image's own voxels need; name a size",
-            image->source, 1e3 * sqrt(dot(step[0], step[0])), 1e3 * sqrt(dot(step[1], step[1])),
-            1e3 * sqrt(dot(step[2], step[2])));
+            image->source, 1e3 * lar_length(step[0]), 1e3 * lar_length(step[1]),
+            1e3 * lar_length(step[2]));
     int32_t low[3], high[3];
     if (!boundary->region_of_label || !find_voxels(image, boundary->region_of_label, low, high))
         return lar_fail(error, LAR_ERROR_MODEL, "%s: none of the chosen labels has a voxel",
@@ -127,7 +125,7 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
     for (int a = 0; a < 3; a++) {
         made.cells[a] = high[a] - low[a] + 2;
         memcpy(made.axis[a], boundary->axis[a], sizeof made.axis[a]);
-        turned[a] = dot(made.axis[a], step[a]) < 0;
+        turned[a] = lar_dot(made.axis[a], step[a]) < 0;
     }
     for (int a = 0; a < 3; a++) {
         made.origin[a] = image->to_world[a][3];

@@ -49,6 +49,10 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
 
 void lar_lattice_clear(lar_lattice *lattice);
 
+/* Volume of every region [region_count + 1, by the caller] by the same lines. */
+lar_status lar_lattice_measure(const lar_boundary *boundary, double size, double *volume,
+                               lar_error *error);
+
 /* What cleaning did, to be told. */
 typedef struct lar_cleaning {
     int32_t islands, island_cells;   /* pieces that hang on nothing large, left out */
