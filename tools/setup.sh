@@ -6,8 +6,8 @@
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
-#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2, the cross compiler and
-#           emulator for NEON
+#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2,
+#           libnifti, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #
 # What belongs to `web`, `check` and `fuzz` is optional: without it the tests that need it are left
@@ -42,6 +42,8 @@ UCX_PACKAGES="
 libucx-dev        m:ucx"
 SDL_PACKAGES="
 libsdl2-dev       m:sdl2"
+NIFTI_PACKAGES="
+libnifti-dev      -"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
@@ -165,6 +167,7 @@ for group in "$@"; do
         want "$HWLOC_PACKAGES" "threads are not bound to cores" || true
         want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
         want "$SDL_PACKAGES" "game controllers are neither built nor tested" || true
+        want "$NIFTI_PACKAGES" "lariat mesh is built and tested without .nii" || true
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true

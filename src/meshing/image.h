@@ -3,7 +3,7 @@
  *     .nii .nii.gz (NIfTI-1 and -2, image_nifti.c)  --.
  *     .nrrd .nhdr  (NRRD, image_nrrd.c)             --+--> lar_image, always in metres, in the
  *                                                     world of NIfTI: +x right, +y anterior
- * (front), +z superior (head)
+ *                                                     (front), +z superior (head)
  *
  * Nothing is believed before it is checked: headers that claim more voxels than memory may hold or
  * than the file can have (deflate makes 1 byte of 1,032 at most), images that are no label maps
@@ -13,6 +13,7 @@
 #ifndef LAR_MESHING_IMAGE_H
 #define LAR_MESHING_IMAGE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/memory.h"
@@ -33,6 +34,9 @@ typedef struct lar_image {
     int32_t name_count;    /* names that the file gives to labels (NRRD segments) */
     lar_label_name *name;
 } lar_image;
+
+/* True when the path's ending is one of a label image. */
+bool lar_image_named(const char *path);
 
 /* By extension. `image` is zeroed before; on failure it is cleared. */
 lar_status lar_image_read(const char *path, lar_image *image, lar_error *error);
