@@ -272,6 +272,7 @@ LAR_API void lar_meshing_destroy(lar_meshing *meshing);
 
 typedef struct lar_meshing_info {
     const char *title; /* strings live as long as the meshing */
+    const char *name;  /* of its files: the title, "_" for what is no letter, digit, "-" or "." */
     int32_t nodes, elements, regions;
     double size;                     /* edge of the grid's cells [m] */
     int32_t islands, island_cells;   /* loose pieces left out */
@@ -296,9 +297,9 @@ LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *i
 LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
                                       lar_region_info *info, lar_error *error);
 
-/* Writes FOLDER/TITLE.vtu (tags, named sets), TITLE_surface.vtp (the true surface, to ride on it)
- * and TITLE.yaml, a scene that runs. The folder is made when it is missing. *scene (may be NULL):
- * the scene's path, freed with the meshing. */
+/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, to ride on it)
+ * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
+ * missing. *scene (may be NULL): the scene's path, freed with the meshing. */
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 

@@ -1,0 +1,378 @@
+/* From label images or closed surfaces to a hexahedral mesh: the public calls, and the line of
+ * steps behind them (meshing/lattice.h draws it). */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "meshing/fit.h"
+#include "meshing/meshing.h"
+
+/* The mesh that is made when nothing is said, and the smallest that is one. */
+enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8, VOXELS_LEAST = 8 };
+
+lar_meshing_options lar_meshing_options_default(void) {
+    return (lar_meshing_options){.elements = ELEMENTS_DEFAULT, .scale = 1};
+}
+
+void lar_meshing_destroy(lar_meshing *meshing) {
+    if (!meshing) return;
+    lar_boundary_clear(&meshing->boundary);
+    lar_mesh_clear(&meshing->mesh);
+    lar_triangles_clear(&meshing->outer);
+    free(meshing->region);
+    free(meshing->title);
+    free(meshing->stem);
+    free(meshing->from);
+    free(meshing->scene);
+    free(meshing);
+}
+
+/* ---- what is asked for -------------------------------------------------------------------- */
+
+/* One meshing under way. */
+typedef struct work {
+    const char *const *path;
+    int32_t count;
+    lar_meshing_options options;
+    lar_meshing *meshing;
+    lar_image image;
+    lar_lattice lattice;
+    lar_cleaning cleaning;
+    lar_draft_mesh draft;
+    lar_error *error;
+} work;
+
+static bool ends_with(const char *path, const char *ending) {
+    size_t length = strlen(path), wanted = strlen(ending);
+    return length > wanted && strcasecmp(path + length - wanted, ending) == 0;
+}
+
+static const char *const image_endings[] = {".nii.gz", ".nii", ".nrrd", ".nhdr", NULL};
+static const char *const surface_endings[] = {".stl", ".obj", ".vtk", ".vtp", NULL};
+
+static const char *ending_of(const char *path, const char *const *endings) {
+    for (; *endings; endings++)
+        if (ends_with(path, *endings)) return *endings;
+    return NULL;
+}
+
+static lar_status refuse(const work *w, const char *format, const char *text) {
+    return lar_fail(w->error, LAR_ERROR_ARGUMENT, format, text);
+}
+
+static lar_status check_paths(work *w) {
+    for (int32_t i = 0; i < w->count; i++) {
+        const char *path = w->path[i];
+        if (!path || !*path)
+            return refuse(w, "%s", "the name of a file to mesh is empty; give one");
+        bool image = ending_of(path, image_endings) != NULL;
+        if (!image && !ending_of(path, surface_endings))
+            return refuse(w,
+                          "%.400s: this extension is not known; label images are .nii .nii.gz "
+                          ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp",
+                          path);
+        if (image && w->count > 1)
+            return refuse(w,
+                          "%.400s is an image, and other files are given besides: mesh one image, "
+                          "or surfaces of one region each",
+                          path);
+        w->meshing->image = image;
+    }
+    return LAR_OK;
+}
+
+static lar_status check_image_options(const work *w) {
+    const lar_meshing_options *o = &w->options;
+    if (w->meshing->image && o->scale > 0 && o->scale != 1)
+        return refuse(w, "%.400s: an image says how large it is; a scale is for surfaces only",
+                      w->path[0]);
+    if (w->meshing->image) return LAR_OK;
+    if (o->label_count > 0)
+        return refuse(w, "%.400s: a surface has no labels; each file is one region", w->path[0]);
+    if (o->names)
+        return refuse(w,
+                      "%.400s: names of labels are for images; surfaces are called as their "
+                      "files are",
+                      w->path[0]);
+    if (o->fuse)
+        return refuse(w,
+                      "%.400s: only labels of an image can be fused; join the surfaces in the "
+                      "program that made them",
+                      w->path[0]);
+    return LAR_OK;
+}
+
+static lar_status check_options(work *w) {
+    const lar_meshing_options *o = &w->options;
+    if (!isfinite(o->size) || o->size < 0 || !isfinite(o->scale) || o->scale < 0)
+        return refuse(w, "%s", "size and scale are finite and not negative; 0 is the default");
+    if (o->elements < 0 || o->label_count < 0 || (o->label_count > 0 && !o->labels))
+        return refuse(w, "%s",
+                      "the numbers of elements and of labels are not negative, and labels "
+                      "are not NULL");
+    if (o->size > 0 && o->elements > 0)
+        return refuse(w, "%s",
+                      "size and number of elements are both given; one follows from the "
+                      "other, set one of them to 0");
+    if (o->title && !*o->title)
+        return refuse(w, "%s", "the title is empty; leave it NULL or name one");
+    lar_status status = check_paths(w);
+    return status ? status : check_image_options(w);
+}
+
+/* Tells the one who waits; refuses to go on when he says so. */
+static lar_status tell(const work *w, const char *what, double part) {
+    const lar_meshing_options *o = &w->options;
+    if (!o->watch || o->watch(o->context, what, part)) return LAR_OK;
+    return lar_fail(w->error, LAR_ERROR_ARGUMENT, "stopped as asked, while %s", what);
+}
+
+/* ---- titles ------------------------------------------------------------------------------- */
+
+/* The name of a file without folder and known ending. */
+static char *name_of_file(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *ending = ending_of(name, image_endings);
+    if (!ending) ending = ending_of(name, surface_endings);
+    return lar_strndup(name, strlen(name) - (ending ? strlen(ending) : 0));
+}
+
+/* As a file's name that needs no quotes anywhere. */
+static char *stem_of(const char *title) {
+    char *stem = lar_strdup(title);
+    for (char *c = stem; c && *c; c++)
+        if (!isalnum((unsigned char)*c) && *c != '-' && *c != '.') *c = '_';
+    if (stem && (stem[0] == '.' || stem[0] == '-')) stem[0] = '_';
+    return stem;
+}
+
+static char *joined_names(const work *w) {
+    size_t length = 1;
+    for (int32_t i = 0; i < w->count; i++) length += strlen(w->path[i]) + 2;
+    char *all = lar_calloc(length, 1);
+    for (int32_t i = 0; all && i < w->count; i++) {
+        const char *slash = strrchr(w->path[i], '/');
+        if (i > 0) strcat(all, ", ");
+        strcat(all, slash ? slash + 1 : w->path[i]);
+    }
+    return all;
+}
+
+static lar_status name_meshing(work *w) {
+    lar_meshing *m = w->meshing;
+    const lar_boundary *boundary = &m->boundary;
+    const char *given = w->options.title;
+    if (!given && boundary->region_count == 1) given = boundary->region[1].name;
+    m->title = given && *given ? lar_strdup(given) : name_of_file(w->path[0]);
+    m->stem = m->title ? stem_of(m->title) : NULL;
+    m->from = joined_names(w);
+    if (!m->title || !m->stem || !m->from) return lar_fail_memory(w->error, 256, "a title");
+    m->info.title = m->title;
+    m->info.name = m->stem;
+    return LAR_OK;
+}
+
+/* ---- the true boundary -------------------------------------------------------------------- */
+
+/* An element's worth of voxels has no shape that could be told. */
+static lar_status check_voxels(const work *w) {
+    const lar_boundary *boundary = &w->meshing->boundary;
+    double volume = 0, voxel = lar_image_voxel_volume(&w->image);
+    for (int32_t r = 1; r <= boundary->region_count; r++) volume += boundary->region[r].volume;
+    if (volume >= (VOXELS_LEAST - 0.5) * voxel) return LAR_OK;
+    return lar_fail(w->error, LAR_ERROR_MODEL,
+                    "%.200s: what is asked for (%.100s) has %.0f voxels of %.3g mL, too few to "
+                    "tell a shape; choose another label or a finer image",
+                    w->path[0], boundary->region[1].name, volume / voxel, 1e6 * voxel);
+}
+
+static lar_status boundary_of_image(work *w) {
+    const lar_meshing_options *o = &w->options;
+    const lar_label_choice choice = {o->label_count, o->labels, o->fuse != 0};
+    lar_status status = tell(w, "reading", 0);
+    if (!status) status = lar_image_read(w->path[0], &w->image, w->error);
+    if (!status && o->names) status = lar_image_read_names(o->names, &w->image, w->error);
+    if (!status) status = tell(w, "finding the boundary", 0);
+    if (!status)
+        status = lar_boundary_from_image(&w->image, &choice, &w->meshing->boundary, w->error);
+    return status ? status : check_voxels(w);
+}
+
+static lar_status boundary_of_surfaces(work *w) {
+    lar_triangles *surface = lar_calloc((size_t)w->count, sizeof *surface);
+    char **name = lar_calloc((size_t)w->count, sizeof *name);
+    double scale = w->options.scale > 0 ? w->options.scale : 1;
+    lar_status status =
+        surface && name ? LAR_OK : lar_fail_memory(w->error, sizeof *surface, "surfaces");
+    for (int32_t i = 0; !status && i < w->count; i++) {
+        status = tell(w, "reading", (double)i / w->count);
+        if (!status) status = lar_triangles_read(w->path[i], scale, &surface[i], w->error);
+        if (!status && !(name[i] = name_of_file(w->path[i])))
+            status = lar_fail_memory(w->error, strlen(w->path[i]), "a name");
+    }
+    if (!status) status = tell(w, "checking surfaces", 0);
+    bool taken = !status;
+    if (taken)
+        status = lar_boundary_from_surfaces(surface, (const char *const *)name, w->count,
+                                            &w->meshing->boundary, w->error);
+    for (int32_t i = 0; i < w->count; i++) {
+        if (surface && !taken) lar_triangles_clear(&surface[i]);
+        if (name) free(name[i]);
+    }
+    free(surface);
+    free(name);
+    return status;
+}
+
+static lar_status make_boundary(work *w) {
+    lar_meshing *m = w->meshing;
+    lar_status status = m->image ? boundary_of_image(w) : boundary_of_surfaces(w);
+    if (!status) status = name_meshing(w);
+    if (!status && w->options.principal)
+        status = lar_boundary_principal_axes(&m->boundary, w->error);
+    if (!status) status = lar_boundary_outer(&m->boundary, &m->outer, w->error);
+    return status;
+}
+
+/* ---- from there to a mesh ------------------------------------------------------------------ */
+
+static lar_status fill_lattice(work *w) {
+    const lar_meshing_options *o = &w->options;
+    const lar_boundary *boundary = &w->meshing->boundary;
+    int32_t elements = o->elements > 0 ? o->elements : ELEMENTS_DEFAULT;
+    if (o->voxel && o->size <= 0 && o->elements <= 0 && w->meshing->image) {
+        if (o->principal)
+            return refuse(w, "%s",
+                          "the image's own voxels lie along the image's axes, not the "
+                          "body's; give a size or a number of elements with principal "
+                          "axes");
+        return lar_lattice_from_image(&w->image, boundary, &w->lattice, w->error);
+    }
+    if (o->size > 0) return lar_lattice_fill(boundary, o->size, &w->lattice, w->error);
+    return lar_lattice_fill_count(boundary, elements, &w->lattice, w->error);
+}
+
+static lar_status check_count(const work *w) {
+    int32_t count = w->draft.mesh.element_count;
+    if (count >= ELEMENTS_LEAST) return LAR_OK;
+    return lar_fail(w->error, LAR_ERROR_MODEL,
+                    "%.200s: elements of %.3g m are too large: the body becomes %d of them, at "
+                    "least %d are a mesh; ask for a smaller size (in metres) or for more elements",
+                    w->path[0], w->draft.size, (int)count, ELEMENTS_LEAST);
+}
+
+static bool watch_fit(void *context, double part) {
+    const work *w = context;
+    return tell(w, "fitting", part) == LAR_OK;
+}
+
+static lar_status make_mesh(work *w) {
+    lar_meshing *m = w->meshing;
+    const lar_fit_options fit = {.watch = watch_fit, .context = w};
+    lar_status status = tell(w, "laying the grid", 0);
+    if (!status) status = fill_lattice(w);
+    lar_image_clear(&w->image);
+    if (!status) status = tell(w, "cleaning", 0);
+    if (!status) status = lar_lattice_clean(&w->lattice, &w->cleaning, w->error);
+    if (!status) status = lar_draft_create(&w->lattice, &m->boundary, &w->draft, w->error);
+    lar_lattice_clear(&w->lattice);
+    if (!status) status = check_count(w);
+    m->fitted = !w->options.voxel;
+    if (!status && m->fitted) status = lar_fit(&m->boundary, &w->draft, &fit, w->error);
+    m->info.size = w->draft.size;
+    if (!status) status = lar_draft_finish(&w->draft, &m->boundary, &m->mesh, w->error);
+    return status;
+}
+
+/* ---- what came out ------------------------------------------------------------------------ */
+
+static void count_regions(lar_meshing *m) {
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        const lar_region *true_region = &m->boundary.region[r + 1];
+        const lar_tissue *tissue = lar_tissue_find(true_region->name ? true_region->name : "");
+        double g = tissue->shear_modulus, v = tissue->poisson_ratio;
+        lar_region_info *region = &m->region[r];
+        *region = (lar_region_info){.name = true_region->name ? true_region->name : "",
+                                    .tag = true_region->tag,
+                                    .true_volume = true_region->volume,
+                                    .tissue = tissue->name,
+                                    .source = tissue->source,
+                                    .shear_modulus = g,
+                                    .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
+                                    .density = tissue->density};
+        m->info.quality.true_volume += region->true_volume;
+        for (int32_t e = 0; e < m->mesh.element_count; e++) {
+            double corner[8][3];
+            if (m->mesh.element_tag[e] != region->tag) continue;
+            lar_mesh_corners(&m->mesh, e, corner);
+            region->elements++;
+            region->volume += lar_hexahedron_volume(corner);
+        }
+    }
+}
+
+static lar_status describe(work *w) {
+    lar_meshing *m = w->meshing;
+    const lar_cleaning *did = &w->cleaning;
+    lar_meshing_info *info = &m->info;
+    info->nodes = m->mesh.node_count;
+    info->elements = m->mesh.element_count;
+    info->regions = m->boundary.region_count;
+    info->islands = did->islands, info->island_cells = did->island_cells;
+    info->pinholes = did->pinholes, info->pinhole_cells = did->pinhole_cells;
+    info->added = did->added, info->removed = did->removed;
+    info->cuts = m->boundary.cut_count;
+    m->region = lar_calloc((size_t)info->regions, sizeof *m->region);
+    if (!m->region) return lar_fail_memory(w->error, sizeof *m->region, "regions");
+    count_regions(m);
+    lar_status status = tell(w, "measuring", 0);
+    if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &info->quality, w->error);
+    return status ? status : lar_support_choose(m, w->options.fix, w->error);
+}
+
+lar_status lar_meshing_create(const char *const *paths, int32_t count,
+                              const lar_meshing_options *options, lar_meshing **meshing,
+                              lar_error *error) {
+    if (!paths || count < 1 || !meshing)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_meshing_create needs at least one file and a place for the meshing; "
+                        "neither may be NULL");
+    lar_error own;
+    work w = {.path = paths, .count = count, .error = error ? error : &own};
+    if (options) w.options = *options;
+    w.meshing = lar_calloc(1, sizeof *w.meshing);
+    if (!w.meshing) return lar_fail_memory(error, sizeof *w.meshing, "a meshing");
+    lar_status status = check_options(&w);
+    if (!status) status = make_boundary(&w);
+    if (!status) status = make_mesh(&w);
+    if (!status) status = describe(&w);
+    lar_image_clear(&w.image);
+    lar_lattice_clear(&w.lattice);
+    lar_draft_clear(&w.draft);
+    if (status)
+        lar_meshing_destroy(w.meshing);
+    else
+        *meshing = w.meshing;
+    return status;
+}
+
+void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info) {
+    *info = meshing->info;
+}
+
+lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index, lar_region_info *info,
+                              lar_error *error) {
+    if (!meshing || !info)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_meshing_region needs a meshing and a place for the answer; neither "
+                        "may be NULL");
+    if (index < 0 || index >= meshing->info.regions)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no region %ld; the meshing has %ld, counted from 0", (long)index,
+                        (long)meshing->info.regions);
+    *info = meshing->region[index];
+    return LAR_OK;
+}

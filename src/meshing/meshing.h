@@ -1,0 +1,49 @@
+/* A meshing between its making and its files.
+ *
+ *     meshing.c     reads, meshes, measures ------------------------.
+ *     support.c     node sets: what holds it, where it is pulled    +--> starter.c: files, scene
+ *     quality.c     how good it is ---------------------------------'
+ */
+#ifndef LAR_MESHING_MESHING_H
+#define LAR_MESHING_MESHING_H
+
+#include "lariat.h"
+#include "meshing/boundary.h"
+#include "meshing/tissue.h"
+#include "model/mesh.h"
+
+/* What holds the body, and where the starter scene pulls at it. */
+typedef struct lar_support {
+    const char *rule;    /* "left", ..., "cut", "none" */
+    bool held;           /* there is a node set "support" */
+    int32_t fixed_nodes; /* of it and of rigid regions */
+    const char *handle;  /* the side of the node set "handle"; NULL: there is none */
+    bool opposed;        /* "handle_opposite" is pulled the other way: nothing holds the body */
+    double pull[3];      /* [N] at "handle" */
+} lar_support;
+
+struct lar_meshing {
+    char *title;
+    char *stem; /* the title as a file's name */
+    char *from; /* the files that it was made from, for the scene's head */
+    bool image; /* from an image, not from surfaces */
+    bool fitted;
+    lar_boundary boundary;
+    lar_mesh mesh;
+    lar_triangles outer; /* the true surface that is seen from outside */
+    lar_support support;
+    lar_region_info *region; /* [info.regions] */
+    lar_meshing_info info;
+    char *scene; /* path, once written */
+};
+
+/* Adds the node sets "support" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
+ * regions' information must be there. */
+lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
+
+/* Jacobians, edges, volume of a mesh and, with a surface (may be NULL), how far apart they are.
+ * true_volume is left alone. */
+lar_status lar_quality_measure(const lar_mesh *mesh, const lar_triangles *surface,
+                               lar_mesh_quality *quality, lar_error *error);
+
+#endif

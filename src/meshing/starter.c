@@ -1,0 +1,267 @@
+/* A meshing on disk: mesh, fine surface, and a scene that runs and says why it is as it is. */
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/folder.h"
+#include "meshing/meshing.h"
+#include "model/format/mesh_io.h"
+
+/* ---- words -------------------------------------------------------------------------------- */
+
+/* Bytes of a well-formed character that YAML lets through, 0: none begins here. */
+static int character(const unsigned char *c) {
+    if (c[0] < 0x80) return c[0] >= ' ' && c[0] < 0x7f;
+    int more = c[0] >= 0xc2 && c[0] < 0xe0 ? 1 : c[0] >= 0xe0 && c[0] < 0xf0 ? 2 : 0;
+    for (int i = 1; i <= more; i++)
+        if ((c[i] & 0xc0) != 0x80) return 0;
+    if (more == 1) return c[0] == 0xc2 && c[1] < 0xa0 ? 0 : 2;           /* C1 controls */
+    if (more == 0 || (c[0] == 0xe0 && c[1] < 0xa0)) return 0;            /* over-long */
+    if (c[0] == 0xed && c[1] >= 0xa0) return 0;                          /* surrogates */
+    if (c[0] == 0xe2 && c[1] == 0x80 && (c[2] & 0xfe) == 0xa8) return 0; /* line ends */
+    return c[0] == 0xef && c[1] >= 0xbb ? 0 : 3; /* byte order mark, no characters */
+}
+
+/* A text that comes from a file, on one line; between quotes with `quoted`. */
+static void put(FILE *file, const char *text, bool quoted) {
+    if (quoted) fputc('"', file);
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        int length = character(c);
+        if (quoted && (*c == '"' || *c == '\\')) fputc('\\', file);
+        if (length > 0)
+            fwrite(c, 1, (size_t)length, file);
+        else
+            fputc('?', file);
+        c += length > 0 ? length : 1;
+    }
+    if (quoted) fputc('"', file);
+}
+
+/* ---- the scene ----------------------------------------------------------------------------- */
+
+/* The slowest motion of a clamped block, ω = π/2 sqrt(G/ρ)/L, with 0.7 of the damping that would
+ * just keep it from swaying: in about 4/(0.7 ω) seconds it is at rest. Two digits. */
+static double damping(const lar_meshing *m) {
+    static const double QUARTER_TURN = 1.57079632679489662, RATIO = 0.7;
+    double length = 0, slowest = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int32_t n = 0; n < m->mesh.node_count; n++) {
+            lower = fmin(lower, m->mesh.position[n][i]);
+            upper = fmax(upper, m->mesh.position[n][i]);
+        }
+        length = fmax(length, upper - lower);
+    }
+    for (int32_t r = 0; r < m->info.regions; r++)
+        if (m->region[r].elements > 0)
+            slowest = fmin(slowest, sqrt(m->region[r].shear_modulus / m->region[r].density));
+    double rate = 2 * RATIO * QUARTER_TURN * slowest / length;
+    double digit = pow(10, floor(log10(rate)) - 1);
+    return round(rate / digit) * digit;
+}
+
+static void put_head(const lar_meshing *m, FILE *f) {
+    const lar_meshing_info *info = &m->info;
+    fputs("# ", f);
+    put(f, m->title, false);
+    fputs(": made by `lariat mesh` from ", f);
+    put(f, m->from, false);
+    fprintf(f,
+            ".\n"
+            "# %" PRId32 " hexahedra %s, about %.3g mm wide.\n"
+            "#\n"
+            "#     lariat info %s.yaml                  sizes, quality, speed\n"
+            "#     lariat view %s.yaml                  take hold of it\n"
+            "#     lariat run %s.yaml --out results     pull at it, for ParaView\n"
+            "#\n"
+            "# A first scene to change as you need it: docs/formats.md has every key.\n"
+            "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n",
+            info->elements, m->fitted ? "on the true boundary" : "on a grid, as cubes",
+            1e3 * info->size, m->stem, m->stem, m->stem);
+    fputs(m->image ? "# x points to the patient's right, y to the front, z to the head.\n"
+                   : "# Axes are those of the surface's file.\n",
+          f);
+    fputs("lariat: 1\ntitle: ", f);
+    put(f, m->title, true);
+    fprintf(
+        f,
+        "\nmesh: \"%s.vtu\"\n"
+        "# surface: \"%s_surface.vtp\"   the true surface rides on the mesh, to be looked at\n\n",
+        m->stem, m->stem);
+}
+
+static void put_motion(const lar_meshing *m, FILE *f) {
+    fprintf(
+        f,
+        "# No gravity: the scanner saw the organ sag already, and what was seen is its shape at\n"
+        "# rest here. For its full weight on top of that, %s:\n"
+        "# gravity: [0, %s]\n"
+        "gravity: [0, 0, 0]\n"
+        "time_step: auto\n"
+        "damping: %g             # 1/s; let go, it comes to rest in a second or so\n"
+        "duration: 2              # s; a run lasts so long unless --time says otherwise\n\n",
+        m->image ? "the patient lying on the back" : "along -z", m->image ? "-9.81, 0" : "0, -9.81",
+        damping(m));
+}
+
+static void put_material(const lar_region_info *region, FILE *f) {
+    fputs("  # ", f);
+    put(f, region->name, false);
+    fprintf(f, ": as %s. %s.\n", region->tissue, region->source);
+    fputs("  - { name: ", f);
+    put(f, region->name, true);
+    fprintf(f,
+            ", cells: %" PRId32 ", law: neo-hookean, density: %g,\n"
+            "      shear_modulus: %g, bulk_modulus: %.3g }\n",
+            region->tag, region->density, region->shear_modulus, region->bulk_modulus);
+}
+
+static void put_materials(const lar_meshing *m, FILE *f) {
+    fputs(
+        "# Stiffnesses at small strain, of healthy adults, from the literature: they differ\n"
+        "# between people, ages and methods by a factor of two and more. The bulk modulus is that\n"
+        "# of Poisson's ratio 0.45. Tissue is nearer to 0.5, but the stable time step goes with "
+        "the\n"
+        "# speed of pressure waves: at 0.49 it is less than half as long.\n"
+        "# `cells` is the tag of the elements, the label in the image.\n"
+        "materials:\n",
+        f);
+    for (int32_t r = 0; r < m->info.regions; r++)
+        if (m->region[r].elements > 0) put_material(&m->region[r], f);
+    fputc('\n', f);
+}
+
+static void put_fix(const lar_meshing *m, FILE *f) {
+    const lar_support *support = &m->support;
+    bool any = false;
+    if (strcmp(support->rule, "cut") == 0)
+        fputs("# Held where the image cuts it off.\n", f);
+    else if (support->held)
+        fprintf(f, "# Held at the %s: the surface's nodes in the last tenth of its extent.\n",
+                support->rule);
+    else
+        fputs(
+            "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
+            f);
+    if (support->held) {
+        fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
+        any = true;
+    }
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        const lar_region_info *region = &m->region[r];
+        if (region->elements == 0 || !lar_tissue_find(region->name)->rigid) continue;
+        if (!any) fputs("fix:\n", f);
+        any = true;
+        fprintf(f, "  - { nodes: { tag: %" PRId32 " }, axes: xyz }   # ", region->tag);
+        put(f, region->name, false);
+        fputs(" is bone, and stays where it is\n", f);
+    }
+    fputc('\n', f);
+}
+
+static void put_load(const lar_meshing *m, FILE *f) {
+    const lar_support *s = &m->support;
+    static const char curve[] =
+        "      curve: { points: [[0, 0], [0.4, 1], [0.8, 1], [1.2, 0]], shape: smooth } }\n";
+    if (!s->handle) return;
+    fprintf(
+        f,
+        "# A pull at the %s: it grows, stays, and lets go. The force is the total, shared by the\n"
+        "# nodes of the set. In the viewer your hand pulls too; take this out for your hand "
+        "alone.\n"
+        "load:\n"
+        "  - { nodes: handle, force: [%g, %g, %g],\n%s",
+        s->handle, s->pull[0], s->pull[1], s->pull[2], curve);
+    if (s->opposed)
+        fprintf(f, "  - { nodes: handle_opposite, force: [%g, %g, %g],\n%s", 0 - s->pull[0],
+                0 - s->pull[1], 0 - s->pull[2], curve);
+    fputc('\n', f);
+}
+
+static void put_end(const lar_meshing *m, FILE *f) {
+    fputs("# It does not pass through itself: takes some of each step.\n"
+          "# contact: [ { self: true } ]\n\n"
+          "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n",
+          f);
+    if (!m->support.handle && !m->support.held) return;
+    fputs("  probes:\n", f);
+    if (m->support.handle)
+        fputs("    - { set: handle }                        # mean displacement\n", f);
+    if (m->support.held)
+        fputs("    - { set: support, sum: reaction }        # force of the support\n", f);
+}
+
+static void put_scene(const lar_meshing *m, FILE *f) {
+    put_head(m, f);
+    put_motion(m, f);
+    put_materials(m, f);
+    put_fix(m, f);
+    put_load(m, f);
+    put_end(m, f);
+}
+
+/* First under another name, so that a full disk leaves no half file. */
+static lar_status write_scene(const lar_meshing *m, const char *path, const char *part,
+                              lar_error *error) {
+    FILE *file = fopen(part, "wb");
+    bool good = file != NULL;
+    int cause = errno;
+    if (file) {
+        put_scene(m, file);
+        good = fflush(file) == 0 && !ferror(file);
+        cause = errno;
+        if (fclose(file) != 0 && good) good = false, cause = errno;
+    }
+    if (good && rename(part, path) != 0) good = false, cause = errno;
+    if (good) return LAR_OK;
+    if (file) remove(part);
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: cannot be written: %s; check the folder, its permissions and the free "
+                    "space",
+                    path, strerror(cause));
+}
+
+/* ---- files --------------------------------------------------------------------------------- */
+
+static char *file_beside(const lar_meshing *m, const char *folder, const char *ending) {
+    size_t size = strlen(m->stem) + strlen(ending) + 1;
+    char *name = lar_calloc(size, 1), *path = NULL;
+    if (name) {
+        snprintf(name, size, "%s%s", m->stem, ending);
+        path = lar_folder_join(folder, name);
+    }
+    free(name);
+    return path;
+}
+
+lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
+                             lar_error *error) {
+    if (!meshing || !folder || !*folder)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_meshing_write needs a meshing and the name of a folder, for example "
+                        "liver");
+    char *mesh = file_beside(meshing, folder, ".vtu");
+    char *surface = file_beside(meshing, folder, "_surface.vtp");
+    char *yaml = file_beside(meshing, folder, ".yaml");
+    char *part = file_beside(meshing, folder, ".yaml.part");
+    lar_status status = mesh && surface && yaml && part
+                            ? lar_folder_make(folder, error)
+                            : lar_fail_memory(error, strlen(folder), "a path");
+    if (!status) status = lar_vtu_write(mesh, &(lar_vtu_frame){.mesh = &meshing->mesh}, error);
+    if (!status) status = lar_vtp_write(surface, &meshing->outer, error);
+    if (!status) status = write_scene(meshing, yaml, part, error);
+    free(mesh);
+    free(surface);
+    free(part);
+    if (status) {
+        free(yaml);
+        return status;
+    }
+    free(meshing->scene);
+    meshing->scene = yaml;
+    if (scene) *scene = yaml;
+    return LAR_OK;
+}

@@ -1,0 +1,226 @@
+/* Where a starter scene holds a body and where it pulls at it: two node sets of the surface.
+ *
+ *          support                              handle
+ *         |<- 1/10 ->|                      |<- 1/10 ->|
+ *          .---------------------------------------------.
+ *         |o o o                                    o o o | --> pull
+ *          '---------------------------------------------'
+ *         back                                          front
+ *
+ * A side is a tenth of the body's extent along the world's axis. A flat cut, where the image ends
+ * in the middle of an organ, is held whole: the rest of the organ is behind it.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "meshing/meshing.h"
+
+static const double TENTH = 0.1;
+/* What the pull would stretch a bar of the handle's cross-section by. */
+static const double STRETCH = 0.2;
+
+/* Sides by name, as direction: axis * 2, + 1 for the upper side. */
+enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };
+static const char *const side_name[SIDES] = {"left", "right", "back", "front", "bottom", "top"};
+
+static int opposite(int side) {
+    return side ^ 1;
+}
+
+static int side_of(const char *name) {
+    for (int side = 0; side < SIDES; side++)
+        if (strcmp(name, side_name[side]) == 0) return side;
+    return -1;
+}
+
+/* What is known while choosing: marks per node. */
+typedef struct choice {
+    lar_meshing *meshing;
+    bool *surface, *held; /* [nodes] */
+    double lower[3], upper[3];
+    lar_error *error;
+} choice;
+
+static lar_status mark_surface(choice *c) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    int32_t *face = NULL, count = 0;
+    lar_status status = lar_mesh_boundary(mesh, &face, &count, c->error);
+    for (int32_t i = 0; !status && i < count; i++)
+        for (int k = 0; k < 4; k++)
+            c->surface[mesh->element[face[i] / 6][lar_face_node[face[i] % 6][k]]] = true;
+    free(face);
+    for (int i = 0; i < 3; i++) {
+        c->lower[i] = DBL_MAX;
+        c->upper[i] = -DBL_MAX;
+        for (int32_t n = 0; n < mesh->node_count; n++) {
+            c->lower[i] = fmin(c->lower[i], mesh->position[n][i]);
+            c->upper[i] = fmax(c->upper[i], mesh->position[n][i]);
+        }
+    }
+    return status;
+}
+
+/* Whether a place lies in the tenth of the body at that side. */
+static bool at_side(const choice *c, int side, const double place[3]) {
+    int axis = side / 2;
+    double reach = TENTH * (c->upper[axis] - c->lower[axis]);
+    return side % 2 ? place[axis] >= c->upper[axis] - reach : place[axis] <= c->lower[axis] + reach;
+}
+
+static lar_status add_set(choice *c, const char *name, const bool *in, int32_t *count) {
+    lar_mesh *mesh = &c->meshing->mesh;
+    *count = 0;
+    for (int32_t n = 0; n < mesh->node_count; n++) *count += in[n];
+    if (*count == 0) return LAR_OK;
+    int32_t *index = lar_calloc((size_t)*count, sizeof *index);
+    if (!index) return lar_fail_memory(c->error, (size_t)*count * sizeof *index, "a node set");
+    for (int32_t n = 0, i = 0; n < mesh->node_count; n++)
+        if (in[n]) index[i++] = n;
+    return lar_mesh_add_set(mesh, name, LAR_SET_NODES, index, *count, c->error);
+}
+
+/* ---- what holds it ------------------------------------------------------------------------- */
+
+/* Marks the nodes of the flat cuts; returns the side that most of them are at. */
+static int mark_cuts(choice *c) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    const lar_boundary *boundary = &c->meshing->boundary;
+    int32_t most = 0;
+    int where = -1;
+    for (int i = 0; i < LAR_CUTS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "cut_%s", boundary->cut[i].name);
+        const lar_set *faces = lar_mesh_find_set(mesh, name, LAR_SET_FACES);
+        if (!*boundary->cut[i].name || !faces) continue;
+        for (int32_t k = 0; k < faces->count; k++)
+            for (int a = 0; a < 4; a++) {
+                int32_t face = faces->index[k];
+                c->held[mesh->element[face / 6][lar_face_node[face % 6][a]]] = true;
+            }
+        if (faces->count > most) {
+            most = faces->count;
+            where = side_of(boundary->cut[i].name);
+        }
+    }
+    return where;
+}
+
+static void mark_side(choice *c, int side) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    for (int32_t n = 0; n < mesh->node_count; n++)
+        c->held[n] = c->surface[n] && at_side(c, side, mesh->position[n]);
+}
+
+static void mark_rigid(choice *c) {
+    const lar_meshing *m = c->meshing;
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        if (!lar_tissue_find(m->region[r].name)->rigid) continue;
+        for (int32_t e = 0; e < m->mesh.element_count; e++)
+            for (int a = 0; a < 8 && m->mesh.element_tag[e] == m->region[r].tag; a++)
+                c->held[m->mesh.element[e][a]] = true;
+    }
+}
+
+/* Returns the side that is held, -1: none, in *side. */
+static lar_status hold(choice *c, const char *rule, int *side) {
+    lar_support *support = &c->meshing->support;
+    bool cut = c->meshing->info.cuts > 0;
+    if (!rule) rule = cut ? "cut" : "back";
+    *side = side_of(rule);
+    if (strcmp(rule, "cut") == 0) {
+        *side = cut ? mark_cuts(c) : -1;
+        if (*side < 0)
+            return lar_fail(c->error, LAR_ERROR_ARGUMENT,
+                            "fix cut: nothing of the mesh lies on a flat cut, because the image "
+                            "does not end inside the body; hold it at a side: left, right, back, "
+                            "front, bottom or top");
+        support->rule = "cut";
+    } else if (*side >= 0) {
+        mark_side(c, *side);
+        support->rule = side_name[*side];
+    } else if (strcmp(rule, "none") == 0) {
+        support->rule = "none";
+    } else {
+        return lar_fail(c->error, LAR_ERROR_ARGUMENT,
+                        "fix %.40s: there are left, right, back, front, bottom, top, cut and none",
+                        rule);
+    }
+    int32_t count;
+    lar_status status = add_set(c, "support", c->held, &count);
+    support->held = count > 0;
+    mark_rigid(c);
+    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) support->fixed_nodes += c->held[n];
+    return status;
+}
+
+/* ---- where it is pulled -------------------------------------------------------------------- */
+
+/* The harmonic mean over the volume of what is not rigid: that of a stack. 0: all is rigid. */
+static double mean_shear(const lar_meshing *meshing) {
+    double volume = 0, soft = 0;
+    for (int32_t r = 0; r < meshing->info.regions; r++) {
+        const lar_region_info *region = &meshing->region[r];
+        if (lar_tissue_find(region->name)->rigid) continue;
+        volume += region->volume;
+        soft += region->volume / region->shear_modulus;
+    }
+    return soft > 0 ? volume / soft : 0;
+}
+
+/* Mean cross-section of the body's tenth at a side. */
+static double cross_section(const choice *c, int side) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    double volume = 0;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        double corner[8][3], centre[3] = {0};
+        lar_mesh_corners(mesh, e, corner);
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) centre[i] += corner[a][i] / 8;
+        if (at_side(c, side, centre)) volume += lar_hexahedron_volume(corner);
+    }
+    return volume / (TENTH * (c->upper[side / 2] - c->lower[side / 2]));
+}
+
+static lar_status add_handle(choice *c, const char *name, int side, bool *in, int32_t *count) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    for (int32_t n = 0; n < mesh->node_count; n++)
+        in[n] = c->surface[n] && !c->held[n] && at_side(c, side, mesh->position[n]);
+    return add_set(c, name, in, count);
+}
+
+static lar_status pull(choice *c, int held_side, bool *in) {
+    lar_support *support = &c->meshing->support;
+    int side = held_side >= 0 ? opposite(held_side) : FRONT;
+    double force = 3 * mean_shear(c->meshing) * STRETCH * cross_section(c, side);
+    int32_t count = 0, opposed = 0;
+    if (!(force > 0)) return LAR_OK;
+    lar_status status = add_handle(c, "handle", side, in, &count);
+    if (!status && count > 0 && support->fixed_nodes == 0) {
+        status = add_handle(c, "handle_opposite", opposite(side), in, &opposed);
+        support->opposed = opposed > 0;
+    }
+    if (status || count == 0 || (support->fixed_nodes == 0 && !support->opposed)) return status;
+    /* Two digits: it is an example. */
+    double digit = pow(10, floor(log10(force)) - 1);
+    support->handle = side_name[side];
+    support->pull[side / 2] = (side % 2 ? 1 : -1) * round(force / digit) * digit;
+    return LAR_OK;
+}
+
+lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error) {
+    size_t nodes = (size_t)meshing->mesh.node_count;
+    bool *mark = lar_calloc(3 * nodes, sizeof *mark);
+    if (!mark) return lar_fail_memory(error, 3 * nodes, "marks of nodes");
+    choice c = {.meshing = meshing, .surface = mark, .held = mark + nodes, .error = error};
+    int side = -1;
+    lar_status status = mark_surface(&c);
+    if (!status) status = hold(&c, rule, &side);
+    if (!status) status = pull(&c, side, mark + 2 * nodes);
+    free(mark);
+    meshing->info.fix = meshing->support.rule;
+    meshing->info.fixed_nodes = meshing->support.fixed_nodes;
+    return status;
+}
