@@ -1,0 +1,171 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/vector.h"
+#include "meshing/fit_work.h"
+
+/* (1 + g) / 2 and (1 - g) / 2 with g = 1 / sqrt(3), multiplied. */
+const double lar_fit_share[4] = {0.62200846792814621559, 1.0 / 6, 0.04465819873852045108, 1.0 / 6};
+
+/* Farther away, in cells, the true boundary between two regions is another one than the one that
+ * the mesh has there. */
+static const double REACH = 1.8;
+
+/* ---- trees ---------------------------------------------------------------------------------- */
+
+/* What stands for the boundary between a and b: the triangles between them; where there are none,
+ * since a gap or a third region between them is thinner than a cell, all of either. */
+static int32_t choose_triangles(const lar_fit_work *work, const uint16_t region[2],
+                                int32_t *chosen) {
+    const lar_boundary *boundary = work->boundary;
+    const int32_t triangles = boundary->triangles.triangle_count;
+    int32_t count = 0;
+    for (int32_t t = 0; t < triangles; t++)
+        if (lar_boundary_between(boundary, t, region[0], region[1])) chosen[count++] = t;
+    for (int32_t t = 0; count == 0 && t < triangles; t++)
+        for (int k = 0; k < 2; k++)
+            if (boundary->side[t][k] != 0 &&
+                (boundary->side[t][k] == region[0] || boundary->side[t][k] == region[1])) {
+                chosen[count++] = t;
+                break;
+            }
+    return count;
+}
+
+lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
+    const lar_triangles *triangles = &work->boundary->triangles;
+    const size_t bytes = (size_t)triangles->triangle_count * sizeof(int32_t);
+    int32_t *chosen = lar_calloc((size_t)triangles->triangle_count, sizeof *chosen);
+    if (!chosen) return lar_fail_memory(error, bytes, "the triangles between two regions");
+    lar_status status = LAR_OK;
+    for (int32_t p = 0; status == LAR_OK && p < work->pair_count; p++) {
+        const int32_t count = choose_triangles(work, work->pair[p].region, chosen);
+        if (count > 0)
+            status = lar_triangle_tree_create(triangles, chosen, count, &work->pair[p].tree, error);
+    }
+    free(chosen);
+    return status;
+}
+
+/* ---- planes --------------------------------------------------------------------------------- */
+
+typedef struct target {
+    double point[3], normal[3]; /* in cells; towards the pair's first region */
+    double away[3];             /* from the point to what asked */
+} target;
+
+static bool triangle_normal(const lar_fit_work *work, const lar_fit_pair *pair, int32_t t,
+                            double normal[3]) {
+    const lar_triangles *triangles = &work->boundary->triangles;
+    const int32_t *corner = triangles->corner[t];
+    const uint16_t *side = work->boundary->side[t];
+    double along[3], across[3];
+    lar_minus(triangles->vertex[corner[1]], triangles->vertex[corner[0]], along);
+    lar_minus(triangles->vertex[corner[2]], triangles->vertex[corner[0]], across);
+    lar_cross(along, across, normal);
+    const double length = lar_length(normal);
+    if (!(length > 0)) return false;
+    /* Of nested surfaces the later one has the place behind its triangles. */
+    const bool front_first = side[1] == pair->region[1] || side[0] == pair->region[0];
+    const double factor = (front_first ? 1 : -1) / length;
+    for (int i = 0; i < 3; i++) normal[i] *= factor;
+    return true;
+}
+
+/* The nearest point of the pair's boundary to `ask`, seen from `x`, when it looks the same way. */
+static bool ask_tree(const lar_fit_work *work, const lar_fit_pair *pair, const double ask[3],
+                     const double x[3], const double facing[3], target *found) {
+    double world[3];
+    lar_nearest nearest;
+    for (int i = 0; i < 3; i++) world[i] = work->origin[i] + work->size * ask[i];
+    if (!lar_triangle_tree_nearest(pair->tree, world, REACH * work->size, &nearest)) return false;
+    if (!triangle_normal(work, pair, nearest.triangle, found->normal)) return false;
+    if (!(lar_dot(found->normal, facing) > 0)) return false;
+    for (int i = 0; i < 3; i++) {
+        found->point[i] = (nearest.point[i] - work->origin[i]) / work->size;
+        found->away[i] = x[i] - found->point[i];
+    }
+    return true;
+}
+
+/* Where the mesh is about as thin as a cell, the nearest triangle may be one of the other side,
+ * which looks the other way; then those beyond are asked, half a cell in front and behind. */
+static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
+                        const double facing[3], target *found) {
+    if (ask_tree(work, pair, x, x, facing, found)) return true;
+    target other[2];
+    bool any[2];
+    for (int k = 0; k < 2; k++) {
+        double ask[3];
+        for (int i = 0; i < 3; i++) ask[i] = x[i] + (k ? -0.6 : 0.6) * facing[i];
+        any[k] = ask_tree(work, pair, ask, x, facing, &other[k]);
+    }
+    if (!any[0] && !any[1]) return false;
+    *found = other[!any[0] || (any[1] && lar_dot(other[1].away, other[1].away) <
+                                             lar_dot(other[0].away, other[0].away))];
+    return true;
+}
+
+/* The plane through the nearest point. It stands across the way there, which beyond the rim of an
+ * open boundary, and at its edges, is not the triangle's normal; near the boundary the triangle's
+ * says it better. */
+static void renew_plane(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
+                        const double facing[3], double weight, lar_fit_plane *plane) {
+    target found;
+    plane->weight = 0;
+    if (!pair->tree || !find_target(work, pair, x, facing, &found)) return;
+    const double distance = lar_length(found.away);
+    if (distance > 0.02) {
+        const double sign = lar_dot(found.away, found.normal) < 0 ? -1 : 1;
+        for (int i = 0; i < 3; i++) found.normal[i] = sign * found.away[i] / distance;
+    }
+    for (int i = 0; i < 3; i++) plane->normal[i] = found.normal[i];
+    plane->normal[3] = lar_dot(found.normal, found.point) + pair->offset;
+    plane->weight = weight;
+}
+
+static void unit_normal(const lar_fit_work *work, const lar_fit_face *face, double normal[3]) {
+    double along[3], across[3];
+    lar_minus(work->x[face->node[2]], work->x[face->node[0]], along);
+    lar_minus(work->x[face->node[3]], work->x[face->node[1]], across);
+    lar_cross(along, across, normal);
+    const double length = lar_length(normal);
+    for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
+}
+
+static void renew_face(lar_fit_work *work, lar_fit_face *face) {
+    double normal[3];
+    unit_normal(work, face, normal);
+    for (int g = 0; g < LAR_FIT_GAUSS; g++) {
+        double x[3] = {0};
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++)
+                x[i] += lar_fit_share[(a - g) & 3] * work->x[face->node[a]][i];
+        renew_plane(work, &work->pair[face->pair], x, normal, work->face_weight / LAR_FIT_GAUSS,
+                    &face->plane[g]);
+    }
+}
+
+static void renew_point(lar_fit_work *work, lar_fit_point *point) {
+    double sum[3] = {0};
+    const int32_t n = point->node;
+    for (int32_t i = work->face_start[n]; i < work->face_start[n + 1]; i++) {
+        const lar_fit_face *face = &work->face[work->face_around[i] / 4];
+        double normal[3];
+        if (face->pair != point->pair) continue;
+        unit_normal(work, face, normal);
+        for (int k = 0; k < 3; k++) sum[k] += normal[k];
+    }
+    const double length = lar_length(sum);
+    for (int k = 0; k < 3; k++) sum[k] = length > 0 ? sum[k] / length : 0;
+    renew_plane(work, &work->pair[point->pair], work->x[n], sum,
+                work->node_weight * point->faces / 4, &point->plane);
+}
+
+void lar_fit_targets_renew(lar_fit_work *work) {
+    for (int32_t f = 0; f < work->face_count; f++) renew_face(work, &work->face[f]);
+    for (int32_t i = 0; i < work->point_count; i++) {
+        renew_point(work, &work->point[i]);
+        work->awake[work->point[i].node] = true;
+    }
+}

@@ -1,0 +1,94 @@
+/* What fitting works on. Lengths are in cells, from the first node of the draft: everything is
+ * near 1, and a weight means the same for a mouse and for a man.
+ *
+ *     fit.c          the order of things
+ *     fit_faces.c    which elements and faces are around each node
+ *     fit_target.c   where faces and nodes shall lie: planes at the true boundary
+ *     fit_volume.c   how far off the boundary they shall lie, so that regions keep their volumes
+ *     fit_sweep.c    nodes move, one after the other
+ *     fit_quality.c  the energy of a corner
+ */
+#ifndef LAR_MESHING_FIT_WORK_H
+#define LAR_MESHING_FIT_WORK_H
+
+#include "meshing/fit.h"
+#include "meshing/fit_quality.h"
+#include "model/triangle_tree.h"
+
+/* A plane that a point of the mesh shall lie on: normal * x = normal[3]. Weight 0: none. */
+typedef struct lar_fit_plane {
+    double normal[4], weight;
+} lar_fit_plane;
+
+/* Faces are asked at the four points of Gauss' rule: the sum over them of the squared distances is
+ * the integral over the face, for which nodes in front of the boundary and nodes behind it must
+ * balance. */
+enum { LAR_FIT_GAUSS = 4 };
+
+/* A face between two regions, corners counter-clockwise seen from the first of its pair. */
+typedef struct lar_fit_face {
+    int32_t node[4];
+    int32_t pair;
+    lar_fit_plane plane[LAR_FIT_GAUSS];
+} lar_fit_face;
+
+/* The shape function of a face's corner a at Gauss point g is lar_fit_share[(a - g) & 3]. */
+extern const double lar_fit_share[4];
+
+/* A node where a pair of regions meets. */
+typedef struct lar_fit_point {
+    int32_t node, pair;
+    int32_t faces; /* of this pair, around the node */
+    lar_fit_plane plane;
+} lar_fit_point;
+
+typedef struct lar_fit_pair {
+    uint16_t region[2];
+    lar_triangle_tree *tree; /* NULL: the true boundary has nothing between them */
+    double area;             /* of its faces [cells^2] */
+    double offset;           /* how far towards the first region faces shall lie [cells] */
+} lar_fit_pair;
+
+typedef struct lar_fit_work {
+    const lar_boundary *boundary;
+    const lar_mesh *mesh; /* its elements; positions are in `x` */
+    double size, origin[3];
+    double (*x)[3];
+
+    int32_t *element_start, *element_around; /* per node: element * 8 + local node */
+    int32_t *face_start, *face_around;       /* per node: face * 4 + corner */
+    int32_t *point_start;                    /* per node, into `point` */
+    int32_t face_count, point_count, pair_count;
+    lar_fit_face *face;
+    lar_fit_point *point;
+    lar_fit_pair *pair;
+
+    lar_fit_law law;
+    double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
+    bool *awake;                     /* per node: worth moving */
+} lar_fit_work;
+
+/* Fills a zeroed one. The draft and the boundary must outlive it. */
+lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
+                               lar_fit_work *work, lar_error *error);
+void lar_fit_work_clear(lar_fit_work *work);
+
+/* Trees over the triangles of each pair. */
+lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error);
+/* All planes anew, from where faces and nodes are now. */
+void lar_fit_targets_renew(lar_fit_work *work);
+
+/* The cubic cells that each region has and shall have; changes the pairs' offsets by what is
+ * missing. `share`: the part of it to make up for. */
+lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *error);
+
+/* Moves every node that is awake once; the number that moved. */
+int32_t lar_fit_sweep(lar_fit_work *work);
+
+/* The least scaled Jacobian, the part of the elements above `bar`. */
+double lar_fit_least(const lar_fit_work *work, double bar, double *part_above);
+
+/* Corners of element e, in cells. */
+void lar_fit_corners(const lar_fit_work *work, int32_t e, double corner[8][3]);
+
+#endif
