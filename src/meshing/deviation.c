@@ -6,9 +6,9 @@
 
 #include "model/triangle_tree.h"
 
-/* Samples in each direction, about; samples along a side of a face or triangle, at most; samples of
- * the surface along the edge of a face. */
-enum { SAMPLES_MOST = 200000, CUTS_MOST = 16, CUTS_PER_EDGE = 4 };
+/* Samples in each direction, about; samples along a side of a face or triangle, at most; samples
+ * along the edge of a face, of the surface or, where its triangles are smaller, of the face. */
+enum { SAMPLES_MOST = 200000, CUTS_MOST = 16, CUTS_PER_EDGE = 8 };
 
 typedef struct sample {
     double distance, weight;
@@ -173,6 +173,15 @@ static lar_status sample_triangles(const lar_triangles *surface, double area, do
     return status;
 }
 
+/* Corners have no area, but the largest distance is often there. */
+static lar_status sample_vertices(const lar_triangles *from, const lar_triangle_tree *tree,
+                                  samples *all) {
+    lar_status status = LAR_OK;
+    for (int32_t v = 0; !status && v < from->vertex_count; v += stride_for(from->vertex_count))
+        status = measure(all, tree, from->vertex[v], 0);
+    return status;
+}
+
 static int compare_samples(const void *a, const void *b) {
     const sample *p = a, *q = b;
     return (p->distance > q->distance) - (p->distance < q->distance);
@@ -213,15 +222,15 @@ lar_status lar_deviation_measure(const lar_mesh *mesh, const int32_t *face, int3
             lar_triangle_tree_create(surface, NULL, surface->triangle_count, &surface_tree, error);
     if (!status)
         status = lar_triangle_tree_create(&fans, NULL, fans.triangle_count, &mesh_tree, error);
-    /* Neither needs finer samples than half the size of what it is compared with. */
-    const double triangle_size = sqrt(area / surface->triangle_count);
-    const double face_size = sqrt(face_area / count);
-    if (!status)
-        status = sample_faces(mesh, face, count, face_area, triangle_size / 2, surface_tree, &all);
+    const double face_spacing = sqrt(face_area / count) / CUTS_PER_EDGE;
+    const double spacing = fmin(face_spacing, sqrt(area / surface->triangle_count) / 2);
+    if (!status) status = sample_faces(mesh, face, count, face_area, spacing, surface_tree, &all);
+    if (!status) status = sample_vertices(&fans, surface_tree, &all);
     if (!status) {
         halve_weights(&all, 0);
         const size_t first = all.count;
-        status = sample_triangles(surface, area, face_size / CUTS_PER_EDGE, mesh_tree, &all);
+        status = sample_triangles(surface, area, face_spacing, mesh_tree, &all);
+        if (!status) status = sample_vertices(surface, mesh_tree, &all);
         halve_weights(&all, first);
     }
     if (!status) summarise(&all, deviation);
