@@ -1,7 +1,10 @@
 #include "model/triangles.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/vector.h"
 
@@ -119,5 +122,84 @@ lar_status lar_triangles_join(lar_triangles *triangles, lar_error *error) {
     }
     free(sorted);
     free(same);
+    return status;
+}
+
+/* ---- reading ------------------------------------------------------------------------------ */
+
+typedef struct surface_format {
+    const char *extension;
+    lar_status (*parse)(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
+                        lar_error *error);
+} surface_format;
+
+static const surface_format formats[] = {
+    {"stl", lar_stl_parse},
+    {"obj", lar_obj_parse},
+};
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
+
+static const surface_format *find_format(const char *path) {
+    const char *extension = lar_path_extension(path);
+    for (int i = 0; i < FORMAT_COUNT; i++)
+        if (strcasecmp(extension, formats[i].extension) == 0) return &formats[i];
+    return NULL;
+}
+
+/* Beyond FARTHEST metres products of coordinates would leave the range of a double. */
+static lar_status scale_vertices(const char *path, double scale, lar_triangles *triangles,
+                                 lar_error *error) {
+    const double FARTHEST = 1e30;
+    for (int32_t v = 0; v < triangles->vertex_count; v++)
+        for (int i = 0; i < 3; i++) {
+            double at = triangles->vertex[v][i] *= scale;
+            if (!(fabs(at) < FARTHEST))
+                return lar_fail(error, LAR_ERROR_FORMAT,
+                                "%s: vertex %" PRId32
+                                " (from 0) has a coordinate of %g m, which no body has; write the "
+                                "file again or check the scale",
+                                path, v, at);
+        }
+    return LAR_OK;
+}
+
+static lar_status parse_and_join(const char *path, const lar_bytes *bytes,
+                                 const surface_format *format, double scale, lar_triangles *read,
+                                 lar_error *error) {
+    lar_status status = format->parse(path, bytes, read, error);
+    if (!status) status = scale_vertices(path, scale, read, error);
+    if (!status) status = lar_triangles_join(read, error);
+    if (!status && read->triangle_count == 0)
+        status =
+            lar_fail(error, LAR_ERROR_FORMAT,
+                     "%s: has no triangle with an area, so it is no surface; check the file", path);
+    if (!status && !(read->source = lar_strdup(path)))
+        status = lar_fail_memory(error, strlen(path) + 1, path);
+    return status;
+}
+
+lar_status lar_triangles_read(const char *path, double scale, lar_triangles *triangles,
+                              lar_error *error) {
+    const surface_format *format = find_format(path);
+    if (!format)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s: no surface format has this extension; the known ones are .stl .obj "
+                        ".vtk .vtp",
+                        path);
+    if (!isfinite(scale) || !(scale > 0))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s: the scale %g is not a positive number; 0.001 turns millimetres into "
+                        "metres",
+                        path, scale);
+    lar_bytes bytes = {0};
+    lar_status status = lar_bytes_read(path, &bytes, error);
+    if (status) return status;
+    lar_triangles read = {0};
+    status = parse_and_join(path, &bytes, format, scale, &read, error);
+    lar_bytes_free(&bytes);
+    if (status)
+        lar_triangles_clear(&read);
+    else
+        *triangles = read;
     return status;
 }

@@ -56,12 +56,33 @@ double lar_triangles_volume(const lar_triangles *triangles);
 double lar_triangles_area(const lar_triangles *triangles);
 
 /* Closed: every edge is used as often in one direction as in the other, which is what counting
- * crossings along a line needs. The message names the number of open edges and the place of one.
- * Triangles that are turned against their neighbours are turned back, and all are turned when the
- * volume is negative; *turned counts them (may be NULL). */
+ * crossings along a line needs. LAR_ERROR_MODEL otherwise; the message names the number of open
+ * edges and the place of one.
+ *
+ * Triangles that are turned against their neighbours are turned back. Then each shell that lies in
+ * no other one is turned, with all within it, when its volume is negative; the shells within keep
+ * their direction against it (a hollow stays a hollow). *turned counts the triangles that are
+ * turned in the end (may be NULL). */
 lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_error *error);
 
-/* No triangle goes through another one. The message names their number and the place of one. */
+/* Triangles that go through each other. The depth of a pair is how far one of the two must be moved
+ * to be free of the other; touching is no crossing. Neighbours with a common edge are not looked
+ * at. Shallow: up to LAR_CROSSING_HARMLESS of the mean edge, as rounding and smoothing leave them;
+ * they tell neither an inside from an outside wrongly nor show on any element. */
+#define LAR_CROSSING_HARMLESS 0.01
+enum { LAR_CROSSINGS_MOST = 10000 }; /* deep ones; looking ends there */
+
+typedef struct lar_crossings {
+    int32_t shallow, deep; /* pairs */
+    double deepest;        /* [m]; 0: there is none */
+    int32_t pair[2];       /* the triangles of the deepest one */
+} lar_crossings;
+
+lar_status lar_triangles_find_crossings(const lar_triangles *triangles, lar_crossings *crossings,
+                                        lar_error *error);
+
+/* LAR_ERROR_MODEL when there are deep crossings. The message names their number and the place of
+ * the deepest. */
 lar_status lar_triangles_check_crossing(const lar_triangles *triangles, lar_error *error);
 
 #endif

@@ -54,7 +54,8 @@ static lar_triangle_tree *tree_of(const lar_triangles *s, const int32_t *index, 
 
 /* Random triangles, some without area, some lying twice there. */
 static lar_triangles random_soup(int32_t count, uint64_t seed) {
-    lar_triangles soup = shape_empty(3 * count, count);
+    lar_triangles soup;
+    shape_surface_begin(&soup, 3 * count, count);
     for (int32_t t = 0; t < count; t++) {
         double size = t % 5 == 0 ? 1 : 0.05;
         for (int a = 0; a < 3; a++)
@@ -63,7 +64,7 @@ static lar_triangles random_soup(int32_t count, uint64_t seed) {
                 soup.vertex[3 * t + a][i] =
                     a == 0 ? shape_random(&seed) : base[i] + size * (shape_random(&seed) - 0.5);
             }
-        shape_set(&soup, t, 3 * t, 3 * t + 1, 3 * t + 2);
+        shape_triangle(&soup, t, 3 * t, 3 * t + 1, 3 * t + 2);
         double(*v)[3] = soup.vertex + 3 * t;
         if (t % 7 == 1) memcpy(v[1], v[0], sizeof *v);                                /* a needle */
         if (t % 7 == 2) memcpy(v[1], v[0], sizeof *v), memcpy(v[2], v[0], sizeof *v); /* a point */
@@ -99,7 +100,8 @@ static void test_soup_against_all(void **state) {
 /* The same answer, bit for bit, as from one tree per triangle: ties go to the smallest index. */
 static void test_ties_go_to_the_smallest_index(void **state) {
     (void)state;
-    lar_triangles ball = shape_ball(origin, 1, 12);
+    lar_triangles ball;
+    shape_ellipsoid_surface(&ball, (double[]){1, 1, 1}, origin, 12);
     lar_triangle_tree *tree = tree_of(&ball, NULL, 0);
     lar_triangle_tree **one = lar_calloc((size_t)ball.triangle_count, sizeof *one);
     assert_non_null(one);
@@ -137,8 +139,9 @@ static void test_ties_go_to_the_smallest_index(void **state) {
 
 static void test_few_triangles(void **state) {
     (void)state;
-    lar_triangles one = shape_empty(3, 1);
-    shape_set(&one, 0, 0, 1, 2);
+    lar_triangles one;
+    shape_surface_begin(&one, 3, 1);
+    shape_triangle(&one, 0, 0, 1, 2);
     one.vertex[1][0] = 2;
     one.vertex[2][1] = 2;
     lar_triangle_tree *none = tree_of(&one, (const int32_t[]){0}, 0);
@@ -174,14 +177,15 @@ static void test_few_triangles(void **state) {
 static void test_hard_to_divide(void **state) {
     (void)state;
     enum { COUNT = 500 };
-    lar_triangles nested = shape_empty(3 * COUNT, COUNT);
+    lar_triangles nested;
+    shape_surface_begin(&nested, 3 * COUNT, COUNT);
     for (int32_t t = 0; t < COUNT; t++) {
         double size = t < COUNT / 2 ? 1 : pow(0.25, t - COUNT / 2);
         double shift = t < COUNT / 2 ? 0 : 4 * size;
         for (int a = 0; a < 3; a++) nested.vertex[3 * t + a][0] = shift;
         nested.vertex[3 * t + 1][1] = size;
         nested.vertex[3 * t + 2][1] = -size;
-        shape_set(&nested, t, 3 * t, 3 * t + 1, 3 * t + 2);
+        shape_triangle(&nested, t, 3 * t, 3 * t + 1, 3 * t + 2);
     }
     lar_triangle_tree *tree = tree_of(&nested, NULL, 0);
     lar_nearest found;
@@ -235,7 +239,8 @@ static void test_boxes(void **state) {
 /* A tree over some triangles names them by their number in the whole surface. */
 static void test_part_of_a_surface(void **state) {
     (void)state;
-    lar_triangles ball = shape_ball(origin, 1, 10);
+    lar_triangles ball;
+    shape_ellipsoid_surface(&ball, (double[]){1, 1, 1}, origin, 10);
     int32_t half[400], count = 0;
     for (int32_t t = 0; t < ball.triangle_count; t++)
         if (ball.vertex[ball.corner[t][0]][2] > 0.2) half[count++] = t;
