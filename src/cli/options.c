@@ -220,6 +220,12 @@ static bool asks_help(int argc, char **argv) {
     return false;
 }
 
+/* How many arguments there must be, of those there may be. */
+static int least_arguments(const char *arguments, int most) {
+    if (arguments[0] == '[') return 0;
+    return strstr(arguments, "...") ? 1 : most;
+}
+
 int cli_parse(const cli_command *command, const cli_option *options, int argc, char **argv,
               const char **arguments, int argument_count) {
     int given = 0;
@@ -245,7 +251,7 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
             arguments[given++] = argv[at++];
         }
     }
-    if (given < argument_count && command->arguments[0] != '[')
+    if (given < least_arguments(command->arguments, argument_count))
         return cli_complain(command, CLI_USAGE, "%s is missing; usage: lariat %s %s [OPTIONS]",
                             command->arguments, command->name, command->arguments);
     return -1;

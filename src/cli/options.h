@@ -23,7 +23,7 @@ typedef enum cli_option_kind {
     OPTION_TEXTS,  /* cli_texts *value: may be given again and again */
 } cli_option_kind;
 
-enum { CLI_TEXTS_MOST = 16 };
+enum { CLI_TEXTS_MOST = 64 };
 
 typedef struct cli_texts {
     int count;
@@ -61,7 +61,8 @@ typedef struct cli_option {
 typedef struct cli_command {
     const char *name;                   /* "run" or "bench kernel" */
     const char *summary;                /* one line */
-    const char *arguments;              /* "SCENE", "[SCENE]": may be left out, or "" */
+    const char *arguments;              /* "SCENE", "[SCENE]": may be left out, "INPUT...": one or
+                                           more, or "" */
     const char *description;            /* a paragraph */
     const char *examples;               /* lines */
     int (*main)(int argc, char **argv); /* behind the command's name; returns the exit status */

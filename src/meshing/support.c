@@ -20,7 +20,7 @@
 
 static const double TENTH = 0.1;
 /* What the pull would stretch a bar of the handle's cross-section by. */
-static const double STRETCH = 0.2;
+static const double STRETCH = 0.5;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };

@@ -13,7 +13,7 @@ while read -r word line; do
 done <examples
 
 # Every option that --help lists.
-for command in run verify partition demo-model info device 'bench kernel' 'bench comm' 'bench scaling'; do
+for command in mesh run verify partition demo-model info device 'bench kernel' 'bench comm' 'bench scaling'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do

@@ -10,7 +10,7 @@ expect 2 "$LARIAT"
 silent
 complains 'Usage: lariat COMMAND'
 
-for command in info run view verify partition demo-model bench 'bench kernel'; do
+for command in mesh info run view verify partition demo-model bench 'bench kernel'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     says "^Usage: lariat $command"

@@ -1,0 +1,235 @@
+/* lariat mesh: from a scan to a model. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/mesh_report.h"
+#include "cli/stop.h"
+
+enum { INPUTS_MOST = 255 };
+
+typedef struct mesh_settings {
+    const char *input[INPUTS_MOST];
+    int32_t inputs;
+    cli_texts labels;
+    const char *names, *title, *out;
+    int64_t elements; /* 0: not given */
+    double size, scale;
+    int fix; /* index into fix_names; 0: not given */
+    bool fuse, principal, voxel, force, list, json;
+} mesh_settings;
+
+static const char *const fix_names[] = {"auto",   "left", "right", "back", "front",
+                                        "bottom", "top",  "cut",   "none", NULL};
+
+static double now(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+/* ---- progress ------------------------------------------------------------------------------ */
+
+typedef struct progress {
+    double start, shown; /* [s]; shown 0: nothing is on the screen */
+} progress;
+
+/* lar_meshing_watch. */
+static int show_progress(void *context, const char *what, double part) {
+    static const double QUIET = 1.0, EVERY = 0.1; /* shorter work says nothing [s] */
+    progress *p = context;
+    double at = now();
+    if (at > p->start + QUIET && at > p->shown + EVERY && isatty(STDERR_FILENO)) {
+        if (part > 0)
+            fprintf(stderr, "\r%s %3.0f %% \033[K", what, 100 * part);
+        else
+            fprintf(stderr, "\r%s \033[K", what);
+        fflush(stderr);
+        p->shown = at;
+    }
+    return !cli_stop_asked;
+}
+
+static void clear_progress(const progress *p) {
+    if (p->shown > 0) fputs("\r\033[K", stderr);
+}
+
+/* ---- labels -------------------------------------------------------------------------------- */
+
+static int list_labels(const mesh_settings *s) {
+    lar_label_list list;
+    lar_error error;
+    if (s->inputs > 1)
+        return cli_complain(&cli_mesh, CLI_USAGE, "--list lists the labels of one image");
+    if (lar_label_list_read(s->input[0], s->names, &list, &error))
+        return cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
+    if (s->json)
+        mesh_report_labels_json(s->input[0], &list);
+    else
+        mesh_report_labels(s->input[0], &list, stdout);
+    lar_label_list_clear(&list);
+    return CLI_DONE;
+}
+
+/* Who asks for a label that there is not wants to know which there are. */
+static void show_what_there_is(const mesh_settings *s) {
+    lar_label_list list;
+    bool known = true;
+    if (s->labels.count == 0 || s->inputs > 1 ||
+        lar_label_list_read(s->input[0], s->names, &list, NULL))
+        return;
+    for (int i = 0; i < s->labels.count; i++)
+        known = known && lar_label_list_has(&list, s->labels.text[i]);
+    if (!known) mesh_report_labels(s->input[0], &list, stderr);
+    lar_label_list_clear(&list);
+}
+
+/* ---- files ---------------------------------------------------------------------------------- */
+
+/* A scene that is there may have been changed by hand: it stays, unless --force says otherwise. */
+static int check_free(const mesh_settings *s, const char *folder, const char *stem) {
+    char path[4096];
+    int length = snprintf(path, sizeof path, "%s/%s.yaml", folder, stem);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return cli_complain(&cli_mesh, CLI_FAILED, "the name of the folder is too long");
+    if (s->force || access(path, F_OK) != 0) return CLI_DONE;
+    return cli_complain(&cli_mesh, CLI_FAILED,
+                        "%s is there already, perhaps with changes of yours; --force replaces it, "
+                        "--out puts the new one elsewhere",
+                        path);
+}
+
+/* Reads back what was written, as every other command will. */
+static int inspect(const mesh_settings *s, mesh_report *report) {
+    lar_model *model = NULL;
+    lar_error error;
+    (void)s;
+    int status = cli_open_model(&cli_mesh, report->scene, &model);
+    if (status) return status;
+    if (lar_model_inspect(model, &report->model, &error))
+        status = cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
+    else
+        report->speed = cli_measure_speed(model);
+    lar_model_destroy(model);
+    return status;
+}
+
+static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double seconds) {
+    mesh_report report = {.meshing = meshing, .seconds = seconds};
+    lar_error error;
+    lar_meshing_inspect(meshing, &report.info);
+    const char *folder = s->out ? s->out : report.info.name;
+    int status = check_free(s, folder, report.info.name);
+    if (!status && lar_meshing_write(meshing, folder, &report.scene, &error))
+        status = cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
+    if (!status) status = inspect(s, &report);
+    if (status) return status;
+    if (s->json)
+        mesh_report_json(&report);
+    else
+        mesh_report_table(&report);
+    return CLI_DONE;
+}
+
+/* ---- the command ---------------------------------------------------------------------------- */
+
+static int mesh(const mesh_settings *s) {
+    progress p = {.start = now()};
+    lar_meshing_options options = lar_meshing_options_default();
+    options.size = s->size;
+    options.elements = s->size > 0 || (s->voxel && s->elements == 0) ? 0 : options.elements;
+    if (s->elements > 0) options.elements = (int32_t)s->elements;
+    if (s->scale > 0) options.scale = s->scale;
+    options.labels = s->labels.text;
+    options.label_count = s->labels.count;
+    options.fuse = s->fuse;
+    options.names = s->names;
+    options.principal = s->principal;
+    options.voxel = s->voxel;
+    options.title = s->title;
+    options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
+    options.watch = show_progress;
+    options.context = &p;
+    lar_meshing *meshing = NULL;
+    lar_error error;
+    cli_catch_stop();
+    lar_status failed = lar_meshing_create(s->input, s->inputs, &options, &meshing, &error);
+    clear_progress(&p);
+    if (failed && cli_stop_asked)
+        return cli_complain(&cli_mesh, CLI_INTERRUPTED, "interrupted; nothing is written");
+    if (failed) {
+        cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
+        show_what_there_is(s);
+        return CLI_FAILED;
+    }
+    int status = write_and_tell(s, meshing, now() - p.start);
+    lar_meshing_destroy(meshing);
+    return status;
+}
+
+static int check_settings(const mesh_settings *s) {
+    if (s->size > 0 && s->elements > 0)
+        return cli_complain(&cli_mesh, CLI_USAGE,
+                            "--elements and --size both say how fine the mesh is; give one");
+    return CLI_DONE;
+}
+
+static int mesh_main(int argc, char **argv) {
+    mesh_settings s = {0};
+    const cli_option options[] = {
+        CLI_TEXTS("--label", "NAME|N",
+                  "a label of the image, by name or number, as a region;\nmay be given again; "
+                  "without: all labels",
+                  &s.labels),
+        CLI_FLAG("--fuse", "all labels become one region", &s.fuse),
+        CLI_TEXT("--names", "FILE", "names of the labels, a line LABEL,NAME for each", &s.names),
+        CLI_FLAG("--list", "list the image's labels, and do nothing else", &s.list),
+        CLI_COUNT("--elements", "N", "about so many elements (5000)", &s.elements, 1, 1e7),
+        CLI_REAL("--size", "M", "edge of an element in metres, instead of --elements", &s.size,
+                 1e-6, 10),
+        CLI_REAL("--scale", "S",
+                 "surfaces: metres per unit of the file, 0.001 for\nmillimetres (1)", &s.scale,
+                 1e-9, 1e9),
+        CLI_FLAG("--principal", "elements along the body's principal axes, not the\nimage's",
+                 &s.principal),
+        CLI_FLAG("--voxel",
+                 "cubes on a grid, not fitted; without --elements and\n--size the image's own "
+                 "voxels",
+                 &s.voxel),
+        CLI_CHOICE(
+            "--fix", "SIDE",
+            "where the scene holds it: left, right, back, front,\nbottom, top, cut (where the "
+            "image cuts it off), none;\nwithout: cut where there is one, else back",
+            &s.fix, fix_names),
+        CLI_TEXT("--title", "TEXT", "title, and the name of the files", &s.title),
+        CLI_TEXT("--out", "DIR", "folder for the files; without: called as the title", &s.out),
+        CLI_FLAG("--force", "replace a scene that is there", &s.force),
+        CLI_FLAG("--json", "the report as one JSON object on standard output", &s.json),
+        CLI_END};
+    int status = cli_parse(&cli_mesh, options, argc, argv, s.input, INPUTS_MOST);
+    if (status >= 0) return status;
+    while (s.inputs < INPUTS_MOST && s.input[s.inputs]) s.inputs++;
+    if (s.list) return list_labels(&s);
+    status = check_settings(&s);
+    return status ? status : mesh(&s);
+}
+
+const cli_command cli_mesh = {
+    .name = "mesh",
+    .summary = "make a model of a segmented scan or of closed surfaces",
+    .arguments = "INPUT...",
+    .description =
+        "Meshes a label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk\n"
+        ".vtp), one region each, with hexahedra that lie on the true boundary and run in real\n"
+        "time. Writes the mesh, the fine surface and a scene with materials, a support and a\n"
+        "pull, which runs as it is and says in comments what to change. Lengths are metres.",
+    .examples = "  lariat mesh scan.nii.gz --list\n"
+                "  lariat mesh scan.nii.gz --label liver --names labels.csv\n"
+                "  lariat mesh scan.seg.nrrd --label 3 --label 4 --elements 20000 --out chest\n"
+                "  lariat mesh liver.stl tumour.stl --scale 0.001 --fix top\n",
+    .main = mesh_main};
