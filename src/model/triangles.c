@@ -136,6 +136,8 @@ typedef struct surface_format {
 static const surface_format formats[] = {
     {"stl", lar_stl_parse},
     {"obj", lar_obj_parse},
+    {"vtk", lar_vtk_surface_parse},
+    {"vtp", lar_vtp_parse},
 };
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 

@@ -72,6 +72,20 @@ static int cell_dimension(int64_t type, const char **name) {
     return 3;
 }
 
+void lar_vtk_cells_clear(lar_vtk_cells *cells) {
+    free(cells->end);
+    free(cells->corner);
+    *cells = (lar_vtk_cells){0};
+}
+
+void lar_vtk_grid_set_cells(lar_vtk_grid *grid, lar_vtk_cells *cells) {
+    grid->cell_count = cells->count;
+    grid->cell_end = cells->end;
+    grid->corner_count = cells->corner_count;
+    grid->corner = cells->corner;
+    *cells = (lar_vtk_cells){0};
+}
+
 void lar_vtk_grid_clear(lar_vtk_grid *grid) {
     free(grid->point);
     free(grid->cell_end);
@@ -255,14 +269,18 @@ static void compact_nodes(lar_vtk_grid *grid, lar_mesh *mesh, int32_t *node_of) 
         for (int a = 0; a < 8; a++) mesh->element[e][a] = node_of[mesh->element[e][a]];
 }
 
-static lar_status fill_tags(const char *path, const lar_vtk_grid *grid, lar_mesh *mesh,
-                            lar_error *error) {
-    const lar_vtk_integers *tag = NULL;
-    for (int i = 0; i < TAG_NAME_COUNT && !tag; i++)
-        for (size_t k = 0; k < grid->array_count && !tag; k++)
+const lar_vtk_integers *lar_vtk_grid_tags(const lar_vtk_grid *grid) {
+    for (int i = 0; i < TAG_NAME_COUNT; i++)
+        for (size_t k = 0; k < grid->array_count; k++)
             if (grid->array[k].place == LAR_VTK_CELL_DATA &&
                 strcmp(grid->array[k].name, tag_names[i]) == 0)
-                tag = &grid->array[k];
+                return &grid->array[k];
+    return NULL;
+}
+
+static lar_status fill_tags(const char *path, const lar_vtk_grid *grid, lar_mesh *mesh,
+                            lar_error *error) {
+    const lar_vtk_integers *tag = lar_vtk_grid_tags(grid);
     if (!tag) return LAR_OK;
     for (int32_t e = 0; e < mesh->element_count; e++) {
         int64_t value = tag->value[mesh->element_id[e]];

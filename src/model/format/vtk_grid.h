@@ -36,6 +36,16 @@ typedef struct lar_vtk_integers {
     int64_t *value;
 } lar_vtk_integers;
 
+/* A list of cells; everything owned, a zeroed one is fine. */
+typedef struct lar_vtk_cells {
+    int64_t count;
+    int64_t *end; /* [count]: where the corners of a cell end in `corner`; NULL: no list */
+    int64_t corner_count;
+    int64_t *corner; /* point indices */
+} lar_vtk_cells;
+
+void lar_vtk_cells_clear(lar_vtk_cells *cells);
+
 /* Everything owned; a zeroed grid is fine. */
 typedef struct lar_vtk_grid {
     int64_t point_count;
@@ -51,8 +61,14 @@ typedef struct lar_vtk_grid {
 
 void lar_vtk_grid_clear(lar_vtk_grid *grid);
 
+/* Moves the list into the grid, which had none. */
+void lar_vtk_grid_set_cells(lar_vtk_grid *grid, lar_vtk_cells *cells);
+
 /* Whether an integer array of that name in that place says something about the mesh. */
 bool lar_vtk_wants(lar_vtk_place place, const char *name);
+
+/* The array of cell tags, or NULL when there is none. */
+const lar_vtk_integers *lar_vtk_grid_tags(const lar_vtk_grid *grid);
 
 /* Appends an array; copies `name`, takes ownership of `value` (also on failure). */
 lar_status lar_vtk_grid_add(lar_vtk_grid *grid, lar_vtk_place place, const char *name,
