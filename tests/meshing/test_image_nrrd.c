@@ -138,7 +138,8 @@ static void names_of_segments(void **state) {
     read_good(PLAIN "Segment1_LabelValue:=2\nSegment0_Name:=left lung: upper\n"
                     "Segment0_ID:=Segment_1\nSegment10_Name:=ribs\nSegment1_Name:=li\tver\n"
                     "Segment10_LabelValue:=1\nSegment0_LabelValue:=300\nSegment7_Name:=lost\n"
-                    "Segmentation_Name:=x\nSegment0_Tags:=a.b: c|d\nSegment8_LabelValue:=9\n",
+                    "Segmentation_Name:=x\nSegment0_Tags:=a.b: c|d\nSegment8_LabelValue:=9\n"
+                    "Segment9_Name:=lost, too\n",
               &image);
     static const lar_label_name WANTED[] = {{1, "ribs"}, {2, "li ver"}, {300, "left lung: upper"}};
     assert_int_equal(image.name_count, 3);
