@@ -37,7 +37,7 @@ static lar_status place_vertices(work *w, const lar_lattice *lattice, lar_error 
         if (w->lines->count[b] > widest) widest = w->lines->count[b];
     }
     /* Numbers below 2^30, so that products of two differences stay below 2^62. */
-    for (w->pitch = 2; w->pitch * 2 * widest <= 1 << 30;) w->pitch *= 2;
+    for (w->pitch = 16; w->pitch * 2 * widest <= 1 << 30;) w->pitch *= 2;
     double origin[3];
     for (int a = 0; a < 3; a++) origin[a] = lar_dot(lattice->axis[a], lattice->origin);
     for (size_t v = 0; v < vertices; v++) {
@@ -52,16 +52,17 @@ static lar_status place_vertices(work *w, const lar_lattice *lattice, lar_error 
     return LAR_OK;
 }
 
-/* Line J lies at this odd number, half a pitch from the cells' sides and a whiff beside. */
-static int64_t line_at(const work *w, int64_t line) {
-    return line * w->pitch + w->pitch / 2 + 1;
+/* Line J lies at this odd number. Lines of a row are shifted by 1/16 of a cell against those of the
+ * next row, in both directions: so a flat side is met at 16 places in a cell and not at 4. */
+static int64_t line_at(const work *w, int64_t line, int64_t other) {
+    return line * w->pitch + w->pitch / 8 * (2 * (other % LAR_LINES_PER_CELL) + 1) + 1;
 }
 
-/* The first line not below a number. */
-static int32_t line_from(const work *w, int64_t number) {
+/* The first line that is not below a number, in a row with that shift. */
+static int32_t line_from(const work *w, int64_t number, int64_t other) {
     int64_t line = number / w->pitch - 1;
     if (line < 0) line = 0;
-    while (line_at(w, line) < number) line++;
+    while (line_at(w, line, other) < number) line++;
     return (int32_t)line;
 }
 
@@ -110,12 +111,12 @@ static lar_status cross_lines(work *w, lar_error *error) {
                 if (x[c][b] < least) least = x[c][b];
                 if (x[c][b] > most) most = x[c][b];
             }
-            low[b] = line_from(w, least);
-            high[b] = line_from(w, most);
+            low[b] = line_from(w, least, LAR_LINES_PER_CELL - 1);
+            high[b] = line_from(w, most, 0);
         }
         for (int32_t k = low[1]; k < high[1]; k++)
             for (int32_t j = low[0]; j < high[0]; j++) {
-                int64_t line[2] = {line_at(w, j), line_at(w, k)};
+                int64_t line[2] = {line_at(w, j, k), line_at(w, k, j)};
                 if (!add_crossing(w, t, line, k * w->lines->count[0] + j, whole > 0 ? 1 : -1,
                                   whole))
                     return lar_fail_memory(error, 2 * w->capacity * sizeof *w->found,
