@@ -1,19 +1,18 @@
-/* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv.
+/* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv; where a
+ * fine surface rides on the mesh also that (results_surface.h).
  *
  * After every frame the folder can be opened as it is: frames and series appear whole (written
- * beside and renamed), the series names only frames that are there. From the thousandth frame on
- * it may miss the last thousandth of them until the end: written anew for each, a long run would
- * spend its time there. Positions are those of the reference; the point array "displacement"
+ * beside and renamed). Positions are those of the reference; the point array "displacement"
  * moves them (ParaView: Warp By Vector). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/folder.h"
 #include "engine/measure.h"
 #include "engine/results_probe.h"
+#include "engine/results_surface.h"
 #include "mechanics/law.h"
 #include "model/format/mesh_io.h"
 
@@ -28,12 +27,8 @@ static const struct {
                              {LAR_FIELD_ENERGY, "energy"}};
 
 struct lar_results {
-    char *folder, *name, *series;
-    int count;  /* frames so far */
-    int listed; /* of them in the series */
-    size_t file_capacity, time_capacity;
-    char **file;
-    double *time;
+    lar_series series;
+    lar_surface_results surface;
     double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
     double *cell[CELL_FIELDS];                 /* the same */
     lar_probe_file probes;
@@ -48,16 +43,6 @@ static char *series_name(const lar_model *model) {
     const char *base = slash ? slash + 1 : source;
     const char *dot = strrchr(base, '.');
     return lar_strndup(base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
-}
-
-static char *path_with(const lar_results *results, const char *ending) {
-    size_t size = strlen(results->name) + strlen(ending) + 1;
-    char *name = lar_calloc(size, 1);
-    if (!name) return NULL;
-    snprintf(name, size, "%s%s", results->name, ending);
-    char *path = lar_folder_join(results->folder, name);
-    free(name);
-    return path;
 }
 
 static lar_status prepare_arrays(lar_results *results, const lar_model *model, lar_error *error) {
@@ -81,36 +66,17 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
                     : lar_fail_memory(error, 48 * nodes + 24 * elements, "the fields of a frame");
 }
 
-static bool same_file(const struct stat *file, const char *path) {
-    struct stat other;
-    return path && stat(path, &other) == 0 && file->st_dev == other.st_dev &&
-           file->st_ino == other.st_ino;
-}
-
-/* A model may have been read from frames of an earlier run here, or a link may lead to it. */
-static lar_status spare_the_mesh(const char *path, const lar_model *model, lar_error *error) {
-    struct stat file;
-    if (stat(path, &file) != 0) return LAR_OK;
-    bool spared = same_file(&file, model->mesh.source);
-    for (int i = 0; i < model->mesh_file_count; i++)
-        spared = spared || same_file(&file, model->mesh_file[i]);
-    if (!spared) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is the mesh of this model and will not be overwritten by results; choose "
-                    "another folder for the results",
-                    path);
-}
-
 static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
                               lar_error *error) {
-    results->folder = lar_strdup(folder);
-    results->name = series_name(model);
-    if (results->folder && results->name) results->series = path_with(results, ".pvd");
-    if (!results->series) return lar_fail_memory(error, strlen(folder), "the paths of results");
-    lar_status status = lar_folder_make(folder, error);
+    char *name = series_name(model);
+    if (!name) return lar_fail_memory(error, strlen(folder), "the paths of results");
+    lar_status status = lar_series_open(&results->series, folder, name, ".vtu", error);
+    if (!status) status = lar_surface_results_open(&results->surface, folder, name, model, error);
+    free(name);
+    if (!status) status = lar_folder_make(folder, error);
     if (!status) status = prepare_arrays(results, model, error);
     char *probes = status ? NULL : lar_folder_join(folder, "probes.csv");
-    if (probes) status = spare_the_mesh(probes, model, error);
+    if (probes) status = lar_results_spare(probes, model, error);
     if (!status) return lar_probe_file_open(&results->probes, probes, model, error);
     free(probes);
     return status;
@@ -133,28 +99,18 @@ lar_status lar_results_open(const char *folder, const lar_simulation *simulation
     return status;
 }
 
-/* Failure is told once: what could not be written is not tried again at the end. */
-static lar_status write_series(lar_results *results, lar_error *error) {
-    results->listed = results->count;
-    return lar_pvd_write(results->series, (const char *const *)results->file, results->time,
-                         results->count, error);
-}
-
 lar_status lar_results_close(lar_results *results, lar_error *error) {
     if (!results) return LAR_OK;
-    lar_status status = results->listed < results->count ? write_series(results, error) : LAR_OK;
+    lar_status status = lar_series_complete(&results->series, error);
     lar_error later;
-    lar_status closed = lar_probe_file_close(&results->probes, &later);
+    lar_status closed = lar_surface_results_close(&results->surface, &later);
     if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
-    for (int i = 0; i < results->count; i++) free(results->file[i]);
+    closed = lar_probe_file_close(&results->probes, &later);
+    if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
     for (int i = 0; i < CELL_FIELDS; i++) free(results->cell[i]);
-    free(results->file);
-    free(results->time);
+    lar_series_clear(&results->series);
     free(results->displacement);
     free(results->velocity);
-    free(results->series);
-    free(results->name);
-    free(results->folder);
     free(results);
     return status;
 }
@@ -221,24 +177,13 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
 /* Writes the frame and puts it at the end of the list; on failure nothing is listed. */
 static lar_status add_frame(lar_results *results, const lar_simulation *simulation,
                             lar_error *error) {
-    char ending[32];
-    snprintf(ending, sizeof ending, "_%06d.vtu", results->count);
-    char *path = path_with(results, ending);
-    bool room = path && LAR_GROW(results->file, results->file_capacity, results->count) &&
-                LAR_GROW(results->time, results->time_capacity, results->count);
-    const char *relative = room ? path + strlen(path) - strlen(results->name) - strlen(ending) : "";
-    char *file = room ? lar_strdup(relative) : NULL;
-    lar_status status = file ? LAR_OK : lar_fail_memory(error, sizeof ending, "a frame's name");
-    if (!status) status = spare_the_mesh(path, simulation->domain.model, error);
+    char *path = lar_series_next(&results->series);
+    if (!path) return lar_fail_memory(error, 64, "a frame's name");
+    lar_status status = lar_results_spare(path, simulation->domain.model, error);
     if (!status) status = write_frame(results, simulation, path, error);
     free(path);
-    if (status) {
-        free(file);
-        return status;
-    }
-    results->file[results->count] = file;
-    results->time[results->count++] = lar_simulation_time(simulation);
-    return LAR_OK;
+    if (status) return status;
+    return lar_series_add(&results->series, lar_simulation_time(simulation), error);
 }
 
 lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
@@ -249,8 +194,7 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
     lar_simulation_state(simulation);
     lar_status status = check_finite(simulation, error);
     if (!status) status = add_frame(results, simulation, error);
-    if (!status && results->count - results->listed > results->count / 1000)
-        status = write_series(results, error);
+    if (!status) status = lar_surface_results_add(&results->surface, simulation, error);
     /* The force array is scratch between steps: the state that the caller sees stays the same. */
     if (!status) status = lar_probe_file_add(&results->probes, (lar_simulation *)simulation, error);
     return status;

@@ -19,6 +19,7 @@
 #include "engine/measure.h"
 #include "engine/results_probe.h"
 #include "mechanics/law.h"
+#include "meshing/shapes.h"
 #include "model/brick.h"
 #include "model/format/mesh_io.h"
 
@@ -32,8 +33,9 @@ typedef struct fixture {
 } fixture;
 
 static void remove_results(void) {
-    static const char *const names[] = {"organ_000000.vtu", "organ_000001.vtu", "organ_000002.vtu",
-                                        "organ.pvd",        "probes.csv",       "expected.vtu"};
+    static const char *const names[] = {
+        "organ_000000.vtu", "organ_000001.vtu",   "organ_000002.vtu",   "organ.pvd",  "probes.csv",
+        "expected.vtu",     "surface_000000.vtp", "surface_000001.vtp", "surface.pvd"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[512];
         snprintf(path, sizeof path, "%s/%s", FOLDER, names[i]);
@@ -278,6 +280,101 @@ static void a_line_is_whole_or_not_there(void **state) {
     assert_int_equal(lar_probe_file_close(&file, &f->error), LAR_OK);
 }
 
+/* ---- the fine surface ------------------------------------------------------------------- */
+
+static void let_ball_ride(fixture *f) {
+    lar_triangles ball;
+    shape_ellipsoid_surface(&ball, (double[3]){0.012, 0.011, 0.009}, (double[3]){0.01, 0.01, 0.01},
+                            6);
+    if (lar_embedding_bind(&f->model->mesh, &ball, &f->model->embedding, &f->error))
+        fail_msg("%s", f->error.message);
+}
+
+static void a_riding_surface_has_frames_of_its_own(void **state) {
+    fixture *f = *state;
+    lar_triangles read;
+    lar_embedded_info info;
+    double u[BRICK_NODES][3];
+    let_ball_ride(f);
+    assert_int_equal(lar_model_embedded(f->model, &info), 1);
+    uint64_t hash = lar_simulation_hash(f->simulation);
+    open_results(f);
+    add(f);
+    assert_true(lar_simulation_hash(f->simulation) == hash);
+    lar_simulation_advance(f->simulation, 200, NULL);
+    add(f);
+    double(*place)[3] = lar_calloc((size_t)info.vertices, sizeof *place);
+    for (int frame = 0; frame < 2; frame++) {
+        const char *path = frame ? FOLDER "/surface_000001.vtp" : FOLDER "/surface_000000.vtp";
+        if (lar_triangles_read(path, 1, &read, &f->error)) fail_msg("%s", f->error.message);
+        lar_simulation_displacements(f->simulation, u);
+        lar_model_embedded_move(f->model, frame ? (const double(*)[3])u : NULL, place);
+        assert_int_equal(read.vertex_count, info.vertices);
+        assert_int_equal(read.triangle_count, info.triangles);
+        double most = 0, moved = 0;
+        for (int32_t v = 0; v < info.vertices; v++)
+            for (int i = 0; i < 3; i++) {
+                most = fmax(most, fabs(read.vertex[v][i] - place[v][i]));
+                moved = fmax(moved, fabs(place[v][i] - info.rest[v][i]));
+            }
+        assert_true(most < 1e-8);
+        assert_true((moved > 1e-5) == (frame == 1));
+        lar_triangles_clear(&read);
+    }
+    free(place);
+    lar_bytes series = read_all(FOLDER "/surface.pvd");
+    assert_non_null(strstr((char *)series.data, "file=\"surface_000000.vtp\""));
+    assert_non_null(strstr((char *)series.data, "file=\"surface_000001.vtp\""));
+    lar_bytes_free(&series);
+}
+
+/* Results of a scene surface.yaml are called surface, too. */
+static void the_frames_of_the_mesh_keep_their_name(void **state) {
+    fixture *f = *state;
+    let_ball_ride(f);
+    free(f->model->source);
+    f->model->source = lar_strdup("surface.yaml");
+    open_results(f);
+    add(f);
+    assert_int_equal(access(FOLDER "/surface_000000.vtu", F_OK), 0);
+    lar_bytes series = read_all(FOLDER "/surface.pvd");
+    assert_non_null(strstr((char *)series.data, "file=\"surface_000000.vtu\""));
+    lar_bytes_free(&series);
+    remove(FOLDER "/surface_000000.vtu");
+    assert_int_equal(remove(FOLDER "/fine_surface_000000.vtp"), 0);
+    assert_int_equal(remove(FOLDER "/fine_surface.pvd"), 0);
+}
+
+static void the_surface_it_was_read_from_is_spared(void **state) {
+    fixture *f = *state;
+    let_ball_ride(f);
+    open_results(f);
+    add(f);
+    free(f->model->embedding.surface.source);
+    f->model->embedding.surface.source = lar_strdup(FOLDER "/surface_000001.vtp");
+    FILE *file = fopen(FOLDER "/surface_000001.vtp", "w");
+    assert_non_null(file);
+    fclose(file);
+    assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_IO);
+    assert_non_null(strstr(f->error.message, "is the fine surface of this model"));
+}
+
+/* A checkpoint does not know of it: it is taken up with another surface, and without one. */
+static void checkpoints_do_not_know_of_it(void **state) {
+    fixture *f = *state;
+    lar_simulation *other = NULL;
+    assert_int_equal(lar_folder_make(FOLDER, &f->error), LAR_OK);
+    lar_simulation_advance(f->simulation, 20, NULL);
+    assert_int_equal(lar_simulation_save(f->simulation, FOLDER "/expected.vtu", &f->error), LAR_OK);
+    uint64_t hash = lar_simulation_hash(f->simulation);
+    let_ball_ride(f);
+    assert_int_equal(lar_simulation_create(f->model, NULL, &other, &f->error), LAR_OK);
+    if (lar_simulation_load(other, FOLDER "/expected.vtu", &f->error))
+        fail_msg("%s", f->error.message);
+    assert_true(lar_simulation_hash(other) == hash);
+    lar_simulation_destroy(other);
+}
+
 /* ---- what can go wrong ------------------------------------------------------------------ */
 
 static void names_follow_the_models_file(void **state) {
@@ -361,6 +458,10 @@ int main(void) {
                                        WITH_FIXTURE(probes_have_names_units_and_values),
                                        WITH_FIXTURE(without_probes_there_is_the_time),
                                        WITH_FIXTURE(a_line_is_whole_or_not_there),
+                                       WITH_FIXTURE(a_riding_surface_has_frames_of_its_own),
+                                       WITH_FIXTURE(the_frames_of_the_mesh_keep_their_name),
+                                       WITH_FIXTURE(the_surface_it_was_read_from_is_spared),
+                                       WITH_FIXTURE(checkpoints_do_not_know_of_it),
                                        WITH_FIXTURE(names_follow_the_models_file),
                                        WITH_FIXTURE(senseless_calls_are_refused),
                                        WITH_FIXTURE(a_file_is_no_folder),

@@ -222,6 +222,50 @@ static void test_motion_and_loads(void **state) {
     lar_model_destroy(model);
 }
 
+/* A slanted plate in the brick, written in millimetres. */
+#define PLATE LAR_TEST_BUILD "/scene_plate.obj"
+
+static void rides(const char *scene_text, double scale) {
+    lar_model *model = scene(scene_text);
+    lar_embedded_info info;
+    double place[4][3];
+    assert_int_equal(lar_model_embedded(model, &info), 1);
+    assert_int_equal(info.vertices, 4);
+    assert_int_equal(info.triangles, 2);
+    same(info.rest[2][0], 18 * scale);
+    same(info.rest[2][2], 14 * scale);
+    lar_model_embedded_move(model, NULL, place);
+    assert_memory_equal(place, info.rest, sizeof place);
+    const int32_t *node = lar_model_element_nodes(model, info.element[2]);
+    assert_memory_equal(node, model->mesh.element[info.element[2]], sizeof model->mesh.element[0]);
+    lar_model_destroy(model);
+}
+
+static void test_surface(void **state) {
+    (void)state;
+    FILE *file = fopen(PLATE, "w");
+    assert_non_null(file);
+    fputs("v 1 1 6\nv 18 2 8\nv 18 19 14\nv 1 18 10\nf 1 2 3 4\n", file);
+    assert_int_equal(fclose(file), 0);
+    rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 0.001}\n", 0.001);
+    rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 1.1e-3}\n", 0.0011);
+    /* Without a scale of its own it has the mesh's. */
+    rides(HEAD MATERIAL "scale: 1000\nsurface: {file: " PLATE ", scale: 1}\n", 1);
+    lar_model *model = scene(HEAD MATERIAL);
+    assert_int_equal(lar_model_embedded(model, NULL), 0);
+    lar_model_destroy(model);
+    lar_bytes bytes = {NULL, 0};
+    lar_error error = {0};
+    const char *text = HEAD MATERIAL "surface: " PLATE "\n";
+    bytes = (lar_bytes){(unsigned char *)lar_strdup(text), strlen(text)};
+    assert_int_equal(lar_scene_parse_with("s.yaml", &bytes, brick_read, &model, &error),
+                     LAR_ERROR_MODEL);
+    lar_bytes_free(&bytes);
+    assert_int_equal(strncmp(error.message, "s.yaml:4:10: ", 13), 0);
+    assert_non_null(strstr(error.message, "another unit (scale)"));
+    remove(PLATE);
+}
+
 static void test_output(void **state) {
     (void)state;
     lar_model *model = scene(
@@ -484,6 +528,7 @@ int main(void) {
         cmocka_unit_test(test_plain_values),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_motion_and_loads),
+        cmocka_unit_test(test_surface),
         cmocka_unit_test(test_output),
         cmocka_unit_test(test_contact),
         cmocka_unit_test(test_tools),

@@ -7,7 +7,7 @@ static lar_status check_root(const lar_scene *scene) {
     static const char *const keys[] = {"lariat",    "title",    "mesh",      "scale",   "gravity",
                                        "time_step", "damping",  "materials", "sets",    "fix",
                                        "move",      "load",     "initial",   "contact", "tools",
-                                       "output",    "duration", NULL};
+                                       "output",    "duration", "surface",   NULL};
     const lar_yaml *version = NULL;
     int64_t number;
     if (scene->root->kind != LAR_YAML_MAPPING)
@@ -76,7 +76,7 @@ static lar_status read_root(lar_scene *scene) {
                 {"fix", lar_scene_read_fix},         {"move", lar_scene_read_move},
                 {"load", lar_scene_read_load},       {"initial", lar_scene_read_initial},
                 {"contact", lar_scene_read_contact}, {"tools", lar_scene_read_tools},
-                {"output", lar_scene_read_output}};
+                {"output", lar_scene_read_output},   {"surface", lar_scene_read_surface}};
     const lar_yaml *mesh = NULL, *materials;
     double scale;
     lar_status status = check_root(scene);

@@ -10,6 +10,7 @@
  *           scene_contact.c   contact
  *           scene_tools.c     tools
  *           scene_output.c    output, probes
+ *           scene_surface.c   the fine surface that rides on the mesh
  *           scene_value.c     numbers, words, keys, and every message's "FILE:LINE:COLUMN: "
  *
  * Every function here returns the status of lar_scene_fail, which has written the sentence.
@@ -138,7 +139,8 @@ lar_status lar_scene_select(lar_scene *scene, const lar_yaml *node, lar_set_kind
                             int32_t **index, int32_t *count);
 lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_node_list *nodes);
 
-/* ---- scene_material.c, scene_motion.c, scene_contact.c, scene_tools.c, scene_output.c -------- */
+/* ---- scene_material.c, scene_motion.c, scene_contact.c, scene_tools.c, scene_output.c,
+ * scene_surface.c ---------------------------------------------------------------------------- */
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
@@ -148,5 +150,6 @@ lar_status lar_scene_read_initial(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_contact(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_tools(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_surface(lar_scene *scene, const lar_yaml *node);
 
 #endif
