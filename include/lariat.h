@@ -290,6 +290,7 @@ typedef struct lar_region_info {
     double volume, true_volume;  /* in the mesh, and in the image or surface [m^3] */
     const char *tissue, *source; /* of the starter scene's material: which, from where */
     double shear_modulus, bulk_modulus, density;
+    int held; /* not 0: bone, which the starter scene holds where it is */
 } lar_region_info;
 
 LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);

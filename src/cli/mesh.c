@@ -105,10 +105,9 @@ static int check_free(const mesh_settings *s, const char *folder, const char *st
 }
 
 /* Reads back what was written, as every other command will. */
-static int inspect(const mesh_settings *s, mesh_report *report) {
+static int inspect(mesh_report *report) {
     lar_model *model = NULL;
     lar_error error;
-    (void)s;
     int status = cli_open_model(&cli_mesh, report->scene, &model);
     if (status) return status;
     if (lar_model_inspect(model, &report->model, &error))
@@ -127,7 +126,7 @@ static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double s
     int status = check_free(s, folder, report.info.name);
     if (!status && lar_meshing_write(meshing, folder, &report.scene, &error))
         status = cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
-    if (!status) status = inspect(s, &report);
+    if (!status) status = inspect(&report);
     if (status) return status;
     if (s->json)
         mesh_report_json(&report);

@@ -21,6 +21,7 @@ static void write_regions(json_writer *json, const mesh_report *report) {
         json_number(json, "shear_modulus", region.shear_modulus);
         json_number(json, "bulk_modulus", region.bulk_modulus);
         json_number(json, "density", region.density);
+        json_boolean(json, "held", region.held != 0);
         json_close(json);
     }
     json_close(json);
@@ -97,9 +98,8 @@ static void print_regions(const mesh_report *report) {
     for (int32_t i = 0; i < SHOWN && !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
         printf("%-17s%s (%d): ", i ? "" : "regions", r.name, (int)r.tag);
         if (r.elements > 0)
-            printf("%d elements, %.4g m^3 (%+.2f %% of %.4g), as %s: %.3g Pa\n", (int)r.elements,
-                   r.volume, 100 * (r.volume / r.true_volume - 1), r.true_volume, r.tissue,
-                   r.shear_modulus);
+            printf("%d elements, %.4g m^3 (%+.2f %%), as %s\n", (int)r.elements, r.volume,
+                   100 * (r.volume / r.true_volume - 1), r.tissue);
         else
             printf("left out: %.3g m^3 are too little for elements of this size\n", r.true_volume);
     }
@@ -123,15 +123,23 @@ static void print_cleaning(const lar_meshing_info *info) {
                label, (int)info->added, (int)info->removed, "");
 }
 
-static void print_support(const lar_meshing_info *info) {
-    if (strcmp(info->fix, "none") == 0 && info->fixed_nodes == 0)
-        printf("%-17snowhere\n", "held");
-    else if (strcmp(info->fix, "cut") == 0)
-        printf("%-17swhere the image cuts it off, %d nodes\n", "held", (int)info->fixed_nodes);
-    else if (strcmp(info->fix, "none") == 0)
-        printf("%-17sat its bones, %d nodes\n", "held", (int)info->fixed_nodes);
+static void print_support(const mesh_report *report) {
+    const lar_meshing_info *info = &report->info;
+    lar_region_info region;
+    bool nowhere = strcmp(info->fix, "none") == 0, cut = strcmp(info->fix, "cut") == 0;
+    int bones = 0;
+    for (int32_t r = 0; !lar_meshing_region(report->meshing, r, &region, NULL); r++)
+        bones += region.held && region.elements > 0;
+    printf("%-17s", "held");
+    if (cut)
+        printf("where the image cuts it off");
+    else if (!nowhere)
+        printf("at the %s", info->fix);
+    if (bones > 0) printf("%s", nowhere ? "at its bones" : ", and at its bones");
+    if (nowhere && bones == 0)
+        printf("nowhere\n");
     else
-        printf("%-17sat the %s, %d nodes\n", "held", info->fix, (int)info->fixed_nodes);
+        printf(": %d nodes\n", (int)info->fixed_nodes);
 }
 
 void mesh_report_table(const mesh_report *report) {
@@ -141,7 +149,7 @@ void mesh_report_table(const mesh_report *report) {
            (int)info->elements, info->size, (int)info->nodes, report->seconds);
     print_regions(report);
     print_cleaning(info);
-    print_support(info);
+    print_support(report);
     cli_print_deviation(&info->quality);
     printf("%-17smean %.3f, worst %.3f (element %" PRId32 "); a box has 1\n", "scaled Jacobian",
            model->scaled_jacobian_mean, model->scaled_jacobian_min, model->scaled_jacobian_worst);

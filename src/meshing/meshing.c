@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "meshing/fine_surface.h"
 #include "meshing/fit.h"
 #include "meshing/meshing.h"
 
@@ -302,7 +303,8 @@ static void count_regions(lar_meshing *m) {
                                     .source = tissue->source,
                                     .shear_modulus = g,
                                     .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
-                                    .density = tissue->density};
+                                    .density = tissue->density,
+                                    .held = tissue->rigid};
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -329,7 +331,9 @@ static lar_status describe(work *w) {
     if (!m->region) return lar_fail_memory(w->error, sizeof *m->region, "regions");
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
+    if (!status) status = lar_fine_surface_drop(&m->mesh, info->size, &m->outer, w->error);
     if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &info->quality, w->error);
+    if (!status) status = lar_fine_surface_draw(&m->mesh, info->size, &m->outer, w->error);
     return status ? status : lar_support_choose(m, w->options.fix, w->error);
 }
 

@@ -89,7 +89,7 @@ static void put_head(const lar_meshing *m, FILE *f) {
     fprintf(
         f,
         "\nmesh: \"%s.vtu\"\n"
-        "# surface: \"%s_surface.vtp\"   the true surface rides on the mesh, to be looked at\n\n",
+        "surface: \"%s_surface.vtp\"   # the true surface rides on the mesh, to be looked at\n\n",
         m->stem, m->stem);
 }
 
@@ -108,9 +108,7 @@ static void put_motion(const lar_meshing *m, FILE *f) {
 }
 
 static void put_material(const lar_region_info *region, FILE *f) {
-    fputs("  # ", f);
-    put(f, region->name, false);
-    fprintf(f, ": as %s. %s.\n", region->tissue, region->source);
+    fprintf(f, "  # As %s. %s.\n", region->tissue, region->source);
     fputs("  - { name: ", f);
     put(f, region->name, true);
     fprintf(f,
@@ -152,7 +150,7 @@ static void put_fix(const lar_meshing *m, FILE *f) {
     }
     for (int32_t r = 0; r < m->info.regions; r++) {
         const lar_region_info *region = &m->region[r];
-        if (region->elements == 0 || !lar_tissue_find(region->name)->rigid) continue;
+        if (region->elements == 0 || !region->held) continue;
         if (!any) fputs("fix:\n", f);
         any = true;
         fprintf(f, "  - { nodes: { tag: %" PRId32 " }, axes: xyz }   # ", region->tag);

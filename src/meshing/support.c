@@ -117,7 +117,7 @@ static void mark_side(choice *c, int side) {
 static void mark_rigid(choice *c) {
     const lar_meshing *m = c->meshing;
     for (int32_t r = 0; r < m->info.regions; r++) {
-        if (!lar_tissue_find(m->region[r].name)->rigid) continue;
+        if (!m->region[r].held) continue;
         for (int32_t e = 0; e < m->mesh.element_count; e++)
             for (int a = 0; a < 8 && m->mesh.element_tag[e] == m->region[r].tag; a++)
                 c->held[m->mesh.element[e][a]] = true;
@@ -163,7 +163,7 @@ static double mean_shear(const lar_meshing *meshing) {
     double volume = 0, soft = 0;
     for (int32_t r = 0; r < meshing->info.regions; r++) {
         const lar_region_info *region = &meshing->region[r];
-        if (lar_tissue_find(region->name)->rigid) continue;
+        if (region->held) continue;
         volume += region->volume;
         soft += region->volume / region->shear_modulus;
     }
@@ -191,22 +191,36 @@ static lar_status add_handle(choice *c, const char *name, int side, bool *in, in
     return add_set(c, name, in, count);
 }
 
-static lar_status pull(choice *c, int held_side, bool *in) {
-    lar_support *support = &c->meshing->support;
-    int side = held_side >= 0 ? opposite(held_side) : FRONT;
-    double force = 3 * mean_shear(c->meshing) * STRETCH * cross_section(c, side);
-    int32_t count = 0, opposed = 0;
-    if (!(force > 0)) return LAR_OK;
-    lar_status status = add_handle(c, "handle", side, in, &count);
-    if (!status && count > 0 && support->fixed_nodes == 0) {
-        status = add_handle(c, "handle_opposite", opposite(side), in, &opposed);
-        support->opposed = opposed > 0;
-    }
-    if (status || count == 0 || (support->fixed_nodes == 0 && !support->opposed)) return status;
-    /* Two digits: it is an example. */
+/* Two digits: it is an example. */
+static double rounded(double force) {
     double digit = pow(10, floor(log10(force)) - 1);
+    return round(force / digit) * digit;
+}
+
+/* The handle is opposite of what is held, or, when nothing is free there, at the next side that has
+ * free nodes. */
+static lar_status pull(choice *c, int held_side, bool *in) {
+    static const int next[SIDES] = {FRONT, TOP, BOTTOM, LEFT, RIGHT, BACK};
+    lar_support *support = &c->meshing->support;
+    double shear = mean_shear(c->meshing);
+    int32_t count = 0, opposed = 0;
+    int side = held_side >= 0 ? opposite(held_side) : FRONT;
+    lar_status status = LAR_OK;
+    if (shear <= 0) return LAR_OK;
+    status = add_handle(c, "handle", side, in, &count);
+    for (int i = 0; !status && count == 0 && i < SIDES; i++) {
+        if (next[i] == held_side) continue;
+        side = next[i];
+        status = add_handle(c, "handle", side, in, &count);
+    }
+    if (!status && count > 0 && support->fixed_nodes == 0)
+        status = add_handle(c, "handle_opposite", opposite(side), in, &opposed);
+    support->opposed = opposed > 0;
+    double force = 3 * shear * STRETCH * cross_section(c, side);
+    if (status || count == 0 || !(force > 0)) return status;
+    if (support->fixed_nodes == 0 && !support->opposed) return LAR_OK;
     support->handle = side_name[side];
-    support->pull[side / 2] = (side % 2 ? 1 : -1) * round(force / digit) * digit;
+    support->pull[side / 2] = (side % 2 ? 1 : -1) * rounded(force);
     return LAR_OK;
 }
 

@@ -63,8 +63,9 @@ static const lar_tissue tissue[] = {
     {"bone",
      "bone vertebra rib skull crani femur femora hip pelvis sacrum humerus scapula clavic sternum "
      "tibia fibula patella ulna radius mandib maxilla spine tooth teeth",
-     20e3, 0.45, 1920, true,
-     "Rho et al., Med Eng Phys 20:92 (1998): 20 GPa, of no use at the pace of the clock; held"},
+     3e3, 0.45, 1920, true,
+     "held where it is, so that its stiffness plays no part; the real one, 20 GPa (Rho et al., Med "
+     "Eng Phys 20:92, 1998), has steps of nanoseconds"},
     {"soft tissue", "", 3e3, 0.45, 1050, false,
      "no tissue is known by this name; most healthy organs lie between 1 and 5 kPa: Mariappan et "
      "al., Clin Anat 23:497 (2010)"}};
