@@ -166,7 +166,7 @@ static lar_status fill_from_text(lar_image *image, const lar_nrrd_header *header
                             ends ? "the file ends" : "something that is no number comes",
                             (long long)v);
         }
-        lar_status status = lar_image_put(image, v, value, 0, error);
+        lar_status status = lar_image_put(image, v, value, error);
         if (status) return status;
     }
     return LAR_OK;

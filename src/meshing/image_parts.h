@@ -65,9 +65,8 @@ lar_status lar_image_allocate(lar_image *image, const int64_t size[3], size_t by
 lar_status lar_image_fill(lar_image *image, lar_image_stream *stream, lar_voxel_type type,
                           bool swap, double slope, double intercept, lar_error *error);
 
-/* One voxel. A value is a label when it is whole, up to `slack`, and in range. */
-lar_status lar_image_put(lar_image *image, int64_t voxel, double value, double slack,
-                         lar_error *error);
+/* One voxel. A value is a label when it is whole and in range. */
+lar_status lar_image_put(lar_image *image, int64_t voxel, double value, lar_error *error);
 
 /* Refuses a map to the world that is not finite, cannot be turned round, or has voxels of a size
  * that no scanner has. */

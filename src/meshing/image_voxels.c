@@ -76,8 +76,8 @@ uint64_t lar_image_stream_read(lar_image_stream *stream, void *out, uint64_t siz
 
 uint64_t lar_image_stream_most(const lar_image_stream *stream) {
     uint64_t left = (uint64_t)(stream->end - stream->at);
-    /* A match of 258 bytes may be half written. */
-    return stream->gzip ? left * DEFLATE_MOST + 258 : left;
+    /* zlib may hold some bytes that it has taken. */
+    return stream->gzip ? (left + 8) * DEFLATE_MOST : left;
 }
 
 /* ---- memory --------------------------------------------------------------------------------- */
@@ -171,15 +171,16 @@ static lar_status no_label(const lar_image *image, int64_t voxel, double value, 
                     LAR_IMAGE_LABEL_MOST);
 }
 
-lar_status lar_image_put(lar_image *image, int64_t voxel, double value, double slack,
-                         lar_error *error) {
-    if (!(value > -1 && value < LAR_IMAGE_LABEL_MOST + 1))
-        return no_label(image, voxel, value, error);
-    double whole = nearbyint(value);
-    if (fabs(value - whole) > slack || whole < 0 || whole > LAR_IMAGE_LABEL_MOST)
-        return no_label(image, voxel, value, error);
-    image->label[voxel] = (uint16_t)whole;
-    return LAR_OK;
+static inline bool take_label(double value, double slack, uint16_t *label) {
+    if (!(value > -0.5 && value < LAR_IMAGE_LABEL_MOST + 0.5)) return false;
+    int32_t whole = (int32_t)(value + 0.5);
+    *label = (uint16_t)whole;
+    return fabs(value - whole) <= slack;
+}
+
+lar_status lar_image_put(lar_image *image, int64_t voxel, double value, lar_error *error) {
+    if (take_label(value, 0, &image->label[voxel])) return LAR_OK;
+    return no_label(image, voxel, value, error);
 }
 
 static lar_status cut_short(const lar_image_stream *stream, uint64_t promised, uint64_t found,
@@ -213,8 +214,8 @@ lar_status lar_image_fill(lar_image *image, lar_image_stream *stream, lar_voxel_
             /* Slopes are 32-bit numbers: 0.1f * 10 is not 1. */
             double label = scaled ? slope * value[n] + intercept : value[n];
             double slack = scaled ? 1e-6 * (1 + fabs(label)) : 0;
-            lar_status status = lar_image_put(image, first + (int64_t)n, label, slack, error);
-            if (status) return status;
+            if (!take_label(label, slack, &image->label[first + (int64_t)n]))
+                return no_label(image, first + (int64_t)n, label, error);
         }
     }
     /* The check sum comes after the last byte: asking for one more makes zlib look at it. */
