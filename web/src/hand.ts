@@ -1,7 +1,8 @@
 /* Pulling at the surface. What was pressed is moved in a plane through it that is parallel to the
- * screen; the engine finds a hand that takes hold there. The pulling is told at most 100 times a second. */
+ * screen; the engine finds a hand that takes hold there, of the mesh: where a fine surface is drawn, at
+ * the nearest point of the mesh's. The pulling is told at most 100 times a second. */
 import * as THREE from 'three';
-import type { Hit } from './pick';
+import { follow, nearestNode, type Hit } from './pick';
 import { TOOL_WORDS, type HandNews } from './protocol';
 import type { Session } from './session';
 import type { View } from './view';
@@ -13,6 +14,7 @@ export class Hand {
     tool = -1; // that the engine has given this hand, also after letting go
     readonly target = new THREE.Vector3();
     readonly grip = new THREE.Vector3();
+    private readonly aside = new THREE.Vector3(); // from what was pressed to what is held, of the mesh
     private readonly plane = new THREE.Plane();
     private readonly normal = new THREE.Vector3();
     private readonly force = new THREE.Vector3();
@@ -35,9 +37,11 @@ export class Hand {
         this.hit = hit;
         this.target.set(...hit.point);
         this.grip.copy(this.target);
+        const held = this.view.holdAt(hit.point);
+        this.aside.set(...held).sub(this.target);
         this.moved = false;
         this.setPlane();
-        this.session.send({ do: 'grab', hand: 0, point: hit.point });
+        this.session.send({ do: 'grab', hand: 0, point: held });
         if (this.session.status?.state === 'paused') this.say('Paused: press play to pull.');
     }
 
@@ -62,6 +66,11 @@ export class Hand {
         this.state = 'free';
         this.session.send({ do: 'release', hand: 0 });
         this.view.changed();
+    }
+
+    /* Another surface is drawn: what is held goes on at its nearest node. */
+    surfaceChanged(): void {
+        if (this.busy && this.view.surface) this.hit = nearestNode(this.view.surface, this.grip);
     }
 
     /* The line is cut, or another engine has taken over. */
@@ -91,12 +100,13 @@ export class Hand {
         if (this.busy && this.moved && now >= this.nextPull) {
             this.moved = false;
             this.nextPull = now + PULL_MS - 2;
+            const { target, aside } = this;
             this.session.send({
-                do: 'pull', hand: 0, to: [this.target.x, this.target.y, this.target.z],
+                do: 'pull', hand: 0, to: [target.x + aside.x, target.y + aside.y, target.z + aside.z],
             });
         }
         if (!this.busy || !this.hit) return this.view.pull.hide();
-        this.view.surface?.follow(this.hit, this.grip);
+        if (this.view.surface) follow(this.view.surface, this.hit, this.grip);
         this.readForce();
         const share = this.force.length() / range;
         this.view.pull.show(this.grip, this.target, this.force, share, this.view.endoscope.camera);

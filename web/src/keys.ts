@@ -55,6 +55,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
         s: () => s.transport.saveNow(),
         v: () => s.transport.loadLast(),
         e: () => element('edges').click(),
+        m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
         t: () => s.instrument.next(),

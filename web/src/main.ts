@@ -52,8 +52,12 @@ function start(): void {
         surface(surface) {
             view.setSurface(surface);
             colours.setHello(session.hello!);
-            view.showEdges(edges.checked);
+            element('fine-row').hidden = true;
             hints.start();
+        },
+        riding(riding) {
+            view.setRiding(riding);
+            element('fine-row').hidden = false;
         },
         frame(frame) {
             view.setFrame(frame);
@@ -110,6 +114,11 @@ function start(): void {
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
+    const fine = element<HTMLInputElement>('fine');
+    fine.addEventListener('change', () => {
+        view.showFine(fine.checked);
+        hand.surfaceChanged();
+    });
 
     /* Bar and graph show the chosen instrument, or the hand. */
     function chooseForce(): void {

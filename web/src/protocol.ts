@@ -29,6 +29,7 @@ export interface Hello {
     title: string;
     nodes: number;
     elements: number;
+    riding?: { vertices: number; triangles: number; nodes: number };
     time_step: number;
     tick: number;
     isa: string;
@@ -106,6 +107,16 @@ export interface SurfaceMessage {
     processor: Uint32Array;
 }
 
+/* A fine surface that rides on the mesh. Frames have the surface's nodes first, then these. */
+export interface RidingMessage {
+    rest: Float32Array; // of the further nodes
+    processor: Uint32Array; // of these
+    weights: Float32Array; // eight per vertex
+    carriers: Uint32Array; // nodes of frames, eight per vertex
+    material: Uint32Array; // per vertex
+    triangles: Uint32Array;
+}
+
 /* One frame. The arrays look into the message; the object is made once and filled again. */
 export interface Frame {
     step: number;
@@ -126,27 +137,53 @@ export const TOOL_WORDS = 16;
 export const KIND_SURFACE = 1;
 export const KIND_FRAME = 2;
 export const KIND_FORCES = 3;
+export const KIND_RIDING = 4;
 
 export const kindOf = (data: ArrayBuffer): number =>
     data.byteLength >= 4 ? new DataView(data).getUint32(0, true) : 0;
+
+/* One array after the other: so many words each. */
+function partsOf(data: ArrayBuffer, from: number): (words: number) => [ArrayBuffer, number, number] {
+    let at = from;
+    return (words) => {
+        at += 4 * words;
+        return [data, at - 4 * words, words];
+    };
+}
 
 export function readSurface(data: ArrayBuffer): SurfaceMessage {
     const head = new Uint32Array(data, 0, 4);
     const n = head[1]!;
     const f = head[2]!;
     if (data.byteLength !== 16 + 16 * n + 24 * f + 4 * n) throw new Error('a surface of wrong length');
-    let at = 16;
-    const part = (words: number): [ArrayBuffer, number, number] => {
-        const place: [ArrayBuffer, number, number] = [data, at, words];
-        at += 4 * words;
-        return place;
-    };
+    const part = partsOf(data, 16);
     return {
         rest: new Float32Array(...part(3 * n)),
         faces: new Uint32Array(...part(4 * f)),
         material: new Uint32Array(...part(f)),
         body: new Uint32Array(...part(f)),
         processor: new Uint32Array(...part(n)),
+    };
+}
+
+export function readRiding(data: ArrayBuffer): RidingMessage {
+    const head = new Uint32Array(data, 0, 4);
+    const m = head[1]!;
+    const k = head[2]!;
+    const s = head[3]!;
+    if (data.byteLength !== 16 + 20 * s + 68 * m + 12 * k)
+        throw new Error('a riding surface of wrong length');
+    const part = partsOf(data, 16);
+    const rest = new Float32Array(...part(3 * s));
+    const processor = new Uint32Array(...part(s));
+    part(s); // indices in the model
+    return {
+        rest,
+        processor,
+        weights: new Float32Array(...part(8 * m)),
+        carriers: new Uint32Array(...part(8 * m)),
+        material: new Uint32Array(...part(m)),
+        triangles: new Uint32Array(...part(3 * k)),
     };
 }
 

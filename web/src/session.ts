@@ -2,9 +2,9 @@
  * last has arrived (T 6.5.1), so a slow display slows nothing but itself. */
 import { Connection, type Loss } from './connection';
 import {
-    KIND_FORCES, KIND_FRAME, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readSurface,
-    type Forces, type Frame, type HandNews, type Hello, type Request, type Status,
-    type SurfaceMessage, type Text,
+    KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
+    readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
+    type Status, type SurfaceMessage, type Text,
 } from './protocol';
 
 const FRAME_MS = 1000 / 100; // displays faster than that get by with this
@@ -14,6 +14,7 @@ const AFTER_NONE_MS = 200;
 export interface Events {
     hello(hello: Hello): void;
     surface(surface: SurfaceMessage): void;
+    riding(riding: RidingMessage): void;
     frame(frame: Frame): void;
     forces(forces: Forces): void;
     status(status: Status): void;
@@ -129,6 +130,8 @@ export class Session {
             this.events.forces(forces);
         } else if (kind === KIND_SURFACE) {
             this.events.surface(readSurface(data));
+        } else if (kind === KIND_RIDING) {
+            this.events.riding(readRiding(data));
         }
     }
 }

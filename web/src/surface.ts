@@ -13,7 +13,7 @@
  *
  * All arrays are made once; a frame only writes into them.
  */
-import type { Hit } from './pick';
+import { boxOf, type Drawn } from './drawn';
 import { edgesOf, faceNormal, normalsOf, split, trianglesOf, type Edges } from './quads';
 
 interface Level {
@@ -25,7 +25,7 @@ interface Level {
 
 const CREASE = Math.cos((55 * Math.PI) / 180);
 
-export class Surface {
+export class Surface implements Drawn {
     readonly meshNodes: number;
     readonly meshQuads: Uint32Array;
     readonly nodes: number;
@@ -35,8 +35,9 @@ export class Surface {
     readonly rest: Float32Array;
     readonly triangles: Uint32Array;
     readonly lines: Uint32Array; // ends of segments along the edges of the mesh
-    readonly center: [number, number, number] = [0, 0, 0];
-    readonly size: number; // half the diagonal of the box around it
+    readonly center: [number, number, number];
+    readonly size: number;
+    readonly meanEdge: number; // of the mesh, at rest
     private readonly levels: Level[] = [];
 
     /* Rounded as long as there are no more than `most` nodes. */
@@ -46,6 +47,7 @@ export class Surface {
         let nodes = this.meshNodes;
         let edges = edgesOf(nodes, quads);
         let lines = edges.ends;
+        this.meanEdge = meanLength(rest, lines);
         let current = quads;
         while (this.levels.length < 2) {
             const finer = nodes + edges.ends.length / 2 + current.length / 4;
@@ -66,18 +68,22 @@ export class Surface {
         this.markCreases(rest);
         this.update(rest);
         this.rest = this.positions.slice();
-        this.size = this.measure(rest);
+        ({ center: this.center, size: this.size } = boxOf(rest));
     }
 
-    /* Where a point that was hit is now. */
-    follow(hit: Hit, out: { x: number; y: number; z: number }): void {
-        out.x = out.y = out.z = 0;
-        for (let k = 0; k < 3; k++) {
-            const at = hit.corners[k]! * 3;
-            out.x += hit.weights[k]! * this.positions[at]!;
-            out.y += hit.weights[k]! * this.positions[at + 1]!;
-            out.z += hit.weights[k]! * this.positions[at + 2]!;
-        }
+    /* Takes the positions of a frame's nodes, of which the mesh's surface has the first. */
+    place(nodes: Float32Array): void {
+        this.update(nodes.subarray(0, this.meshNodes * 3));
+    }
+
+    /* The same without rounding: what is not drawn needs its nodes only. */
+    keep(nodes: Float32Array): void {
+        this.positions.set(nodes.subarray(0, this.meshNodes * 3));
+    }
+
+    paint(values: Float32Array, out: Float32Array): void {
+        out.set(values.subarray(0, this.meshNodes));
+        this.spread(out, 1);
     }
 
     /* Takes the positions of the mesh's surface nodes and rounds what lies between. */
@@ -113,17 +119,6 @@ export class Surface {
         }
     }
 
-    private measure(rest: Float32Array): number {
-        const low = [Infinity, Infinity, Infinity];
-        const high = [-Infinity, -Infinity, -Infinity];
-        for (let i = 0; i < rest.length; i++) {
-            low[i % 3] = Math.min(low[i % 3]!, rest[i]!);
-            high[i % 3] = Math.max(high[i % 3]!, rest[i]!);
-        }
-        for (let k = 0; k < 3; k++) this.center[k] = (low[k]! + high[k]!) / 2;
-        return Math.hypot(high[0]! - low[0]!, high[1]! - low[1]!, high[2]! - low[2]!) / 2 || 1;
-    }
-
     /* Where faces of the mesh meet at a sharp angle, as in blocks, nothing is rounded. */
     private markCreases(rest: Float32Array): void {
         const [first, second] = this.levels;
@@ -150,6 +145,16 @@ export class Surface {
         second.sharp.set(first.sharp);
         second.sharp.set(sharpEdge, first.nodes);
     }
+}
+
+function meanLength(x: Float32Array, ends: Uint32Array): number {
+    let sum = 0;
+    for (let i = 0; i < ends.length; i += 2) {
+        const a = ends[i]! * 3;
+        const b = ends[i + 1]! * 3;
+        sum += Math.hypot(x[a]! - x[b]!, x[a + 1]! - x[b + 1]!, x[a + 2]! - x[b + 2]!);
+    }
+    return ends.length ? (2 * sum) / ends.length : 0;
 }
 
 /* Middles of edges, centres of faces: the rule of the picture above. */

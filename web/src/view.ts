@@ -4,10 +4,13 @@ import { PullPicture } from './arrow';
 import { Endoscope } from './camera';
 import { Instruments } from './instruments';
 import { Cavity } from './cavity';
-import { grain } from './grain';
-import { openness } from './hollow';
+import type { Drawn } from './drawn';
+import { Edges } from './edges';
+import { Organ } from './organ';
 import { organColour, processorColour } from './palette';
-import type { Frame, SurfaceMessage } from './protocol';
+import { nearestPoint } from './pick';
+import type { Frame, RidingMessage, SurfaceMessage } from './protocol';
+import { Riding } from './riding';
 import { Surface } from './surface';
 import { Tissue } from './tissue';
 
@@ -16,7 +19,6 @@ export class View {
     readonly instruments = new Instruments();
     readonly pull = new PullPicture();
     readonly tissue: Tissue;
-    surface: Surface | null = null;
     drawn = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
     private readonly scene = new THREE.Scene();
@@ -25,12 +27,17 @@ export class View {
     private readonly adapts: boolean;
     private sharpness = 1; // pixels drawn per pixel shown, along a side
     private slowFor = 0; // pictures in a row
-    private organ: THREE.Mesh | null = null;
-    private edges: THREE.LineSegments | null = null;
+    private mesh: Surface | null = null;
+    private processors: Uint32Array = new Uint32Array(0); // of the mesh's surface nodes
+    private organ: Organ | null = null; // the mesh's own surface
+    private fineOrgan: Organ | null = null; // what rides on it
+    private edges: Edges | null = null;
     private edgesShown = false;
-    private values = new Float32Array(0);
-    private valueAttribute: THREE.BufferAttribute | null = null;
-    private tints: { organs: Float32Array; processors: Float32Array } | null = null;
+    private fineShown = true;
+    private processorsShown = false;
+    private frameNodes = 0;
+    private positions: Float32Array | null = null; // of the last frame
+    private values: Float32Array | null = null;
     private stale = true;
 
     constructor(readonly canvas: HTMLCanvasElement) {
@@ -49,79 +56,119 @@ export class View {
         this.resize();
     }
 
+    /* What is drawn, and can be taken hold of. */
+    get surface(): Drawn | null {
+        return this.shown?.drawn ?? null;
+    }
+
+    get finer(): boolean {
+        return this.shown !== null && this.shown === this.fineOrgan;
+    }
+
+    private get shown(): Organ | null {
+        return (this.fineShown && this.fineOrgan) || this.organ;
+    }
+
     /* A new organ. */
     setSurface(message: SurfaceMessage): void {
         this.dispose();
         const surface = new Surface(message.rest, message.faces, this.fine ? 24000 : 6000);
-        this.surface = surface;
-        const unit = new Float32Array(surface.rest.length);
-        for (let i = 0; i < unit.length; i++)
-            unit[i] = (surface.rest[i]! - surface.center[i % 3]!) / surface.size;
-        this.values = new Float32Array(surface.nodes);
-        this.tints = {
+        const tints = {
             organs: tintsOf(surface, (face) => organColour(message.material[face]!)),
             processors: nodeTints(surface, (node) => processorColour(message.processor[node]!)),
         };
-        const geometry = new THREE.BufferGeometry();
-        const changing = (array: Float32Array, width: number): THREE.BufferAttribute =>
-            new THREE.BufferAttribute(array, width).setUsage(THREE.DynamicDrawUsage);
-        this.valueAttribute = changing(this.values, 1);
-        geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
-        geometry.setAttribute('position', changing(surface.positions, 3));
-        geometry.setAttribute('normal', changing(surface.normals, 3));
-        geometry.setAttribute('rest', new THREE.BufferAttribute(unit, 3));
-        geometry.setAttribute('tint', new THREE.BufferAttribute(this.tints.organs.slice(), 3));
-        geometry.setAttribute('value', this.valueAttribute);
-        geometry.setAttribute('grain', new THREE.BufferAttribute(grain(unit, openness(surface)), 4));
-        this.organ = new THREE.Mesh(geometry, this.tissue.material);
-        this.organ.frustumCulled = false;
-
-        const lines = new THREE.BufferGeometry();
-        lines.setIndex(new THREE.BufferAttribute(surface.lines, 1));
-        lines.setAttribute('position', geometry.getAttribute('position'));
-        const ink = new THREE.LineBasicMaterial({ color: 0x0a0506, transparent: true, opacity: 0.55 });
-        this.edges = new THREE.LineSegments(lines, ink);
-        this.edges.frustumCulled = false;
-        this.edges.visible = this.edgesShown;
-        this.scene.add(this.organ, this.edges);
+        this.mesh = surface;
+        this.frameNodes = surface.meshNodes;
+        this.processors = message.processor;
+        this.organ = new Organ(surface, tints, this.tissue.material);
+        this.edges = new Edges(surface.lines, this.organ.mesh.geometry);
+        this.scene.add(this.organ.mesh, this.edges.lines);
         this.pull.setSize(surface.size);
         this.endoscope.frame(surface.center, surface.size);
-        this.stale = true;
+        this.arrange();
+    }
+
+    /* A fine surface that rides on the organ's mesh. */
+    setRiding(message: RidingMessage): void {
+        if (!this.mesh || this.fineOrgan) return;
+        const first = this.mesh.meshNodes * 3;
+        const rest = new Float32Array(first + message.rest.length);
+        rest.set(this.mesh.rest.subarray(0, first));
+        rest.set(message.rest, first);
+        const riding = new Riding(rest, message);
+        const processor = (node: number): number =>
+            this.processors[node] ?? message.processor[node - this.processors.length]!;
+        const tints = {
+            organs: vertexTints(riding, (vertex) => organColour(message.material[vertex]!)),
+            processors: vertexTints(riding, (vertex) => processorColour(processor(riding.leader(vertex)))),
+        };
+        this.frameNodes = rest.length / 3;
+        this.positions = this.values = null;
+        this.fineOrgan = new Organ(riding, tints, this.tissue.material);
+        this.scene.add(this.fineOrgan.mesh);
+        this.arrange();
     }
 
     /* Positions, values and tools of a frame. */
     setFrame(frame: Frame): void {
-        if (!this.surface || !this.organ) return;
-        if (frame.positions.length !== this.surface.meshNodes * 3) return;
-        this.surface.update(frame.positions);
-        this.organ.geometry.getAttribute('position').needsUpdate = true;
-        this.organ.geometry.getAttribute('normal').needsUpdate = true;
-        if (frame.values.length === this.surface.meshNodes) {
-            this.values.set(frame.values);
-            this.surface.spread(this.values, 1);
-            this.valueAttribute!.needsUpdate = true;
-        }
+        if (frame.positions.length !== this.frameNodes * 3) return;
+        this.positions = frame.positions;
+        this.values = frame.values.length === this.frameNodes ? frame.values : null;
+        this.place();
         this.instruments.update(frame);
-        this.stale = true;
+    }
+
+    /* The fine surface, where there is one, or the mesh's own. */
+    showFine(yes: boolean): void {
+        this.fineShown = yes;
+        this.arrange();
     }
 
     showProcessors(yes: boolean): void {
-        if (!this.organ || !this.tints) return;
-        const tint = this.organ.geometry.getAttribute('tint') as THREE.BufferAttribute;
-        tint.set(yes ? this.tints.processors : this.tints.organs);
-        tint.needsUpdate = true;
+        this.processorsShown = yes;
+        this.shown?.showProcessors(yes);
         this.stale = true;
     }
 
     showEdges(yes: boolean): void {
         this.edgesShown = yes;
-        if (this.edges) this.edges.visible = yes;
+        this.arrange();
+    }
+
+    /* The point of the mesh's surface that is taken hold of when this one is pressed. */
+    holdAt(point: [number, number, number]): [number, number, number] {
+        if (!this.finer || !this.mesh) return point;
+        const [x, y, z] = point;
+        return nearestPoint(this.mesh.positions, this.mesh.meshQuads, { x, y, z });
+    }
+
+    /* What is drawn has changed. */
+    private arrange(): void {
+        if (!this.organ || !this.edges || !this.mesh) return;
+        const shown = this.shown!;
+        for (const organ of [this.organ, this.fineOrgan]) if (organ) organ.mesh.visible = organ === shown;
+        this.edges.lines.visible = this.edgesShown;
+        this.edges.lift(this.finer ? 0.75 * this.mesh.meanEdge : 0);
+        shown.showProcessors(this.processorsShown);
+        this.place();
+    }
+
+    /* What is drawn goes where the last frame has it. Of what is not drawn, the mesh's nodes do: they tell
+     * how far it is moved, and are taken hold of. */
+    private place(): void {
         this.stale = true;
+        const positions = this.positions;
+        if (!positions || !this.organ || !this.mesh) return;
+        const shown = this.shown!;
+        shown.place(positions);
+        if (shown !== this.organ && this.edgesShown) this.organ.place(positions);
+        else if (shown !== this.organ) this.mesh.keep(positions);
+        if (this.values) shown.paint(this.values);
     }
 
     /* The farthest that a node of the surface is from its place at rest [m]. */
     displacement(): number {
-        const { positions, rest, meshNodes } = this.surface ?? { meshNodes: 0 };
+        const { positions, rest, meshNodes } = this.mesh ?? { meshNodes: 0 };
         let most = 0;
         for (let i = 0; i < meshNodes * 3; i += 3)
             most = Math.max(
@@ -172,12 +219,13 @@ export class View {
     }
 
     private dispose(): void {
-        for (const part of [this.organ, this.edges]) {
+        for (const part of [this.organ?.mesh, this.fineOrgan?.mesh, this.edges?.lines]) {
             if (!part) continue;
             this.scene.remove(part);
             part.geometry.dispose();
         }
-        this.organ = this.edges = null;
+        this.mesh = this.organ = this.fineOrgan = this.edges = null;
+        this.positions = this.values = null;
     }
 }
 
@@ -210,5 +258,11 @@ function nodeTints(surface: Surface, colourOf: (node: number) => number[]): Floa
     const out = new Float32Array(surface.nodes * 3);
     for (let i = 0; i < surface.meshNodes; i++) out.set(colourOf(i), i * 3);
     surface.spread(out, 3);
+    return out;
+}
+
+function vertexTints(riding: Riding, colourOf: (vertex: number) => number[]): Float32Array {
+    const out = new Float32Array(riding.nodes * 3);
+    for (let i = 0; i < riding.nodes; i++) out.set(colourOf(i), i * 3);
     return out;
 }

@@ -23,6 +23,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get displacement() { return view.displacement(); },
         get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
         get distance() { return view.endoscope.distance; },
+        get surface() { return view.finer ? 'fine' : 'mesh'; },
         get nodes() { return view.surface?.nodes ?? 0; },
     };
     Object.defineProperty(window, 'lariat', { value: Object.freeze(state) });

@@ -30,6 +30,46 @@ export function tornDemo({ folder, scene }) {
     return torn;
 }
 
+/* A coarse block with a ball riding on it that stands off its faces: 4 x 4 x 4 elements of 20 mm, held
+ * below, and 2 n (n - 1) triangles. */
+export function rider(n = 40) {
+    const folder = mkdtempSync(join(OUT, 'rider-'));
+    const nodes = [];
+    const elements = [];
+    const node = (i, j, k) => 1 + i + 5 * (j + 5 * k);
+    for (let k = 0; k < 5; k++)
+        for (let j = 0; j < 5; j++)
+            for (let i = 0; i < 5; i++) nodes.push([node(i, j, k), 0.02 * (i - 2), 0.02 * (j - 2), 0.02 * k].join(', '));
+    for (let k = 0; k < 4; k++)
+        for (let j = 0; j < 4; j++)
+            for (let i = 0; i < 4; i++)
+                elements.push([elements.length + 1, ...[k, k + 1].flatMap((l) =>
+                    [node(i, j, l), node(i + 1, j, l), node(i + 1, j + 1, l), node(i, j + 1, l)])].join(', '));
+    writeFileSync(join(folder, 'block.inp'), `*NODE\n${nodes.join('\n')}\n*ELEMENT, TYPE=C3D8\n${elements.join('\n')}\n`);
+    const ball = [];
+    for (let row = 1; row < n; row++)
+        for (let column = 0; column < 2 * n; column++) {
+            const [a, b] = [(Math.PI * row) / n, (Math.PI * column) / n];
+            const p = [Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a)];
+            ball.push(`v ${p.map((v) => (48 * v).toFixed(4)).join(' ')}`);
+        }
+    ball.push('v 0 0 48', 'v 0 0 -48');
+    const at = (row, column) => (row - 1) * 2 * n + (column % (2 * n)) + 1;
+    for (let column = 0; column < 2 * n; column++) {
+        ball.push(`f ${2 * n * (n - 1) + 1} ${at(1, column)} ${at(1, column + 1)}`);
+        for (let row = 1; row < n - 1; row++)
+            ball.push(`f ${at(row, column)} ${at(row + 1, column)} ${at(row + 1, column + 1)} ${at(row, column + 1)}`);
+        ball.push(`f ${at(n - 1, column)} ${2 * n * (n - 1) + 2} ${at(n - 1, column + 1)}`);
+    }
+    writeFileSync(join(folder, 'ball.obj'), `${ball.map((line) => line.replace(/^v (\S+) (\S+) (\S+)$/, (_, x, y, z) => `v ${x} ${y} ${Number(z) + 40}`)).join('\n')}\n`);
+    const scene = join(folder, 'rider.yaml');
+    writeFileSync(scene, [
+        'lariat: 1', 'title: Rider', 'mesh: block.inp', 'surface: { file: ball.obj, scale: 0.001 }', 'damping: 20',
+        'materials: [ { cells: all, law: neo-hookean, density: 1050, shear_modulus: 2.0e3, bulk_modulus: 2.0e5 } ]',
+        'fix: [ { nodes: { plane: { point: [0, 0, 0], normal: [0, 0, 1] } }, axes: xyz } ]', ''].join('\n'));
+    return scene;
+}
+
 /* Starts the engine and waits until it serves. */
 export function view(scene, ...options) {
     const child = spawn(LARIAT, ['view', scene, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });

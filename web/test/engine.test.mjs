@@ -4,7 +4,7 @@ import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
-import { demo, endAll, tornDemo, view } from './engine.mjs';
+import { demo, endAll, rider, tornDemo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
 const model = demo();
@@ -244,6 +244,32 @@ test('ten reloads in a row, quickly; every frame was of one step', async () => {
     await v.until(() => window.lariat?.frames > 2);
     assert.equal(await v.get('torn'), 0);
     await v.close();
+});
+
+test('a fine surface rides on its mesh: drawn, pulled where it stands off, and switched off', async () => {
+    const riding = await view(rider(), '--port', '0');
+    const r = await openPage(browser, riding.url);
+    assert.equal(await r.get('surface'), 'fine');
+    assert.equal(await r.get('nodes'), 2 * 40 * 39 + 2);
+    await r.page.waitForTimeout(300);
+    await r.shot('8-fine');
+    // The ball stands 8 mm off the block's sides.
+    await drag(r.page, ...MIDDLE, 70, -50);
+    await r.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.004);
+    await r.shot('9-fine-pulled');
+    await r.page.keyboard.press('m');
+    await r.until(() => window.lariat.surface === 'mesh' && window.lariat.nodes !== 3122);
+    await r.page.keyboard.press('e');
+    await r.page.keyboard.press('m');
+    await r.until(() => window.lariat.surface === 'fine' && window.lariat.hand === 'holding');
+    await r.page.waitForTimeout(300);
+    await r.shot('10-fine-edges');
+    await r.page.mouse.up();
+    await r.page.getByRole('radio', { name: 'von Mises stress' }).evaluate((choice) => choice.click());
+    await r.until(() => window.lariat.field === 4 && window.lariat.displacement < 0.003);
+    assert.equal(await r.get('torn'), 0);
+    await r.close();
+    await riding.end();
 });
 
 test('a run that breaks is explained, and reset takes it up again', async () => {

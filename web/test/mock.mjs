@@ -2,7 +2,7 @@
 // surface with springs. For work on the viewer without the engine, and for tests of what the
 // engine rarely does (slow motion, a stop, refusals).
 //
-//     node test/mock.mjs [--port 8123] [--surface FILE.json] [--dist DIR]
+//     node test/mock.mjs [--port 8123] [--surface FILE.json] [--riding 1] [--dist DIR]
 import { createServer } from 'node:http';
 import { readFileSync, existsSync } from 'node:fs';
 import { dirname, extname, join, normalize } from 'node:path';
@@ -42,10 +42,45 @@ function pear(n = 14) {
     return { x, f, m: f.filter((_, i) => i % 4 === 0).map((_, i) => (i % 6 === 0 ? 1 : 0)) };
 }
 
-export function mock({ port = 0, surface = null, token = null, dist = join(here, '../dist') } = {}) {
+/* A fine surface that rides on a layer of elements under the mesh's surface: every quad is one's outer face,
+ * its inner nodes lie halfway to the middle. Vertices stand off by `off` of the layer's depth. */
+function fineSurface(mesh, pieces = 4, off = 0.12) {
+    const n = mesh.x.length / 3;
+    const weights = [];
+    const carriers = [];
+    const triangles = [];
+    const material = [];
+    const known = new Map();
+    const inner = mesh.x.map((v, i) => (i % 3 === 2 ? 0.045 + (v - 0.045) / 2 : v / 2));
+    for (let q = 0; q < mesh.f.length; q += 4) {
+        const corners = mesh.f.slice(q, q + 4);
+        const vertex = (i, j) => {
+            const [u, v] = [i / pieces, j / pieces];
+            const shape = [(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v];
+            const place = [0, 1, 2].map((k) => shape.reduce((sum, s, c) => sum + s * mesh.x[3 * corners[c] + k], 0));
+            const key = place.map((p) => Math.round(p * 1e7)).join();
+            if (known.has(key)) return known.get(key);
+            weights.push(...shape.map((s) => s * (1 + off)), ...shape.map((s) => -s * off));
+            carriers.push(...corners, ...corners.map((c) => c + n));
+            material.push(mesh.m[q / 4]);
+            known.set(key, known.size);
+            return known.size - 1;
+        };
+        for (let i = 0; i < pieces; i++)
+            for (let j = 0; j < pieces; j++) {
+                const [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+                triangles.push(a, b, c, a, c, d);
+            }
+    }
+    return { inner, weights, carriers, triangles, material, vertices: known.size };
+}
+
+export function mock({ port = 0, surface = null, riding = false, token = null, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     const n = mesh.x.length / 3;
     const faces = mesh.f.length / 4;
+    const fine = riding ? fineSurface(mesh) : null;
+    const shown = fine ? 2 * n : n; // nodes in frames
     const rest = Float32Array.from(mesh.x);
     const now = rest.slice();
     const speed = new Float32Array(rest.length);
@@ -55,7 +90,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
 
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
-        slow: false, refuse: false, mute: false, connections: 0,
+        slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -101,6 +136,15 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         if (held) poses[1].position = [...held.target];
     }
 
+    /* Inner nodes go half as far as those above them. */
+    function places() {
+        if (!fine) return now;
+        const out = new Float32Array(6 * n);
+        out.set(now);
+        for (let i = 0; i < 3 * n; i++) out[3 * n + i] = fine.inner[i] + (now[i] - rest[i]) / 2;
+        return out;
+    }
+
     let due = performance.now();
     const engine = setInterval(() => {
         const at = performance.now();
@@ -116,7 +160,9 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
 
     const hello = () => ({
         kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
-        surface: { nodes: n, faces }, lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
+        surface: { nodes: n, faces },
+        ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
+        lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
             name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),
@@ -148,12 +194,33 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         new Uint32Array(out, 16 + 12 * n, 4 * faces).set(mesh.f);
         new Uint32Array(out, 16 + 12 * n + 16 * faces, faces).set(mesh.m);
         const processor = new Uint32Array(out, 16 + 12 * n + 24 * faces, n);
-        for (let i = 0; i < n; i++) processor[i] = (rest[3 * i] > 0 ? 1 : 0) + (rest[3 * i + 2] > (low + high) / 2 ? 2 : 0);
+        for (let i = 0; i < n; i++) processor[i] = processorOf(i);
+        return out;
+    }
+    const processorOf = (i) => (rest[3 * i] > 0 ? 1 : 0) + (rest[3 * i + 2] > (low + high) / 2 ? 2 : 0);
+
+    function ridingMessage() {
+        const [m, k] = [fine.vertices, fine.triangles.length / 3];
+        const out = new ArrayBuffer(16 + 20 * n + 68 * m + 12 * k);
+        let at = 16;
+        const put = (Type, values) => {
+            new Type(out, at, values.length).set(values);
+            at += 4 * values.length;
+        };
+        new Uint32Array(out, 0, 4).set([4, m, k, n]);
+        put(Float32Array, fine.inner);
+        put(Uint32Array, fine.inner.slice(0, n).map((_, i) => processorOf(i)));
+        put(Uint32Array, fine.inner.slice(0, n).map((_, i) => n + i));
+        put(Float32Array, fine.weights);
+        put(Uint32Array, fine.carriers);
+        put(Uint32Array, fine.material);
+        put(Uint32Array, fine.triangles);
         return out;
     }
 
     function frameMessage(field) {
         const info = hello().fields.find((f) => f.name === field);
+        const n = shown;
         const v = info ? n : 0;
         const t = tools.length;
         const out = new ArrayBuffer(72 + 12 * n + 4 * v + 64 * t);
@@ -166,7 +233,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         view.setUint32(44, v, true);
         view.setUint32(64, t, true);
         const positions = new Float32Array(out, 72, 3 * n);
-        positions.set(now);
+        positions.set(places());
         const words = new Uint32Array(out, 72, 3 * n);
         let a = 0, b = 0;
         for (let i = 0; i < words.length; i++)
@@ -177,7 +244,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         if (v) {
             const values = new Float32Array(out, 72 + 12 * n, n);
             for (let i = 0; i < n; i++) {
-                const d = [0, 1, 2].map((k) => now[3 * i + k] - rest[3 * i + k]);
+                const d = [0, 1, 2].map((k) => positions[3 * i + k] - (fine && i >= rest.length / 3 ? fine.inner[3 * i - rest.length + k] : rest[3 * i + k]));
                 const length = Math.hypot(...d);
                 values[i] = { displacement: length, von_mises: length * 40000, pressure: d[2] * 30000, energy: length * 900 }[field] ?? 0;
             }
@@ -230,6 +297,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
         const say = (message) => socket.send(JSON.stringify(message));
         say(hello());
         socket.send(surfaceMessage());
+        if (fine) socket.send(ridingMessage());
         say(status());
         const beat = setInterval(() => say(status()), 100);
         let messages = 0;
@@ -249,6 +317,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
                 frame: () => !state.mute && socket.send(frameMessage(m.field)),
                 forces: () => socket.send(forcesMessage(m.tool, m.after)),
                 grab() {
+                    state.grabbed = m.point;
                     const node = nearest(m.point);
                     if (state.refuse) return say({ kind: 'hand', hand: m.hand, tool: null, state: 'refused' });
                     if (node < 0) return say({ kind: 'hand', hand: m.hand, tool: 1, state: 'missed' });
@@ -298,6 +367,7 @@ export function mock({ port = 0, surface = null, token = null, dist = join(here,
                 port: server.address().port,
                 state,
                 faults,
+                mesh,
                 close() {
                     clearInterval(engine);
                     for (const socket of sockets.clients) socket.terminate();
@@ -313,6 +383,6 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
         const at = process.argv.indexOf(`--${name}`);
         return at < 0 ? undefined : process.argv[at + 1];
     };
-    const server = await mock({ port: Number(option('port') ?? 8123), surface: option('surface') ?? null, ...(option('dist') ? { dist: option('dist') } : {}) });
+    const server = await mock({ port: Number(option('port') ?? 8123), surface: option('surface') ?? null, riding: Boolean(option('riding')), ...(option('dist') ? { dist: option('dist') } : {}) });
     console.log(server.url);
 }

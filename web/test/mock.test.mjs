@@ -136,6 +136,73 @@ test('pressure has a map with zero in its middle; processors have colours of the
     await v.close();
 });
 
+test('a fine surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
+    const own = await mock({ riding: true });
+    const v = await openPage(browser, own.url);
+    assert.equal(await v.get('surface'), 'fine');
+    const nodes = await v.get('nodes');
+    assert.equal(await v.get('torn'), 0);
+    // Seen from the front it stands off the mesh: what lies between both silhouettes tells them apart.
+    await v.page.waitForTimeout(300);
+    await v.shot('fine-surface');
+    const rows = Array.from({ length: 200 }, (_, i) => [500 + i, 320]);
+    const width = async () => (await colours(v.page, rows)).filter(([r, g]) => r > 60 && r > 1.2 * g).length;
+    const fine = await width();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('m');
+    await v.until(() => window.lariat.surface === 'mesh');
+    assert.notEqual(await v.get('nodes'), nodes);
+    await v.page.waitForTimeout(300);
+    const coarse = await width();
+    assert.ok(fine >= coarse + 4, `${fine} places of the row are fine surface, ${coarse} mesh`);
+    await v.page.getByLabel('fine surface').check();
+    await v.until(() => window.lariat.surface === 'fine');
+
+    // Pulled where it is drawn; the engine hears a point of the mesh.
+    await drag(v.page, 500, 250, 40, -60);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
+    const held = own.state.grabbed;
+    const nearest = Math.min(...own.mesh.x.map((_, i, x) => (i % 3 ? 1 : Math.hypot(x[i] - held[0], x[i + 1] - held[1], x[i + 2] - held[2]))));
+    assert.ok(nearest < 0.0035, `${nearest} m from the next node of the mesh`);
+    await v.page.keyboard.press('m'); // while pulling, too
+    await v.page.waitForTimeout(200);
+    await v.page.keyboard.press('m');
+    await v.page.getByRole('radio', { name: 'displacement' }).evaluate((choice) => choice.click());
+    await v.until(() => window.lariat.field === 1);
+    await v.page.waitForTimeout(400);
+    await v.shot('fine-surface-pulled');
+    const [pulled, below] = await colours(v.page, [[510, 225], [500, 480]]);
+    assert.ok(difference(pulled, below) > 40, `${pulled} where it is pulled, ${below} far from there`);
+    await v.page.mouse.up();
+    await v.until(() => window.lariat.hand === 'free');
+    await v.page.getByRole('radio', { name: 'tissue' }).evaluate((choice) => choice.click());
+
+    const line = Array.from({ length: 60 }, (_, i) => [470 + i, 330]);
+    const roughness = async () => {
+        const row = await colours(v.page, line);
+        return row.slice(1).reduce((sum, c, i) => sum + difference(c, row[i]), 0);
+    };
+    await v.page.waitForTimeout(800);
+    const plain = await roughness();
+    await v.page.getByLabel('mesh edges').check();
+    await v.page.waitForTimeout(400);
+    await v.shot('fine-surface-edges');
+    const edged = await roughness();
+    assert.ok(edged > plain * 1.5 + 40, `${edged} with edges, ${plain} without`);
+    await v.close();
+    await own.close();
+});
+
+test('where nothing rides there is no switch for it, and its key says so', async () => {
+    const v = await openPage(browser, server.url);
+    assert.equal(await v.get('surface'), 'mesh');
+    assert.equal(await v.page.getByLabel('fine surface').isVisible(), false);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('m');
+    await v.page.getByText('has no fine surface').waitFor({ timeout: 3000 });
+    await v.close();
+});
+
 test('a browser without WebGL gets a sentence instead of an empty page', async () => {
     const blind = await openBrowser({ flags: ['--disable-3d-apis'] });
     const v = await openPage(blind, server.url, { drawn: false });

@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel'];
+    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -107,7 +107,7 @@ test('the nearest outside of the surface is picked, and followed when it moves',
     assert.equal(parts.pick.pick(surface, { x: 0, y: 0, z: 0 }, { x: 0, y: 1, z: 0 }), null, 'from inside');
     surface.update(x.map((v, i) => (i % 3 === 2 ? v + 0.5 : v)));
     const now = {};
-    surface.follow(hit, now);
+    parts.pick.follow(surface, hit, now);
     assert.ok(Math.abs(now.z - 0.7) < 1e-5 && Math.abs(now.x - 0.1) < 1e-5);
 });
 
@@ -123,6 +123,84 @@ test('20,000 nodes are rounded and lit; how long that takes is printed', (t) => 
     }
     t.diagnostic(`${surface.nodes} nodes: ${best.toFixed(2)} ms a picture; at 60 Hz there are 16.7`);
     assert.ok(x.every(Number.isFinite));
+});
+
+/* One element from -1 to 1 and a ball of radius `size` in it, n circles of latitude with 2n vertices each. */
+function ballInCube(n, size) {
+    const nodes = Float32Array.from([0, 1, 2, 3, 4, 5, 6, 7].flatMap((a) => [a & 1 ? 1 : -1, a & 2 ? 1 : -1, a & 4 ? 1 : -1]));
+    const weights = [];
+    const triangles = [];
+    for (let row = 0; row < n; row++)
+        for (let column = 0; column < 2 * n; column++) {
+            const [a, b] = [(Math.PI * (row + 0.5)) / n, (Math.PI * column) / n];
+            const p = [Math.sin(a) * Math.cos(b), Math.sin(a) * Math.sin(b), Math.cos(a)].map((v) => v * size);
+            for (let c = 0; c < 8; c++)
+                weights.push([0, 1, 2].reduce((w, k) => (w * (1 + (nodes[3 * c + k] * p[k]))) / 2, 1));
+            const next = row * 2 * n + ((column + 1) % (2 * n));
+            const [me, below] = [row * 2 * n + column, (row + 1) * 2 * n];
+            if (row + 1 < n) triangles.push(me, me + 2 * n, below + ((column + 1) % (2 * n)), me, below + ((column + 1) % (2 * n)), next);
+        }
+    const vertices = weights.length / 8;
+    return {
+        nodes,
+        message: {
+            rest: new Float32Array(0), processor: new Uint32Array(0), material: new Uint32Array(vertices),
+            weights: Float32Array.from(weights), triangles: Uint32Array.from(triangles),
+            carriers: Uint32Array.from({ length: 8 * vertices }, (_, i) => i % 8),
+        },
+    };
+}
+
+test('a riding surface follows its nodes, also beyond them, and so do its normals and values', () => {
+    const { nodes, message } = ballInCube(12, 1.3);
+    const riding = new parts.riding.Riding(nodes, message);
+    assert.equal(riding.nodes, 12 * 24);
+    for (let i = 0; i < riding.nodes; i++) {
+        assert.ok(Math.abs(radius(riding.rest, i) - 1.3) < 1e-5);
+        const outward = [0, 1, 2].reduce((s, k) => s + riding.normals[3 * i + k] * riding.rest[3 * i + k], 0);
+        if (i >= 24 && i < riding.nodes - 24) assert.ok(outward > 1.25, `normal ${i}: ${outward}`);
+    }
+    const f = [[0.3, -1.1, 0.2], [0.9, 0.4, 0.3], [-0.1, 0.2, 1.4]];
+    const turn = (x, i, k) => 0.7 * k + f[k].reduce((s, v, j) => s + v * x[3 * i + j], 0);
+    riding.place(nodes.map((_, i) => turn(nodes, Math.floor(i / 3), i % 3)));
+    for (let i = 0; i < riding.nodes * 3; i++)
+        assert.ok(Math.abs(riding.positions[i] - turn(riding.rest, Math.floor(i / 3), i % 3)) < 1e-5);
+    const values = new Float32Array(riding.nodes);
+    riding.paint(nodes.filter((_, i) => i % 3 === 1), values);
+    for (let i = 0; i < riding.nodes; i++) assert.ok(Math.abs(values[i] - riding.rest[3 * i + 1]) < 1e-5);
+    const high = riding.rest.indexOf(Math.max(...riding.rest.filter((_, i) => i % 3 === 2)));
+    assert.ok(riding.leader((high - 2) / 3) >= 4, 'the highest vertex listens to a node above');
+});
+
+test('a riding surface is picked, followed, and held at the mesh', () => {
+    const { nodes, message } = ballInCube(24, 1.3);
+    const riding = new parts.riding.Riding(nodes, message);
+    const hit = parts.pick.pick(riding, { x: 0.1, y: -5, z: 0.2 }, { x: 0, y: 1, z: 0 });
+    assert.ok(Math.abs(hit.point[1] + Math.sqrt(1.69 - 0.05)) < 0.01, `${hit.point}`);
+    const near = parts.pick.nearestNode(riding, { x: 0.1, y: -1.3, z: 0.2 });
+    const now = {};
+    parts.pick.follow(riding, near, now);
+    assert.ok(Math.hypot(now.x - 0.1, now.y + 1.3, now.z - 0.2) < 0.15);
+    const { x, quads } = cube(3, false);
+    const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] });
+    assert.deepEqual(at([0.25, -1.5, 0.5]).map((v) => Math.round(v * 1e6) / 1e6), [0.25, -1, 0.5]);
+    assert.deepEqual(at([3, 3, 3]), [1, 1, 1]);
+    assert.deepEqual(at([2, 0.125, -4]).map((v) => Math.round(v * 1e6) / 1e6), [1, 0.125, -1]);
+});
+
+test('17,000 riding vertices are moved and lit; how long that takes is printed', (t) => {
+    const { nodes, message } = ballInCube(92, 0.9);
+    const riding = new parts.riding.Riding(nodes, message);
+    const values = new Float32Array(riding.nodes);
+    let best = Infinity;
+    for (let i = 0; i < 60; i++) {
+        const start = performance.now();
+        riding.place(nodes);
+        riding.paint(nodes, values);
+        best = Math.min(best, performance.now() - start);
+    }
+    t.diagnostic(`${riding.nodes} vertices: ${best.toFixed(2)} ms a picture`);
+    assert.ok(riding.positions.every(Number.isFinite));
 });
 
 test('the range of the force is a round number not below the peak', () => {
@@ -173,6 +251,7 @@ test('messages of a wrong length are refused', () => {
     new DataView(message).setUint32(4, 5, true);
     assert.throws(() => parts.protocol.readFrame(message, parts.protocol.emptyFrame()), /wrong length/);
     assert.throws(() => parts.protocol.readSurface(new ArrayBuffer(20)), /wrong length/);
+    assert.throws(() => parts.protocol.readRiding(new Uint32Array([4, 1, 1, 1, 0, 0]).buffer), /wrong length/);
 });
 
 test('the badge says real time only where it is', () => {
