@@ -171,10 +171,11 @@ static lar_status no_label(const lar_image *image, int64_t voxel, double value, 
                     LAR_IMAGE_LABEL_MOST);
 }
 
+/* 0 is there already: memory that is not written to takes no room, and most of a scan is 0. */
 static inline bool take_label(double value, double slack, uint16_t *label) {
     if (!(value > -0.5 && value < LAR_IMAGE_LABEL_MOST + 0.5)) return false;
     int32_t whole = (int32_t)(value + 0.5);
-    *label = (uint16_t)whole;
+    if (whole != 0) *label = (uint16_t)whole;
     return fabs(value - whole) <= slack;
 }
 
