@@ -19,7 +19,7 @@ static lar_status read_piece(const lar_vtk_xml *file, xmlNode *piece, lar_vtk_gr
         status = lar_vtk_xml_count(file, piece, lists[k].count, 0, &list[k].count);
         if (!status && k >= LAR_VTK_POLYS && list[k].count > 0)
             status = lar_vtk_xml_cells(file, lar_vtk_xml_child(piece, lists[k].element), &list[k]);
-        cells += list[k].count;
+        if (!status) cells += list[k].count;
     }
     if (!status)
         status = lar_vtk_xml_data(file, lar_vtk_xml_child(piece, "CellData"), LAR_VTK_CELL_DATA,
