@@ -9,13 +9,14 @@ void lar_nets_clear(lar_nets *nets) {
     free(nets->moved);
     free(nets->neighbour);
     free(nets->line);
+    free(nets->thin);
     free(nets->corner);
     free(nets->side);
     free(nets->diagonal);
     *nets = (lar_nets){0};
 }
 
-enum { NO_REGION = UINT16_MAX };
+enum { NO_REGION = UINT16_MAX, SLICES = 4 };
 
 /* Goes through the image slice by slice: once to count, once to write. */
 typedef struct scan {
@@ -23,7 +24,9 @@ typedef struct scan {
     const uint8_t *region_of_label;
     lar_nets *nets;
     bool write;
-    uint8_t *slice[2];   /* regions of voxels, of this slice and the one below */
+    uint8_t
+        *slice[SLICES];  /* regions of voxels of slice k % SLICES: this one, the next, two before */
+    uint8_t *nothing;    /* a row of zeros */
     int32_t *corners[2]; /* vertices of the corners below this slice and above it; -1: none yet */
     uint16_t (*around)[3][2]; /* first two regions at a vertex's edges along +i, +j, +k */
     int64_t vertices, quads;
@@ -64,7 +67,8 @@ static void add_edge(scan *s, int32_t low, int32_t high, int axis, const uint16_
 }
 
 /* Between the voxels below and above along `axis`, at the corner `at`. */
-static void add_quad(scan *s, const int32_t at[3], int axis, uint16_t below, uint16_t above) {
+static void add_quad(scan *s, const int32_t at[3], int axis, uint16_t below, uint16_t above,
+                     bool thin) {
     int32_t quad = (int32_t)s->quads++, slice = at[2], corner[4];
     for (int c = 0; c < 4; c++) {
         int32_t place[3] = {at[0], at[1], at[2]};
@@ -78,7 +82,10 @@ static void add_quad(scan *s, const int32_t at[3], int axis, uint16_t below, uin
         above == 0 || above >= LAR_REGION_CUT || (below < LAR_REGION_CUT && below && above < below);
     uint16_t side[2] = {above_in_front ? above : below, above_in_front ? below : above};
     memcpy(s->nets->side[quad], side, sizeof side);
-    for (int c = 0; c < 4; c++) s->nets->corner[quad][c] = corner[above_in_front ? c : (4 - c) % 4];
+    for (int c = 0; c < 4; c++) {
+        s->nets->corner[quad][c] = corner[above_in_front ? c : (4 - c) % 4];
+        if (thin) s->nets->thin[corner[c]] |= (uint8_t)(1 << axis);
+    }
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
     add_edge(s, corner[0], corner[1], b, side);
     add_edge(s, corner[3], corner[2], b, side);
@@ -86,52 +93,73 @@ static void add_quad(scan *s, const int32_t at[3], int axis, uint16_t below, uin
     add_edge(s, corner[1], corner[2], c, side);
 }
 
-/* The voxel at i, j of a slice and the one before it along an axis; beyond the image there is what
- * cuts the body off. */
-static void look(scan *s, const int32_t at[3], int axis, uint8_t here, uint8_t before) {
-    if (here == before) return;
-    uint16_t above = here, below = before;
-    if (at[axis] == 0) below = (uint16_t)(LAR_REGION_CUT + 2 * axis);
-    if (at[axis] == s->image->size[axis]) above = (uint16_t)(LAR_REGION_CUT + 2 * axis + 1);
-    add_quad(s, at, axis, below, above);
+static int region_at(const scan *s, const int32_t at[3]) {
+    size_t row = (size_t)at[1] * (size_t)s->image->size[0];
+    return s->slice[at[2] % SLICES][row + (size_t)at[0]];
 }
 
+/* The voxels before the corner `at` along an axis and behind it; beyond the image there is what
+ * cuts the body off. */
+static void look(scan *s, const int32_t at[3], int axis) {
+    int32_t end = s->image->size[axis], next[3] = {at[0], at[1], at[2]};
+    uint16_t region[4] = {0}; /* of two voxels before the corner and two behind */
+    for (int i = 1; i < 3; i++) {
+        next[axis] = at[axis] - 2 + i;
+        if (next[axis] >= 0 && next[axis] < end) region[i] = (uint16_t)region_at(s, next);
+    }
+    if (region[1] == region[2]) return;
+    bool thin = false;
+    for (int i = 0; i < 4; i += 3) {
+        next[axis] = at[axis] - 2 + i;
+        if (next[axis] >= 0 && next[axis] < end) thin |= region_at(s, next) != region[i ? 2 : 1];
+    }
+    if (at[axis] == 0) region[1] = (uint16_t)(LAR_REGION_CUT + 2 * axis);
+    if (at[axis] == end) region[2] = (uint16_t)(LAR_REGION_CUT + 2 * axis + 1);
+    add_quad(s, at, axis, region[1], region[2], thin);
+}
+
+/* Regions of a row of voxels; beyond the image: 0. */
+static const uint8_t *row_of(const scan *s, int32_t j, int32_t k) {
+    const int32_t *size = s->image->size;
+    if (j < 0 || k < 0 || j == size[1] || k == size[2]) return s->nothing;
+    return &s->slice[k % SLICES][(size_t)j * (size_t)size[0]];
+}
+
+/* All faces of voxels that begin at the corners of a row. */
 static void scan_row(scan *s, int32_t j, int32_t k) {
     const int32_t *size = s->image->size;
-    size_t row = (size_t)j * (size_t)size[0], width = (size_t)size[0];
-    bool in = j < size[1] && k < size[2];
-    const uint8_t *here = &s->slice[0][row];
-    for (int32_t i = 0; in && i <= size[0]; i++) {
-        int32_t at[3] = {i, j, k};
-        look(s, at, 0, i < size[0] ? here[i] : 0, i > 0 ? here[i - 1] : 0);
+    const uint8_t *here = row_of(s, j, k), *back = row_of(s, j - 1, k),
+                  *below = row_of(s, j, k - 1);
+    for (int32_t i = 0; i <= size[0]; i++) {
+        const int32_t at[3] = {i, j, k};
+        uint8_t region = i < size[0] ? here[i] : 0;
+        if (region != (i > 0 ? here[i - 1] : 0)) look(s, at, 0);
+        if (i == size[0]) break;
+        if (region != back[i] && k < size[2]) look(s, at, 1);
+        if (region != below[i] && j < size[1]) look(s, at, 2);
     }
-    for (int32_t i = 0; k < size[2] && i < size[0]; i++) {
-        int32_t at[3] = {i, j, k};
-        look(s, at, 1, j < size[1] ? here[i] : 0, j > 0 ? s->slice[0][row - width + (size_t)i] : 0);
-    }
-    for (int32_t i = 0; j < size[1] && i < size[0]; i++) {
-        int32_t at[3] = {i, j, k};
-        look(s, at, 2, k < size[2] ? here[i] : 0, k > 0 ? s->slice[1][row + (size_t)i] : 0);
-    }
+}
+
+static void load_slice(scan *s, int32_t k) {
+    if (k >= s->image->size[2]) return;
+    size_t voxels = (size_t)s->image->size[0] * (size_t)s->image->size[1];
+    const uint16_t *label = s->image->label + (size_t)k * voxels;
+    uint8_t *slice = s->slice[k % SLICES];
+    for (size_t v = 0; v < voxels; v++) slice[v] = s->region_of_label[label[v]];
 }
 
 static bool scan_image(scan *s) {
-    const int32_t *size = s->image->size;
-    size_t voxels = (size_t)size[0] * (size_t)size[1];
     size_t corners = (size_t)s->nets->size[0] * (size_t)s->nets->size[1];
     s->vertices = s->quads = 0;
     memset(s->corners[1], 0xff, corners * sizeof(int32_t));
-    for (int32_t k = 0; k <= size[2]; k++) {
-        uint8_t *slice = s->slice[1];
-        s->slice[1] = s->slice[0];
-        s->slice[0] = slice;
+    load_slice(s, 0);
+    for (int32_t k = 0; k <= s->image->size[2]; k++) {
         int32_t *layer = s->corners[0];
         s->corners[0] = s->corners[1];
         s->corners[1] = layer;
         memset(layer, 0xff, corners * sizeof *layer);
-        const uint16_t *label = k < size[2] ? s->image->label + (size_t)k * voxels : NULL;
-        for (size_t v = 0; label && v < voxels; v++) slice[v] = s->region_of_label[label[v]];
-        for (int32_t j = 0; j <= size[1]; j++) scan_row(s, j, k);
+        load_slice(s, k + 1);
+        for (int32_t j = 0; j <= s->image->size[1]; j++) scan_row(s, j, k);
         if (s->quads > LAR_NETS_QUADS_MOST) return false;
     }
     return true;
@@ -144,28 +172,29 @@ static lar_status allocate(scan *s, lar_error *error) {
     nets->moved = lar_calloc(vertices, sizeof *nets->moved);
     nets->neighbour = lar_calloc(vertices, sizeof *nets->neighbour);
     nets->line = lar_calloc(vertices, sizeof *nets->line);
+    nets->thin = lar_calloc(vertices, sizeof *nets->thin);
     nets->corner = lar_calloc(quads, sizeof *nets->corner);
     nets->side = lar_calloc(quads, sizeof *nets->side);
     nets->diagonal = lar_calloc(quads, sizeof *nets->diagonal);
     s->around = lar_calloc(vertices, sizeof *s->around);
     nets->vertex_count = (int32_t)vertices;
     nets->quad_count = (int32_t)quads;
-    if (nets->start && nets->moved && nets->neighbour && nets->line && nets->corner && nets->side &&
-        nets->diagonal && s->around)
+    if (nets->start && nets->moved && nets->neighbour && nets->line && nets->thin && nets->corner &&
+        nets->side && nets->diagonal && s->around)
         return LAR_OK;
-    return lar_fail_memory(error, 73 * vertices + 21 * quads, "the regions' surfaces");
+    return lar_fail_memory(error, 74 * vertices + 21 * quads, "the regions' surfaces");
 }
 
 static lar_status build(scan *s, lar_error *error) {
     const int32_t *size = s->image->size;
-    size_t voxels = (size_t)size[0] * (size_t)(size[1] + 1);
+    size_t voxels = (size_t)size[0] * (size_t)size[1];
     size_t corners = (size_t)s->nets->size[0] * (size_t)s->nets->size[1];
-    for (int i = 0; i < 2; i++) {
-        s->slice[i] = lar_calloc(voxels, 1);
-        s->corners[i] = lar_calloc(corners, sizeof(int32_t));
-    }
-    if (!s->slice[0] || !s->slice[1] || !s->corners[0] || !s->corners[1])
-        return lar_fail_memory(error, 2 * voxels + 8 * corners, "two slices of the image");
+    s->nothing = lar_calloc((size_t)size[0], 1);
+    bool given = s->nothing != NULL;
+    for (int i = 0; i < SLICES; i++) given &= (s->slice[i] = lar_calloc(voxels, 1)) != NULL;
+    for (int i = 0; i < 2; i++)
+        given &= (s->corners[i] = lar_calloc(corners, sizeof(int32_t))) != NULL;
+    if (!given) return lar_fail_memory(error, SLICES * voxels + 8 * corners, "slices of the image");
     if (!scan_image(s))
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: its labels have more than %d faces of voxels between them, as noise "
@@ -189,10 +218,9 @@ lar_status lar_nets_create(const lar_image *image, const uint8_t *region_of_labe
     }
     scan s = {.image = image, .region_of_label = region_of_label, .nets = nets};
     lar_status status = build(&s, error);
-    for (int i = 0; i < 2; i++) {
-        free(s.slice[i]);
-        free(s.corners[i]);
-    }
+    for (int i = 0; i < SLICES; i++) free(s.slice[i]);
+    for (int i = 0; i < 2; i++) free(s.corners[i]);
+    free(s.nothing);
     free(s.around);
     if (status) lar_nets_clear(nets);
     return status;

@@ -25,6 +25,7 @@ typedef struct lar_nets {
     double (*moved)[3];      /* way from there [voxels] */
     int32_t (*neighbour)[6]; /* -i, +i, -j, +j, -k, +k along edges of quadrilaterals; -1: none */
     uint8_t *line;           /* which of these edges are lines where regions meet, a bit each */
+    uint8_t *thin; /* axes along which what it belongs to is one voxel thick, a bit each */
     int32_t quad_count;
     int32_t (*corner)[4];
     uint16_t (*side)[2]; /* the normal (in indices) points to side[0], the outside, a cut or the
@@ -39,7 +40,7 @@ void lar_nets_clear(lar_nets *nets);
 
 /* Smooths, chooses the diagonals, then moves surfaces along their normals until each region has the
  * volume [voxels, index by region] again, within 0.1 % where no corner has to leave 0.7 voxels
- * around its start for it. */
+ * around its start for it, 0.25 where it is thin. */
 lar_status lar_nets_relax(lar_nets *nets, int32_t region_count, const double *volume,
                           lar_error *error);
 

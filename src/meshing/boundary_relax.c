@@ -14,7 +14,9 @@
 
 #include "base/vector.h"
 
-static const double LIMIT = 0.7; /* voxels per axis that a corner may move */
+/* Voxels per axis that a corner may move; and where the part is one voxel thick along it, so that
+ * it neither vanishes nor turns inside out. */
+static const double LIMIT = 0.7, THIN_LIMIT = 0.25;
 
 typedef struct relaxation {
     lar_nets *nets;
@@ -29,6 +31,10 @@ typedef struct relaxation {
 
 static double limited(double way, double limit) {
     return way > limit ? limit : way < -limit ? -limit : way;
+}
+
+static double limit_of(const lar_nets *nets, int32_t v, int axis) {
+    return nets->thin[v] >> axis & 1 ? THIN_LIMIT : LIMIT;
 }
 
 /* On the image's border a corner belongs to a cut: it stays in its plane. */
@@ -51,7 +57,8 @@ static void step_vertex(const lar_nets *nets, int32_t v, double factor, double n
     }
     for (int a = 0; a < 3; a++) {
         bool stays = count < 2 || locked(nets, v, a);
-        next[a] = stays ? moved[a] : limited(moved[a] + factor * sum[a] / count, LIMIT);
+        next[a] =
+            stays ? moved[a] : limited(moved[a] + factor * sum[a] / count, limit_of(nets, v, a));
     }
 }
 
@@ -186,7 +193,8 @@ static void move_surfaces(relaxation *r) {
     for (int32_t v = 0; v < nets->vertex_count; v++)
         for (int a = 0; a < 3 && r->weight[v] > 0; a++) {
             double way = r->next[v][a] / (r->weight[v] * nets->spacing[a]);
-            if (!locked(nets, v, a)) nets->moved[v][a] = limited(nets->moved[v][a] + way, LIMIT);
+            if (!locked(nets, v, a))
+                nets->moved[v][a] = limited(nets->moved[v][a] + way, limit_of(nets, v, a));
         }
 }
 
