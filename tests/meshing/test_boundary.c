@@ -296,7 +296,7 @@ static void test_thin(void **state) {
         rod++;
         for (int a = 0; a < 2; a++) assert_true(beside[a] > 0.249 && beside[a] < 0.751);
     }
-    assert_int_equal(rod, 4 * 4);
+    assert_int_equal(rod, 4 * 5);
     lar_boundary_clear(&boundary);
     lar_image_clear(&image);
 }
