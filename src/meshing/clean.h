@@ -53,8 +53,16 @@ bool lar_clean_may_fill(const lar_lattice *lattice, const int at[3]);
  * of its faces; 0 when it has no neighbour inside. */
 uint8_t lar_clean_fill(const lar_lattice *lattice, size_t cell);
 
-/* Leaves out or gives away islands and fills pinholes; *changed: whether there were any. */
+/* Joins, leaves out or gives away islands and fills pinholes; *changed: whether there were any. */
 lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed);
+
+/* Joins the piece of cell `start`, whose cells are marked with `mark` and no others are, to another
+ * piece of its region: by cells outside that hold a part of the region, few and full ones rather
+ * than many. They count as full from now on, so that they stay. */
+lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t mark, bool *joined);
+
+/* Neighbours of a cell by faces; those beyond the lattice are left out. */
+int lar_clean_neighbours(const lar_lattice *lattice, size_t cell, size_t found[6]);
 
 /* Flips cells until every lattice point is clean. */
 lar_status lar_clean_joints(lar_cleaner *cleaner);

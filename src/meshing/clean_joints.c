@@ -135,7 +135,7 @@ static void mark_surface(lar_cleaner *cleaner) {
 /* Adds the cell outside that costs least at a point that is not clean. There is one: of the cells
  * around a point those that may be filled are 1, 2, 4 or 8 in a row, a square or a cube, and once
  * they are filled the point is clean. */
-static void add_at(lar_cleaner *cleaner, const int point[3]) {
+static bool add_at(lar_cleaner *cleaner, const int point[3]) {
     lar_lattice *lattice = cleaner->lattice;
     size_t chosen = 0;
     int32_t least = INT32_MAX;
@@ -156,15 +156,16 @@ static void add_at(lar_cleaner *cleaner, const int point[3]) {
         least = cost;
         chosen = cell;
     }
-    if (least == INT32_MAX) return;
+    if (least == INT32_MAX) return false;
     lattice->region[chosen] = lar_clean_fill(lattice, chosen);
     look_around(cleaner, chosen);
+    return true;
 }
 
-/* Adds cells at points that are not clean; how many such points there were. */
+/* Adds cells at points that are not clean; how many. */
 static size_t add_at_unclean(lar_cleaner *cleaner) {
     const lar_lattice *lattice = cleaner->lattice;
-    size_t found = 0;
+    size_t added = 0;
     for (int k = 1; k < lattice->cells[2]; k++)
         for (int j = 1; j < lattice->cells[1]; j++)
             for (int i = 1; i < lattice->cells[0]; i++) {
@@ -174,11 +175,9 @@ static size_t add_at_unclean(lar_cleaner *cleaner) {
                                                          j - 1 + (c >> 1 & 1), k - 1 + (c >> 2));
                     inside |= (unsigned)(lattice->region[cell] != 0) << c;
                 }
-                if (lar_clean_block(inside)) continue;
-                found++;
-                add_at(cleaner, (const int[3]){i, j, k});
+                if (!lar_clean_block(inside)) added += add_at(cleaner, (const int[]){i, j, k});
             }
-    return found;
+    return added;
 }
 
 static void descend_to_the_end(lar_cleaner *cleaner) {

@@ -5,7 +5,7 @@
 
 /* Limits of islands and pinholes, lattice.h. */
 static const double ISLAND_PART = 0.05, PINHOLE_PART = 0.01;
-enum { ISLAND_CELLS = 2, PINHOLE_CELLS = 27 };
+enum { ISLAND_CELLS = 8, PINHOLE_CELLS = 27 };
 /* An island goes to its neighbours when these have at least this part of its outer faces. */
 static const double GIVEN_PART = 0.25;
 
@@ -21,8 +21,7 @@ typedef struct surroundings {
     int32_t faces[LAR_REGIONS_MOST + 1]; /* by region */
 } surroundings;
 
-/* Neighbours of a cell by faces; those beyond the lattice are left out. */
-static int neighbours(const lar_lattice *lattice, size_t cell, size_t found[6]) {
+int lar_clean_neighbours(const lar_lattice *lattice, size_t cell, size_t found[6]) {
     size_t step = 1, rest = cell;
     int count = 0;
     for (int d = 0; d < 3; d++) {
@@ -51,7 +50,7 @@ static lar_status visit(lar_cleaner *cleaner, size_t start, uint8_t mark, int la
     while (waiting > 0) {
         const size_t cell = (size_t)cleaner->stack[--waiting];
         size_t next[6];
-        const int count = neighbours(lattice, cell, next);
+        const int count = lar_clean_neighbours(lattice, cell, next);
         (*size)++;
         for (int n = 0; n < count; n++) {
             /* Looked at first: cells with the mark may have another region already. */
@@ -102,17 +101,23 @@ static uint8_t heir_of(const surroundings *around, uint8_t region) {
     return (double)(sum - around->faces[0]) >= GIVEN_PART * (double)sum ? (uint8_t)heir : 0;
 }
 
-static lar_status take_island(lar_cleaner *cleaner, const piece *island) {
+/* An island is joined to the rest of its region where the body leads there. A small one is given
+ * away or left out otherwise. */
+static lar_status take_island(lar_cleaner *cleaner, const piece *island, bool *changed) {
     surroundings around = {{0}};
     int32_t size;
+    bool joined = false;
     lar_status status = visit(cleaner, island->start, 2, -1, &size, &around);
+    if (!status) status = lar_clean_bridge(cleaner, island->start, 2, &joined);
+    *changed = *changed || joined;
+    if (status || joined || size >= ISLAND_CELLS) return status;
     const uint8_t heir = heir_of(&around, island->region);
-    if (!status) status = visit(cleaner, island->start, 3, heir, &size, NULL);
-    if (!status && heir == 0) {
+    *changed = true;
+    if (heir == 0) {
         cleaner->cleaning->islands++;
         cleaner->cleaning->island_cells += size;
     }
-    return status;
+    return visit(cleaner, island->start, 3, heir, &size, NULL);
 }
 
 static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole) {
@@ -146,13 +151,12 @@ lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
             const double limit = PINHOLE_PART * (double)body;
             if (one->size > PINHOLE_CELLS || (one->size > 1 && one->size >= limit)) continue;
             status = fill_pinhole(cleaner, one);
+            *changed = true;
         } else {
             const int32_t most = largest[one->region];
-            if (one->size == most || (one->size >= ISLAND_CELLS && one->size >= ISLAND_PART * most))
-                continue;
-            status = take_island(cleaner, one);
+            if (one->size == most || (one->size > 1 && one->size >= ISLAND_PART * most)) continue;
+            status = take_island(cleaner, one, changed);
         }
-        *changed = true;
     }
     free(pieces);
     return status;

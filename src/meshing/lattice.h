@@ -62,11 +62,13 @@ typedef struct lar_cleaning {
 } lar_cleaning;
 
 /* Makes the inside a manifold solid: no two cells joined by an edge or a corner only, neither do
- * two outside cells meet so. Islands: of each region, pieces with less than 5 % of the cells of its
- * largest piece (less than 2 cells at least). Pinholes: enclosed outside pieces of less than 1 % of
- * the body's cells, at most 27. Cells flip in favour of their share. Bumps (cells with one
- * neighbour, where neighbours of the same region do not form a sheet or a bar with it) and dents
- * (outside cells with five) are levelled. */
+ * two outside cells meet so; the same for each region where it is possible. Islands: of each
+ * region, pieces with less than 5 % of the cells of its largest piece (less than 2 cells at least)
+ * are joined to the rest where cells that hold a part of the region lead there; of the others those
+ * of less than 8 cells go to the region around them, or are left out. Pinholes: enclosed outside
+ * pieces of less than 1 % of the body's cells, at most 27. Cells flip in favour of their share.
+ * Bumps and dents, which fitting would squash, are levelled; sheets and bars, and slots and tubes,
+ * of one cell's width stay (clean.h). */
 lar_status lar_lattice_clean(lar_lattice *lattice, lar_cleaning *cleaning, lar_error *error);
 
 #endif

@@ -91,12 +91,68 @@ static void touching_balls_become_one_solid(void **state) {
     lar_lattice_clear(&lattice);
 }
 
+/* A large ball, one of 3 % beside it, and a speck; with a thin stalk between the balls, or none. */
+static bool has_stalk;
+
+static int balls_on_a_stalk(const double x[3]) {
+    if (has_stalk && hypot(x[1] - 12.5, x[2] - 12.5) < 0.35 && x[0] > 9 && x[0] < 20) return 1;
+    return squared(x, 8, 12, 12) < 6.2 * 6.2 || squared(x, 20, 12.5, 12.5) < 2 * 2 ||
+           squared(x, 20.5, 20.5, 20.5) < 0.8 * 0.8;
+}
+
+static void islands_are_joined_kept_or_left_out(void **state) {
+    (void)state;
+    for (int stalk = 0; stalk < 2; stalk++) {
+        lar_lattice lattice;
+        lar_cleaning cleaning;
+        has_stalk = stalk;
+        const solid_surface surface = cleaned(balls_on_a_stalk, &lattice, &cleaning);
+        assert_int_equal(surface.shells, stalk ? 1 : 2);
+        assert_int_equal(surface.euler, stalk ? 2 : 4);
+        assert_int_equal(cleaning.islands, 1);
+        assert_int_equal(cleaning.island_cells, 1);
+        assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 20, 20, 20)], 0);
+        lar_lattice_clear(&lattice);
+    }
+}
+
+/* A ball of region 1 in which are a speck of region 2, a small hollow and a large one. */
+static int ball_with_specks(const double x[3]) {
+    if (squared(x, 12, 12, 12) > 10 * 10) return 0;
+    if (fabs(x[0] - 12.5) < 0.4 && fabs(x[1] - 12.5) < 0.4 && fabs(x[2] - 6.5) < 1.4) return 2;
+    if (fabs(x[0] - 7) < 1.9 && fabs(x[1] - 12.5) < 0.4 && fabs(x[2] - 12.5) < 0.4) return 0;
+    if (squared(x, 15.5, 12, 13.5) < 3 * 3) return 0;
+    return squared(x, 12, 20, 12) < 3 * 3 ? 2 : 1;
+}
+
+static void pinholes_are_filled(void **state) {
+    (void)state;
+    lar_lattice lattice;
+    lar_cleaning cleaning;
+    const solid_surface surface = cleaned(ball_with_specks, &lattice, &cleaning);
+    assert_int_equal(surface.shells, 2);
+    assert_int_equal(cleaning.pinholes, 1);
+    assert_int_equal(cleaning.pinhole_cells, 4);
+    assert_int_equal(cleaning.islands, 0);
+    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 7, 12, 12)], 1);
+    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 12, 12, 6)], 1);
+    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 15, 12, 13)], 0);
+    assert_manifold(solid_judge_lattice(&lattice, 1));
+    assert_manifold(solid_judge_lattice(&lattice, 2));
+    lar_lattice_clear(&lattice);
+}
+
+static int nothing(const double x[3]) {
+    (void)x;
+    return 0;
+}
+
 /* Every cell at random: the worst there is. */
 static void noise_ends_manifold(void **state) {
     (void)state;
     uint32_t random = 12345;
     for (int seed = 0; seed < 200; seed++) {
-        lar_lattice lattice = solid_lattice(ellipsoid, 10, 9, 8);
+        lar_lattice lattice = solid_lattice(nothing, 10, 9, 8);
         const uint32_t level = (uint32_t)(20 + seed % 8 * 30), regions = 1 + (uint32_t)seed % 3;
         for (int k = 1; k < 7; k++)
             for (int j = 1; j < 8; j++)
@@ -123,6 +179,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shapes_keep_their_topology),
         cmocka_unit_test(touching_balls_become_one_solid),
+        cmocka_unit_test(islands_are_joined_kept_or_left_out),
+        cmocka_unit_test(pinholes_are_filled),
         cmocka_unit_test(noise_ends_manifold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
