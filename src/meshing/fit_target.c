@@ -11,6 +11,11 @@ const double lar_fit_share[4] = {0.62200846792814621559, 1.0 / 6, 0.044658198738
  * the mesh has there. */
 static const double REACH = 1.8;
 
+/* How much more a flat cut weighs: it is known exactly, and its edge shall be as sharp as it was
+ * cut.
+ */
+static const double CUT_WEIGHT = 4;
+
 /* ---- trees ---------------------------------------------------------------------------------- */
 
 /* What stands for the boundary between a and b: the triangles between them; where there are none,
@@ -108,20 +113,20 @@ static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, cons
 
 /* The plane through the nearest point. It stands across the way there, which beyond the rim of an
  * open boundary, and at its edges, is not the triangle's normal; near the boundary the triangle's
- * says it better. */
+ * says it better, and a flat cut has only one. */
 static void renew_plane(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
                         const double facing[3], double weight, lar_fit_plane *plane) {
     target found;
     plane->weight = 0;
     if (!pair->tree || !find_target(work, pair, x, facing, &found)) return;
     const double distance = lar_length(found.away);
-    if (distance > 0.02) {
+    if (distance > 0.02 && pair->region[1] < LAR_REGION_CUT) {
         const double sign = lar_dot(found.away, found.normal) < 0 ? -1 : 1;
         for (int i = 0; i < 3; i++) found.normal[i] = sign * found.away[i] / distance;
     }
     for (int i = 0; i < 3; i++) plane->normal[i] = found.normal[i];
     plane->normal[3] = lar_dot(found.normal, found.point) + pair->offset;
-    plane->weight = weight;
+    plane->weight = pair->region[1] < LAR_REGION_CUT ? weight : CUT_WEIGHT * weight;
 }
 
 static void unit_normal(const lar_fit_work *work, const lar_fit_face *face, double normal[3]) {

@@ -1,0 +1,411 @@
+/* Meshes fitted to shapes whose volume is known; the energy of a corner against differences. */
+#include "shapes.h"
+
+#include "base/vector.h"
+#include "meshing/deviation.h"
+#include "meshing/fit.h"
+#include "meshing/fit_quality.h"
+
+/* ---- from a shape to a fitted mesh ---------------------------------------------------------- */
+
+typedef struct fitted {
+    lar_boundary boundary;
+    lar_draft_mesh draft;
+} fitted;
+
+static void begin_image(fitted *body, const shape *what) {
+    lar_error error = {0};
+    lar_image image;
+    shape_image(&image, what, 1e-3, SHAPE_STRAIGHT);
+    *body = (fitted){0};
+    if (lar_boundary_from_image(&image, NULL, &body->boundary, &error))
+        fail_msg("%s", error.message);
+    lar_image_clear(&image);
+}
+
+static void begin_surface(fitted *body, lar_triangles *surface) {
+    lar_error error = {0};
+    const char *const name = "body";
+    *body = (fitted){0};
+    if (lar_boundary_from_surfaces(surface, &name, 1, &body->boundary, &error))
+        fail_msg("%s", error.message);
+}
+
+static void make_draft(fitted *body, double size) {
+    lar_error error = {0};
+    lar_lattice lattice = {0};
+    lar_cleaning cleaning;
+    if (lar_lattice_fill(&body->boundary, size, &lattice, &error) ||
+        lar_lattice_clean(&lattice, &cleaning, &error) ||
+        lar_draft_create(&lattice, &body->boundary, &body->draft, &error))
+        fail_msg("%s", error.message);
+    lar_lattice_clear(&lattice);
+}
+
+static void fit(fitted *body) {
+    lar_error error = {0};
+    if (lar_fit(&body->boundary, &body->draft, NULL, &error)) fail_msg("%s", error.message);
+}
+
+static void end(fitted *body) {
+    lar_draft_clear(&body->draft);
+    lar_boundary_clear(&body->boundary);
+}
+
+static double region_volume(const lar_mesh *mesh, int region) {
+    double sum = 0;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(mesh, e, corner);
+        if (mesh->element_tag[e] == region) sum += lar_hexahedron_volume(corner);
+    }
+    return sum;
+}
+
+static double deviation_of(const fitted *body) {
+    lar_error error = {0};
+    lar_triangles outer = {0};
+    lar_deviation deviation;
+    int32_t *face = NULL, count;
+    if (lar_boundary_outer(&body->boundary, &outer, &error) ||
+        lar_mesh_boundary(&body->draft.mesh, &face, &count, &error) ||
+        lar_deviation_measure(&body->draft.mesh, face, count, &outer, &deviation, &error))
+        fail_msg("%s", error.message);
+    free(face);
+    lar_triangles_clear(&outer);
+    return deviation.mean / body->draft.size;
+}
+
+static double shortest_edge(const fitted *body) {
+    const lar_mesh *mesh = &body->draft.mesh;
+    double shortest = INFINITY;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++) {
+                double edge[3];
+                lar_minus(mesh->position[mesh->element[e][lar_fit_edge[a][k]]],
+                          mesh->position[mesh->element[e][a]], edge);
+                shortest = fmin(shortest, lar_length(edge));
+            }
+    return shortest / body->draft.size;
+}
+
+static void assert_good_elements(const fitted *body) {
+    lar_jacobians jacobians;
+    lar_jacobians_count(&body->draft.mesh, &jacobians);
+    assert_below(0.25, jacobians.least);
+    assert_below(0.95, jacobians.above_05);
+    assert_below(0.2, shortest_edge(body));
+}
+
+static void assert_region_volumes(const fitted *body, double most) {
+    for (int r = 1; r <= body->boundary.region_count; r++) {
+        double wanted = body->boundary.region[r].volume;
+        assert_below(fabs(region_volume(&body->draft.mesh, r) - wanted) / wanted, most);
+    }
+}
+
+/* ---- shapes --------------------------------------------------------------------------------- */
+
+static void fit_and_check(fitted *body, double size) {
+    make_draft(body, size);
+    double before = deviation_of(body);
+    fit(body);
+    assert_good_elements(body);
+    assert_region_volumes(body, 0.002);
+    double after = deviation_of(body);
+    assert_below(after, 0.08);
+    assert_below(after, before / 2);
+    end(body);
+}
+
+static void test_ellipsoid(void **state) {
+    (void)state;
+    fitted body;
+    lar_triangles surface;
+    const double half[3] = {0.030, 0.024, 0.018}, centre[3] = {0.1, 0, -0.02};
+    shape_ellipsoid_surface(&surface, half, centre, 40);
+    begin_surface(&body, &surface);
+    fit_and_check(&body, 3.5e-3);
+}
+
+static void test_torus(void **state) {
+    (void)state;
+    fitted body;
+    begin_image(&body, &shape_torus);
+    fit_and_check(&body, 3e-3);
+}
+
+/* One and two cells thick: the nearest triangle may be one of the other side. */
+static void test_sheet(void **state) {
+    (void)state;
+    for (int layers = 1; layers <= 2; layers++) {
+        fitted body;
+        lar_triangles surface;
+        const double half[3] = {0.030, 0.024, 0.002};
+        double lower[3], upper[3];
+        for (int i = 0; i < 3; i++) {
+            lower[i] = -half[i] - 0.0003 * (i + 1);
+            upper[i] = half[i] - 0.0003 * (i + 1);
+        }
+        shape_box_surface(&surface, lower, upper);
+        begin_surface(&body, &surface);
+        fit_and_check(&body, 3.7e-3 / layers);
+    }
+}
+
+static void test_box_with_a_hole(void **state) {
+    (void)state;
+    fitted body;
+    begin_image(&body, &shape_holes);
+    fit_and_check(&body, 3e-3);
+}
+
+static bool node_meets(const lar_draft_mesh *draft, int32_t node, int a, int b) {
+    for (int32_t i = draft->meet_start[node]; i < draft->meet_start[node + 1]; i++)
+        if (draft->meet[i][0] == a && draft->meet[i][1] == b) return true;
+    return false;
+}
+
+/* Each has its volume, and the disc where they touch is flat, to its rim. */
+static void test_touching_balls(void **state) {
+    (void)state;
+    fitted body;
+    begin_image(&body, &shape_balls);
+    make_draft(&body, 3.1e-3);
+    fit(&body);
+    assert_good_elements(&body);
+    assert_region_volumes(&body, 0.005);
+    assert_below(deviation_of(&body), 0.08);
+    int nodes = 0;
+    for (int32_t n = 0; n < body.draft.mesh.node_count; n++) {
+        if (!node_meets(&body.draft, n, 1, 2)) continue;
+        assert_below(fabs(body.draft.mesh.position[n][0]) / body.draft.size, 0.2);
+        nodes++;
+    }
+    assert_in_range(nodes, 60, 200);
+    end(&body);
+}
+
+/* A ball that the image ends in, at its middle. */
+static int half_ball(const double x[3]) {
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] < 0.020 * 0.020;
+}
+
+static void begin_cut(fitted *body) {
+    lar_error error = {0};
+    lar_image image;
+    const int32_t size[3] = {44, 44, 44};
+    const double spacing[3] = {1e-3, 1e-3, 1e-3};
+    shape_image_of(&image, half_ball, size, spacing, SHAPE_STRAIGHT);
+    image.size[2] = 26; /* the upper part is not there: cut at z = 4 mm */
+    *body = (fitted){0};
+    if (lar_boundary_from_image(&image, NULL, &body->boundary, &error))
+        fail_msg("%s", error.message);
+    lar_image_clear(&image);
+}
+
+/* Nodes on the cut lie in its plane, those of its rim on the ball too: an edge as sharp as before
+ * it was scanned. */
+static void test_flat_cut_stays_sharp(void **state) {
+    (void)state;
+    fitted body;
+    begin_cut(&body);
+    const int cut = LAR_REGION_CUT + 5;
+    const double plane = 0.004;
+    assert_string_equal(body.boundary.cut[5].name, "top");
+    make_draft(&body, 2.7e-3);
+    fit(&body);
+    assert_good_elements(&body);
+    assert_region_volumes(&body, 0.005);
+    int on_cut = 0, rim = 0;
+    for (int32_t n = 0; n < body.draft.mesh.node_count; n++) {
+        const double *x = body.draft.mesh.position[n];
+        if (!node_meets(&body.draft, n, 1, cut)) continue;
+        assert_below(fabs(x[2] - plane) / body.draft.size, 0.05);
+        on_cut++;
+        if (!node_meets(&body.draft, n, 0, 1)) continue;
+        assert_below(
+            fabs(hypot(x[0], x[1]) - sqrt(0.020 * 0.020 - plane * plane)) / body.draft.size, 0.25);
+        rim++;
+    }
+    assert_in_range(rim, 30, 70);
+    assert_in_range(on_cut, 120, 250);
+    end(&body);
+}
+
+/* ---- how it runs ---------------------------------------------------------------------------- */
+
+static void begin_small(fitted *body) {
+    lar_triangles surface;
+    const double centre[3] = {0, 0, 0};
+    shape_torus_surface(&surface, 0.022, 0.008, centre, 16);
+    begin_surface(body, &surface);
+    make_draft(body, 4e-3);
+}
+
+static void test_same_bits_twice(void **state) {
+    (void)state;
+    fitted one, two;
+    begin_small(&one);
+    begin_small(&two);
+    fit(&one);
+    fit(&two);
+    assert_int_equal(one.draft.mesh.node_count, two.draft.mesh.node_count);
+    assert_memory_equal(one.draft.mesh.position, two.draft.mesh.position,
+                        (size_t)one.draft.mesh.node_count * sizeof *one.draft.mesh.position);
+    end(&one);
+    end(&two);
+}
+
+typedef struct witness {
+    int calls, stop_at;
+    double last;
+    bool ordered;
+} witness;
+
+static bool witness_watch(void *context, double part) {
+    witness *seen = context;
+    seen->ordered = seen->ordered && part >= seen->last && part <= 1;
+    seen->last = part;
+    return ++seen->calls != seen->stop_at;
+}
+
+static void test_watch_is_told_and_stops(void **state) {
+    (void)state;
+    fitted body;
+    lar_error error = {0};
+    witness seen = {.ordered = true};
+    lar_fit_options options = {.watch = witness_watch, .context = &seen};
+    begin_small(&body);
+    double first[3];
+    memcpy(first, body.draft.mesh.position[0], sizeof first);
+    seen.stop_at = 3;
+    assert_int_equal(lar_fit(&body.boundary, &body.draft, &options, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "stopped"));
+    assert_int_equal(seen.calls, 3);
+    assert_memory_equal(first, body.draft.mesh.position[0], sizeof first); /* left as it was */
+    seen = (witness){.ordered = true};
+    assert_int_equal(lar_fit(&body.boundary, &body.draft, &options, &error), LAR_OK);
+    assert_true(seen.ordered);
+    assert_in_range(seen.calls, 5, 1000);
+    end(&body);
+}
+
+/* The bars are options: a higher one costs nearness. */
+static void test_floor_and_aim_are_kept(void **state) {
+    (void)state;
+    lar_error error = {0};
+    fitted usual, strict;
+    const lar_fit_options options = {.floor = 0.6, .aim = 0.8};
+    begin_small(&usual);
+    begin_small(&strict);
+    fit(&usual);
+    assert_int_equal(lar_fit(&strict.boundary, &strict.draft, &options, &error), LAR_OK);
+    lar_jacobians jacobians;
+    lar_jacobians_count(&strict.draft.mesh, &jacobians);
+    assert_below(0.6, jacobians.least);
+    assert_below(deviation_of(&usual), deviation_of(&strict));
+    end(&usual);
+    end(&strict);
+}
+
+static void test_inverted_element_is_refused(void **state) {
+    (void)state;
+    fitted body;
+    lar_error error = {0};
+    begin_small(&body);
+    int32_t *node = body.draft.mesh.element[5];
+    for (int a = 0; a < 4; a++) {
+        int32_t lower = node[a];
+        node[a] = node[a + 4];
+        node[a + 4] = lower;
+    }
+    assert_int_equal(lar_fit(&body.boundary, &body.draft, NULL, &error), LAR_ERROR_MODEL);
+    assert_non_null(strstr(error.message, "without volume"));
+    end(&body);
+}
+
+/* ---- the energy of a corner ----------------------------------------------------------------- */
+
+static double energy_moved(const lar_fit_law *law, const double edge[3][3], int moves, int axis,
+                           double by) {
+    double moved[3][3];
+    for (int k = 0; k < 3; k++) memcpy(moved[k], edge[k], sizeof moved[k]);
+    for (int k = 0; k < 3; k++) {
+        if (moves == LAR_FIT_MOVES_CORNER)
+            moved[k][axis] -= by;
+        else if (moves == k)
+            moved[k][axis] += by;
+    }
+    return lar_fit_corner_energy(law, (const double(*)[3])moved);
+}
+
+static void assert_derivatives(const lar_fit_law *law, const double edge[3][3], int moves) {
+    const double by = 1e-4;
+    const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    lar_fit_newton newton = {0};
+    lar_fit_corner_newton(law, edge, moves, &newton);
+    const double value = lar_fit_corner_energy(law, edge);
+    assert_below(fabs(newton.value - value), 1e-12 * (1 + fabs(value)));
+    for (int i = 0; i < 3; i++) {
+        double up = energy_moved(law, edge, moves, i, by);
+        double down = energy_moved(law, edge, moves, i, -by);
+        double slope = (up - down) / (2 * by), curve = (up - 2 * value + down) / (by * by);
+        assert_below(fabs(slope - newton.gradient[i]), 1e-4 * (1 + fabs(slope)));
+        assert_below(fabs(curve - newton.hessian[i]), 1e-3 * (1 + fabs(curve)));
+        for (int j = 0; j < 3; j++) {
+            if (i == j) continue;
+            lar_fit_newton ahead = {0}, behind = {0};
+            double moved[2][3][3];
+            for (int side = 0; side < 2; side++)
+                for (int k = 0; k < 3; k++)
+                    for (int c = 0; c < 3; c++) {
+                        double change = c != j                          ? 0
+                                        : moves == LAR_FIT_MOVES_CORNER ? -by
+                                        : moves == k                    ? by
+                                                                        : 0;
+                        moved[side][k][c] = edge[k][c] + (side ? -change : change);
+                    }
+            lar_fit_corner_newton(law, (const double(*)[3])moved[0], moves, &ahead);
+            lar_fit_corner_newton(law, (const double(*)[3])moved[1], moves, &behind);
+            double mixed = (ahead.gradient[i] - behind.gradient[i]) / (2 * by);
+            assert_below(fabs(mixed - newton.hessian[place[i][j]]), 1e-3 * (1 + fabs(mixed)));
+        }
+    }
+}
+
+static void test_energy_and_its_derivatives(void **state) {
+    (void)state;
+    const lar_fit_law law = {.shape = 0.7, .steep = 1.3, .aim = 0.9, .floor = 0.1};
+    const double cube[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double bent[3][3] = {{1.1, 0.2, -0.1}, {0.4, 0.7, 0.3}, {-0.2, 0.5, 0.9}};
+    const double straight[3][3] = {{0.8, 0.1, 0}, {-0.1, 1.2, 0.1}, {0, 0.05, 0.9}};
+    const double flat[3][3] = {{1, 0, 0}, {0, 1, 0}, {0.9, 0.9, 0.1}};
+    const double turned[3][3] = {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+    assert_below(fabs(lar_fit_corner_energy(&law, cube)), 1e-14);
+    for (int moves = 0; moves <= LAR_FIT_MOVES_CORNER; moves++) {
+        assert_derivatives(&law, cube, moves);
+        assert_derivatives(&law, bent, moves);
+        assert_derivatives(&law, straight, moves);
+    }
+    assert_true(isinf(lar_fit_corner_energy(&law, flat)));
+    assert_true(isinf(lar_fit_corner_energy(&law, turned)));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ellipsoid),
+        cmocka_unit_test(test_torus),
+        cmocka_unit_test(test_sheet),
+        cmocka_unit_test(test_box_with_a_hole),
+        cmocka_unit_test(test_touching_balls),
+        cmocka_unit_test(test_flat_cut_stays_sharp),
+        cmocka_unit_test(test_same_bits_twice),
+        cmocka_unit_test(test_watch_is_told_and_stops),
+        cmocka_unit_test(test_floor_and_aim_are_kept),
+        cmocka_unit_test(test_inverted_element_is_refused),
+        cmocka_unit_test(test_energy_and_its_derivatives),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
