@@ -79,13 +79,18 @@ static int list_labels(const mesh_settings *s) {
 /* Who asks for a label that there is not wants to know which there are. */
 static void show_what_there_is(const mesh_settings *s) {
     lar_label_list list;
-    bool known = true;
+    bool known = true, named = false;
     if (s->labels.count == 0 || s->inputs > 1 ||
         lar_label_list_read(s->input[0], s->names, &list, NULL))
         return;
     for (int i = 0; i < s->labels.count; i++)
         known = known && lar_label_list_has(&list, s->labels.text[i]);
+    for (int32_t i = 0; i < list.count; i++) named = named || list.row[i].name;
     if (!known) mesh_report_labels(s->input[0], &list, stderr);
+    if (!known && !named)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the image does not name its labels; --names FILE does, a line "
+                     "LABEL,NAME for each");
     lar_label_list_clear(&list);
 }
 

@@ -12,7 +12,7 @@
 #include "meshing/meshing.h"
 
 /* The mesh that is made when nothing is said, and the smallest that is one. */
-enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8, VOXELS_LEAST = 8 };
+enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8 };
 
 lar_meshing_options lar_meshing_options_default(void) {
     return (lar_meshing_options){.elements = ELEMENTS_DEFAULT, .scale = 1};
@@ -178,18 +178,6 @@ static lar_status name_meshing(work *w) {
 
 /* ---- the true boundary -------------------------------------------------------------------- */
 
-/* An element's worth of voxels has no shape that could be told. */
-static lar_status check_voxels(const work *w) {
-    const lar_boundary *boundary = &w->meshing->boundary;
-    double volume = 0, voxel = lar_image_voxel_volume(&w->image);
-    for (int32_t r = 1; r <= boundary->region_count; r++) volume += boundary->region[r].volume;
-    if (volume >= (VOXELS_LEAST - 0.5) * voxel) return LAR_OK;
-    return lar_fail(w->error, LAR_ERROR_MODEL,
-                    "%.200s: what is asked for (%.100s) has %.0f voxels of %.3g mL, too few to "
-                    "tell a shape; choose another label or a finer image",
-                    w->path[0], boundary->region[1].name, volume / voxel, 1e6 * voxel);
-}
-
 static lar_status boundary_of_image(work *w) {
     const lar_meshing_options *o = &w->options;
     const lar_label_choice choice = {o->label_count, o->labels, o->fuse != 0};
@@ -199,7 +187,7 @@ static lar_status boundary_of_image(work *w) {
     if (!status) status = tell(w, "finding the boundary", 0);
     if (!status)
         status = lar_boundary_from_image(&w->image, &choice, &w->meshing->boundary, w->error);
-    return status ? status : check_voxels(w);
+    return status;
 }
 
 static lar_status boundary_of_surfaces(work *w) {

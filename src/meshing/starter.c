@@ -112,7 +112,7 @@ static void put_material(const lar_region_info *region, FILE *f) {
     fputs("  - { name: ", f);
     put(f, region->name, true);
     fprintf(f,
-            ", cells: %" PRId32 ", law: neo-hookean, density: %g,\n"
+            ", cells: %" PRId32 ", law: coupled-neo-hookean, density: %g,\n"
             "      shear_modulus: %g, bulk_modulus: %.3g }\n",
             region->tag, region->density, region->shear_modulus, region->bulk_modulus);
 }

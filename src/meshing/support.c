@@ -20,7 +20,7 @@
 
 static const double TENTH = 0.1;
 /* What the pull would stretch a bar of the handle's cross-section by. */
-static const double STRETCH = 0.5;
+static const double STRETCH = 0.3;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };
@@ -63,10 +63,13 @@ static lar_status mark_surface(choice *c) {
     return status;
 }
 
-/* Whether a place lies in the tenth of the body at that side. */
-static bool at_side(const choice *c, int side, const double place[3]) {
+static double tenth(const choice *c, int side) {
+    return TENTH * (c->upper[side / 2] - c->lower[side / 2]);
+}
+
+/* Whether a place lies within reach of the body's end at that side. */
+static bool at_side(const choice *c, int side, double reach, const double place[3]) {
     int axis = side / 2;
-    double reach = TENTH * (c->upper[axis] - c->lower[axis]);
     return side % 2 ? place[axis] >= c->upper[axis] - reach : place[axis] <= c->lower[axis] + reach;
 }
 
@@ -111,7 +114,7 @@ static int mark_cuts(choice *c) {
 static void mark_side(choice *c, int side) {
     const lar_mesh *mesh = &c->meshing->mesh;
     for (int32_t n = 0; n < mesh->node_count; n++)
-        c->held[n] = c->surface[n] && at_side(c, side, mesh->position[n]);
+        c->held[n] = c->surface[n] && at_side(c, side, tenth(c, side), mesh->position[n]);
 }
 
 static void mark_rigid(choice *c) {
@@ -170,24 +173,24 @@ static double mean_shear(const lar_meshing *meshing) {
     return soft > 0 ? volume / soft : 0;
 }
 
-/* Mean cross-section of the body's tenth at a side. */
+/* Mean cross-section of the body's tenth at a side, or of its last layer of elements. */
 static double cross_section(const choice *c, int side) {
     const lar_mesh *mesh = &c->meshing->mesh;
-    double volume = 0;
+    double volume = 0, reach = fmax(tenth(c, side), c->meshing->info.size);
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3], centre[3] = {0};
         lar_mesh_corners(mesh, e, corner);
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++) centre[i] += corner[a][i] / 8;
-        if (at_side(c, side, centre)) volume += lar_hexahedron_volume(corner);
+        if (at_side(c, side, reach, centre)) volume += lar_hexahedron_volume(corner);
     }
-    return volume / (TENTH * (c->upper[side / 2] - c->lower[side / 2]));
+    return volume / reach;
 }
 
 static lar_status add_handle(choice *c, const char *name, int side, bool *in, int32_t *count) {
     const lar_mesh *mesh = &c->meshing->mesh;
     for (int32_t n = 0; n < mesh->node_count; n++)
-        in[n] = c->surface[n] && !c->held[n] && at_side(c, side, mesh->position[n]);
+        in[n] = c->surface[n] && !c->held[n] && at_side(c, side, tenth(c, side), mesh->position[n]);
     return add_set(c, name, in, count);
 }
 

@@ -38,9 +38,10 @@ static const lar_tissue tissue[] = {
     {"hollow organ",
      "stomach gastr esophag oesophag duoden bowel intestin colon rectum jejun ileum bladder "
      "urinary_bladder gallbladder gall",
-     0.64e3, 0.45, 1040, false,
-     "Lim et al., Surg Endosc 23:1298 (2009): Young's modulus 1.9 kPa, stomach pressed in place, "
-     "with its content"},
+     3e3, 0.45, 1040, false,
+     "chosen between the organ pressed in place with its content, 0.6 kPa (Lim et al., Surg Endosc "
+     "23:1298, 2009), and its wall stretched alone, hundreds of kPa (Egorov et al., J Biomech "
+     "35:1417, 2002)"},
     {"prostate", "prostat", 2.8e3, 0.45, 1040, false,
      "Kemper et al., Rofo 176:1094 (2004): 2.2 kPa in the middle, 3.3 kPa outside"},
     {"uterus", "uterus uteri uterin cervix ovar", 2.6e3, 0.45, 1050, false,

@@ -1,0 +1,280 @@
+/* From files to meshes by the public calls: figures, options, refusals. */
+#include "testing.h"
+
+#include "image_file.h"
+#include "lariat.h"
+#include "shapes.h"
+
+#define ELLIPSOID LAR_TEST_BUILD "/meshing_ellipsoid.nrrd"
+#define BALLS     LAR_TEST_BUILD "/meshing_balls.nrrd"
+#define SPECK     LAR_TEST_BUILD "/meshing_speck.nrrd"
+#define TORUS     LAR_TEST_BUILD "/meshing_torus.vtp"
+#define NUT       LAR_TEST_BUILD "/meshing_nut.vtp"
+
+static lar_error error;
+
+static int speck_label(const double x[3]) {
+    return fabs(x[0]) < 1e-3 && fabs(x[1]) < 1e-3 && fabs(x[2]) < 1e-3;
+}
+
+static void write_surface(lar_triangles *surface, const char *path) {
+    if (lar_vtp_write(path, surface, &error)) fail_msg("%s", error.message);
+    lar_triangles_clear(surface);
+}
+
+static int write_files(void **state) {
+    (void)state;
+    static const char *const names[] = {"liver", "left rib"};
+    lar_image image;
+    lar_triangles surface;
+    shape_image(&image, &shape_ellipsoid, 2e-3, SHAPE_OBLIQUE);
+    image_file(&image, ELLIPSOID, names, 1);
+    lar_image_clear(&image);
+    shape_image(&image, &shape_balls, 2e-3, SHAPE_STRAIGHT);
+    image_file(&image, BALLS, names, 2);
+    lar_image_clear(&image);
+    const int32_t size[3] = {9, 9, 9};
+    const double spacing[3] = {2e-3, 2e-3, 2e-3};
+    shape_image_of(&image, speck_label, size, spacing, SHAPE_STRAIGHT);
+    image_file(&image, SPECK, NULL, 0);
+    lar_image_clear(&image);
+    const double centre[3] = {0, 0, 0}, half[3] = {30, 24, 18};
+    shape_torus_surface(&surface, 22, 8, centre, 24);
+    write_surface(&surface, TORUS);
+    shape_ellipsoid_surface(&surface, half, centre, 24);
+    write_surface(&surface, NUT);
+    return 0;
+}
+
+static lar_meshing *made(const char *path, const lar_meshing_options *options) {
+    lar_meshing *meshing = NULL;
+    if (lar_meshing_create(&path, 1, options, &meshing, &error)) fail_msg("%s", error.message);
+    return meshing;
+}
+
+/* Whether it is refused with these words, and nothing is set. */
+static void refused(const char *const *paths, int32_t count, const lar_meshing_options *options,
+                    lar_status status, const char *words) {
+    lar_meshing *meshing = NULL;
+    error = (lar_error){0};
+    assert_int_equal(lar_meshing_create(paths, count, options, &meshing, &error), status);
+    assert_null(meshing);
+    assert_int_equal(error.status, status);
+    if (!strstr(error.message, words)) fail_msg("'%s' lacks '%s'", error.message, words);
+}
+
+static void check_quality(const lar_meshing_info *info, double true_volume) {
+    const lar_mesh_quality *q = &info->quality;
+    int32_t sum = 0;
+    for (int b = 0; b < 10; b++) sum += q->jacobian_bin[b];
+    assert_int_equal(sum, info->elements);
+    assert_true(q->above_02 == 1);
+    assert_true(q->above_05 > 0.9);
+    assert_below(fabs(q->volume / true_volume - 1), 0.02);
+    assert_below(fabs(q->volume / q->true_volume - 1), 0.02);
+    assert_below(q->deviation_mean, 0.15 * info->size);
+    assert_true(q->deviation_mean > 0);
+    assert_true(q->deviation_mean <= q->deviation_most);
+    assert_true(q->deviation_95 <= q->deviation_most);
+    assert_below(fabs(q->mean_edge / info->size - 1), 0.2);
+}
+
+static void an_image_becomes_a_mesh(void **state) {
+    (void)state;
+    lar_meshing_options options = lar_meshing_options_default();
+    lar_meshing_info info;
+    lar_region_info region;
+    options.elements = 1000;
+    lar_meshing *meshing = made(ELLIPSOID, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_string_equal(info.title, "liver");
+    assert_string_equal(info.name, "liver");
+    assert_string_equal(info.fix, "back");
+    assert_in_range(info.elements, 950, 1050);
+    assert_int_equal(info.regions, 1);
+    assert_int_equal(info.cuts, 0);
+    assert_true(info.fixed_nodes > 0 && info.fixed_nodes < info.nodes / 2);
+    check_quality(&info, shape_ellipsoid.volume);
+    assert_int_equal(lar_meshing_region(meshing, 0, &region, &error), LAR_OK);
+    assert_string_equal(region.name, "liver");
+    assert_string_equal(region.tissue, "liver");
+    assert_int_equal(region.tag, 1);
+    assert_int_equal(region.elements, info.elements);
+    assert_int_equal(region.held, 0);
+    assert_below(fabs(region.volume / info.quality.volume - 1), 1e-9);
+    assert_below(fabs(region.bulk_modulus / region.shear_modulus - 2 * 1.45 / 0.3), 1e-9);
+    lar_meshing_destroy(meshing);
+    lar_meshing_destroy(NULL);
+}
+
+static void regions_may_be_chosen_and_fused(void **state) {
+    (void)state;
+    static const char *const second[] = {"LEFT RIB"};
+    lar_meshing_options options = lar_meshing_options_default();
+    lar_meshing_info info;
+    lar_region_info region;
+    options.elements = 600;
+    lar_meshing *meshing = made(BALLS, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_int_equal(info.regions, 2);
+    assert_string_equal(info.title, "meshing_balls");
+    check_quality(&info, shape_balls.volume);
+    assert_int_equal(lar_meshing_region(meshing, 1, &region, &error), LAR_OK);
+    assert_string_equal(region.tissue, "bone");
+    assert_int_equal(region.held, 1);
+    assert_below(fabs(region.volume / (shape_balls.volume / 2) - 1), 0.02);
+    int32_t held = info.fixed_nodes;
+    assert_int_equal(lar_meshing_region(meshing, 2, &region, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_region(meshing, -1, &region, &error), LAR_ERROR_ARGUMENT);
+    lar_meshing_destroy(meshing);
+
+    options.fuse = 1;
+    meshing = made(BALLS, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_int_equal(info.regions, 1);
+    assert_true(info.fixed_nodes < held);
+    lar_meshing_destroy(meshing);
+
+    options.fuse = 0;
+    options.labels = second;
+    options.label_count = 1;
+    options.title = "Ball / two";
+    options.fix = "none";
+    meshing = made(BALLS, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_int_equal(info.regions, 1);
+    assert_string_equal(info.title, "Ball / two");
+    assert_string_equal(info.name, "Ball___two");
+    assert_int_equal(info.fixed_nodes, info.nodes); /* all bone */
+    lar_meshing_destroy(meshing);
+}
+
+static void surfaces_become_meshes(void **state) {
+    (void)state;
+    static const char *const both[] = {NUT, TORUS};
+    lar_meshing_options options = lar_meshing_options_default();
+    lar_meshing_info info;
+    lar_meshing *meshing = NULL;
+    options.elements = 0;
+    options.size = 4e-3;
+    options.scale = 1e-3;
+    options.fix = "bottom";
+    meshing = made(TORUS, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_string_equal(info.name, "meshing_torus");
+    assert_string_equal(info.fix, "bottom");
+    assert_true(info.size == 4e-3);
+    check_quality(&info, info.quality.true_volume);
+    assert_below(fabs(info.quality.true_volume / shape_torus.volume - 1), 0.03);
+    lar_meshing_destroy(meshing);
+    assert_int_equal(lar_meshing_create(both, 2, &options, &meshing, &error), LAR_OK);
+    lar_meshing_inspect(meshing, &info);
+    assert_int_equal(info.regions, 2);
+    assert_string_equal(info.title, "meshing_nut");
+    lar_meshing_destroy(meshing);
+}
+
+static void cubes_stay_cubes(void **state) {
+    (void)state;
+    lar_meshing_options options = {.voxel = 1};
+    lar_meshing_info info;
+    lar_meshing *meshing = made(ELLIPSOID, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_below(fabs(info.size - 2e-3), 1e-9);
+    assert_int_equal(info.quality.jacobian_bin[9], info.elements);
+    assert_below(fabs(info.quality.mean_edge - info.size), 1e-9);
+    assert_below(fabs(info.elements * 8e-9 / shape_ellipsoid.volume - 1), 0.02);
+    lar_meshing_destroy(meshing);
+    options.elements = 300;
+    options.principal = 1;
+    meshing = made(ELLIPSOID, &options);
+    lar_meshing_inspect(meshing, &info);
+    assert_in_range(info.elements, 280, 320);
+    assert_int_equal(info.quality.jacobian_bin[9], info.elements);
+    lar_meshing_destroy(meshing);
+}
+
+static void what_makes_no_sense_is_refused(void **state) {
+    (void)state;
+    static const char *const image[] = {ELLIPSOID}, *const mixed[] = {TORUS, ELLIPSOID},
+                             *const torus[] = {TORUS}, *const none[] = {"none.stl"},
+                             *const text[] = {"a.txt"}, *const empty[] = {""},
+                             *const speck[] = {SPECK}, *const label[] = {"7"};
+    const lar_meshing_options plain = lar_meshing_options_default();
+    const lar_status argument = LAR_ERROR_ARGUMENT;
+    lar_meshing_options o = plain;
+    refused(NULL, 1, NULL, argument, "at least one file");
+    refused(image, 0, NULL, argument, "at least one file");
+    assert_int_equal(lar_meshing_create(image, 1, NULL, NULL, &error), argument);
+    refused(mixed, 2, NULL, argument, "mesh one image");
+    refused(none, 1, NULL, LAR_ERROR_IO, "none.stl");
+    refused(text, 1, NULL, argument, ".nrrd");
+    refused(empty, 1, NULL, argument, "empty");
+    refused(speck, 1, NULL, LAR_ERROR_MODEL, "1 voxel");
+    o.size = 1e-3;
+    refused(image, 1, &o, argument, "both given");
+    o = (lar_meshing_options){.size = NAN};
+    refused(image, 1, &o, argument, "finite");
+    o = (lar_meshing_options){.size = -1};
+    refused(image, 1, &o, argument, "not negative");
+    o = (lar_meshing_options){.scale = 0.001};
+    refused(image, 1, &o, argument, "for surfaces only");
+    o = (lar_meshing_options){.labels = label, .label_count = 1};
+    refused(torus, 1, &o, argument, "no labels");
+    refused(image, 1, &o, LAR_ERROR_MODEL, "7");
+    o = (lar_meshing_options){.label_count = 1};
+    refused(image, 1, &o, argument, "NULL");
+    o = (lar_meshing_options){.fuse = 1};
+    refused(torus, 1, &o, argument, "fused");
+    o = (lar_meshing_options){.names = "names.csv"};
+    refused(torus, 1, &o, argument, "names");
+    o = (lar_meshing_options){.title = ""};
+    refused(image, 1, &o, argument, "title");
+    o = (lar_meshing_options){.voxel = 1, .principal = 1};
+    refused(image, 1, &o, argument, "principal");
+    o = (lar_meshing_options){.elements = 100, .fix = "sideways"};
+    refused(image, 1, &o, argument, "there are left, right");
+    o.fix = "cut";
+    refused(image, 1, &o, argument, "flat cut");
+    o = (lar_meshing_options){.elements = 2};
+    refused(image, 1, &o, LAR_ERROR_MODEL, "more elements");
+    o = (lar_meshing_options){.size = 0.2};
+    refused(image, 1, &o, LAR_ERROR_MODEL, "smaller size");
+    assert_int_equal(lar_meshing_region(NULL, 0, NULL, &error), argument);
+    assert_int_equal(lar_meshing_write(NULL, "x", NULL, &error), argument);
+}
+
+typedef struct patience {
+    int told, most;
+} patience;
+
+static int watch(void *context, const char *what, double part) {
+    patience *p = context;
+    assert_true(*what && part >= 0 && part <= 1);
+    return p->told++ < p->most;
+}
+
+static void it_can_be_stopped(void **state) {
+    (void)state;
+    static const char *const image[] = {ELLIPSOID};
+    patience p = {.most = 1000000};
+    lar_meshing_options o = {.elements = 200, .watch = watch, .context = &p};
+    lar_meshing_destroy(made(ELLIPSOID, &o));
+    int all = p.told;
+    assert_true(all >= 5);
+    for (int most = 0; most<all; most += all> 20 ? all / 10 : 1) {
+        p = (patience){.most = most};
+        refused(image, 1, &o, LAR_ERROR_ARGUMENT, "stopped");
+        assert_int_equal(p.told, most + 1);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(an_image_becomes_a_mesh),
+                                       cmocka_unit_test(regions_may_be_chosen_and_fused),
+                                       cmocka_unit_test(surfaces_become_meshes),
+                                       cmocka_unit_test(cubes_stay_cubes),
+                                       cmocka_unit_test(what_makes_no_sense_is_refused),
+                                       cmocka_unit_test(it_can_be_stopped)};
+    return cmocka_run_group_tests(tests, write_files, NULL);
+}

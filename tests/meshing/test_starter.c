@@ -1,0 +1,208 @@
+/* The files of a meshing: a scene that reads, runs, and holds what it says it holds. */
+#include "testing.h"
+
+#include <sys/stat.h>
+
+#include "image_file.h"
+#include "lariat.h"
+#include "shapes.h"
+
+#define BALLS  LAR_TEST_BUILD "/starter_balls.nrrd"
+#define TORUS  LAR_TEST_BUILD "/starter_torus.vtp"
+#define FOLDER LAR_TEST_BUILD "/starter/deep"
+
+static lar_error error;
+
+static int write_files(void **state) {
+    (void)state;
+    /* What a file may call its segments: quotes, backslashes, bytes that are no text. */
+    static const char *const names[] = {"li\"v\\er: # {x}", "bone \xff\x01 \xc3\xa9"};
+    lar_image image;
+    lar_triangles torus;
+    shape_image(&image, &shape_balls, 2e-3, SHAPE_STRAIGHT);
+    image_file(&image, BALLS, names, 2);
+    lar_image_clear(&image);
+    const double centre[3] = {0, 0, 0};
+    shape_torus_surface(&torus, 0.022, 0.008, centre, 16);
+    if (lar_vtp_write(TORUS, &torus, &error)) fail_msg("%s", error.message);
+    lar_triangles_clear(&torus);
+    return 0;
+}
+
+/* Meshes, writes and opens. */
+static lar_model *model_of(const char *path, lar_meshing_options options, lar_meshing_info *info) {
+    lar_meshing *meshing = NULL;
+    lar_model *model = NULL;
+    const char *scene;
+    options.elements = 400;
+    if (lar_meshing_create(&path, 1, &options, &meshing, &error) ||
+        lar_meshing_write(meshing, FOLDER, &scene, &error) || lar_model_open(scene, &model, &error))
+        fail_msg("%s", error.message);
+    lar_meshing_inspect(meshing, info);
+    lar_meshing_destroy(meshing);
+    return model;
+}
+
+static int32_t set_size(const lar_model *model, const char *name) {
+    lar_set_info set;
+    for (int32_t i = 0; !lar_model_set(model, i, &set, NULL); i++)
+        if (strcmp(set.name, name) == 0 && strcmp(set.kind, "nodes") == 0) return set.count;
+    return 0;
+}
+
+static void check_run(const lar_model *model, double seconds, double *moved) {
+    lar_simulation *simulation = NULL;
+    lar_model_info info;
+    if (lar_model_inspect(model, &info, &error) ||
+        lar_simulation_create(model, NULL, &simulation, &error) ||
+        lar_simulation_advance(simulation, (uint64_t)(seconds / info.time_step), &error))
+        fail_msg("%s", error.message);
+    double(*u)[3] = calloc((size_t)info.nodes, sizeof *u);
+    lar_simulation_displacements(simulation, u);
+    *moved = 0;
+    for (int32_t n = 0; n < info.nodes; n++)
+        *moved = fmax(*moved, hypot(hypot(u[n][0], u[n][1]), u[n][2]));
+    free(u);
+    lar_simulation_destroy(simulation);
+}
+
+static void a_scene_of_two_regions_runs(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    lar_model_info model_info;
+    lar_material_info material;
+    lar_embedded_info fine;
+    lar_model *model = model_of(BALLS, (lar_meshing_options){.title = "two # balls"}, &info);
+    assert_int_equal(lar_model_inspect(model, &model_info, &error), LAR_OK);
+    assert_string_equal(model_info.title, "two # balls");
+    assert_int_equal(model_info.elements, info.elements);
+    assert_int_equal(model_info.fixed_nodes, info.fixed_nodes);
+    assert_int_equal(model_info.materials, 2);
+    assert_int_equal(lar_model_material(model, 0, &material, &error), LAR_OK);
+    assert_string_equal(material.name, "li\"v\\er: # {x}");
+    assert_true(material.elements > 100);
+    assert_int_equal(lar_model_material(model, 1, &material, &error), LAR_OK);
+    assert_string_equal(material.name, "bone ?  \xc3\xa9");
+    assert_true(lar_model_embedded(model, &fine));
+    assert_true(fine.triangles > 1000);
+    assert_true(set_size(model, "support") > 0);
+    assert_true(set_size(model, "handle") > 0);
+    double moved;
+    check_run(model, 0.5, &moved); /* while it is pulled */
+    assert_true(moved > 1e-4 && moved < 0.03);
+    lar_model_destroy(model);
+}
+
+/* The pull lets go, and it is at rest again at the end. */
+static void a_pull_grows_and_lets_go(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    double pulled, after;
+    lar_model *model = model_of(TORUS, (lar_meshing_options){.fix = "left"}, &info);
+    assert_true(lar_model_duration(model) == 2);
+    check_run(model, 0.7, &pulled);
+    check_run(model, 2, &after);
+    assert_true(pulled > 5e-4 && pulled < 0.04);
+    assert_below(after, 0.05 * pulled);
+    lar_model_destroy(model);
+}
+
+/* Pulled on both sides, so that it stays about where it is. */
+static void what_nothing_holds_is_stretched(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    double pulled;
+    lar_model *model = model_of(TORUS, (lar_meshing_options){.fix = "none"}, &info);
+    assert_int_equal(info.fixed_nodes, 0);
+    assert_int_equal(set_size(model, "support"), 0);
+    assert_true(set_size(model, "handle") > 0 && set_size(model, "handle_opposite") > 0);
+    check_run(model, 0.7, &pulled);
+    assert_true(pulled > 2e-4 && pulled < 0.03);
+    lar_model_destroy(model);
+}
+
+static void sides_are_where_they_are_said_to_be(void **state) {
+    (void)state;
+    static const struct {
+        const char *fix;
+        int axis;
+        double sign;
+    } side[] = {{"left", 0, -1}, {"right", 0, 1},   {"back", 1, -1},
+                {"front", 1, 1}, {"bottom", 2, -1}, {"top", 2, 1}};
+    for (int s = 0; s < 6; s++) {
+        lar_meshing_info info;
+        lar_model_info box;
+        lar_model *model = model_of(TORUS, (lar_meshing_options){.fix = side[s].fix}, &info);
+        lar_simulation *simulation = NULL;
+        assert_int_equal(lar_model_inspect(model, &box, &error), LAR_OK);
+        assert_int_equal(lar_simulation_create(model, NULL, &simulation, &error), LAR_OK);
+        uint64_t steps = (uint64_t)(0.3 / box.time_step);
+        assert_int_equal(lar_simulation_advance(simulation, steps, &error), LAR_OK);
+        double(*u)[3] = calloc((size_t)box.nodes, sizeof *u);
+        lar_simulation_displacements(simulation, u);
+        const double(*x)[3] = lar_model_positions(model);
+        double middle = (box.lower[side[s].axis] + box.upper[side[s].axis]) / 2;
+        int32_t still = 0;
+        for (int32_t n = 0; n < box.nodes; n++) {
+            if (u[n][0] != 0 || u[n][1] != 0 || u[n][2] != 0) continue;
+            assert_true(side[s].sign * (x[n][side[s].axis] - middle) > 0);
+            still++;
+        }
+        assert_int_equal(still, info.fixed_nodes);
+        free(u);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model);
+    }
+}
+
+static void quality_of_a_model_is_that_of_its_meshing(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    lar_mesh_quality riding, file, scaled;
+    lar_model *model = model_of(TORUS, (lar_meshing_options){0}, &info);
+    assert_int_equal(lar_model_quality(model, NULL, 1, &riding, &error), LAR_OK);
+    assert_int_equal(lar_model_quality(model, TORUS, 1, &file, &error), LAR_OK);
+    assert_int_equal(lar_model_quality(model, TORUS, 1.01, &scaled, &error), LAR_OK);
+    assert_below(fabs(riding.volume / info.quality.volume - 1), 1e-12);
+    assert_below(fabs(riding.deviation_mean / info.quality.deviation_mean - 1), 1e-6);
+    assert_below(fabs(file.deviation_mean / info.quality.deviation_mean - 1), 1e-6);
+    assert_below(fabs(file.true_volume / info.quality.true_volume - 1), 1e-3);
+    assert_below(fabs(scaled.true_volume / file.true_volume - 1.01 * 1.01 * 1.01), 1e-6);
+    assert_true(scaled.deviation_mean > file.deviation_mean);
+    error = (lar_error){0};
+    assert_int_equal(lar_model_quality(model, TORUS, 0, &file, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_model_quality(model, TORUS, NAN, &file, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_model_quality(NULL, TORUS, 1, &file, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_model_quality(model, TORUS, 1, NULL, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_model_quality(model, "none.stl", 1, &file, &error), LAR_ERROR_IO);
+    lar_model_destroy(model);
+}
+
+static void a_folder_that_cannot_be_is_told(void **state) {
+    (void)state;
+    static const char *const path[] = {TORUS};
+    lar_meshing_options options = {.elements = 200};
+    lar_meshing *meshing = NULL;
+    const char *scene = NULL;
+    assert_int_equal(lar_meshing_create(path, 1, &options, &meshing, &error), LAR_OK);
+    assert_int_equal(lar_meshing_write(meshing, TORUS "/x", &scene, &error), LAR_ERROR_IO);
+    assert_int_equal(lar_meshing_write(meshing, "", &scene, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_write(meshing, NULL, &scene, &error), LAR_ERROR_ARGUMENT);
+    assert_null(scene);
+    /* Twice is fine; the scene's path may be left out. */
+    assert_int_equal(lar_meshing_write(meshing, FOLDER, NULL, &error), LAR_OK);
+    assert_int_equal(lar_meshing_write(meshing, FOLDER, &scene, &error), LAR_OK);
+    struct stat file;
+    assert_int_equal(stat(scene, &file), 0);
+    lar_meshing_destroy(meshing);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
+                                       cmocka_unit_test(a_pull_grows_and_lets_go),
+                                       cmocka_unit_test(what_nothing_holds_is_stretched),
+                                       cmocka_unit_test(sides_are_where_they_are_said_to_be),
+                                       cmocka_unit_test(quality_of_a_model_is_that_of_its_meshing),
+                                       cmocka_unit_test(a_folder_that_cannot_be_is_told)};
+    return cmocka_run_group_tests(tests, write_files, NULL);
+}
