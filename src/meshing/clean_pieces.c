@@ -5,7 +5,7 @@
 
 /* Limits of islands and pinholes, lattice.h. */
 static const double ISLAND_PART = 0.05, PINHOLE_PART = 0.01;
-enum { ISLAND_CELLS = 8, PINHOLE_CELLS = 27 };
+enum { ISLAND_CELLS = 3, PINHOLE_CELLS = 27 };
 /* An island goes to its neighbours when these have at least this part of its outer faces. */
 static const double GIVEN_PART = 0.25;
 
