@@ -237,6 +237,31 @@ static void test_flat_voxels(void **state) {
     lar_image_clear(&image);
 }
 
+/* Axes that are not square to each other: volumes are right all the same, and so are the cuts. */
+static void test_sheared(void **state) {
+    (void)state;
+    lar_image image;
+    lar_boundary boundary;
+    cut_image(&image, SHAPE_STRAIGHT);
+    image.to_world[0][1] = 0.5e-3;
+    image.to_world[1][2] = -0.4e-3;
+    make(&image, NULL, &boundary);
+    assert_below(check_regions(&boundary), 1e-3);
+    for (int a = 0; a < 3; a++)
+        assert_below(fabs(lar_dot(boundary.axis[a], boundary.axis[(a + 1) % 3])), 1e-12);
+    for (int32_t t = 0; t < boundary.triangles.triangle_count; t++) {
+        if (boundary.side[t][0] < LAR_REGION_CUT) continue;
+        const lar_cut *cut = &boundary.cut[boundary.side[t][0] - LAR_REGION_CUT];
+        for (int c = 0; c < 3; c++) {
+            double x[3];
+            lar_minus(boundary.triangles.vertex[boundary.triangles.corner[t][c]], cut->through, x);
+            assert_below(fabs(lar_dot(x, cut->normal)), 1e-12);
+        }
+    }
+    lar_boundary_clear(&boundary);
+    lar_image_clear(&image);
+}
+
 /* ---- small and awkward ---------------------------------------------------------------------- */
 
 static int (*index_label)(int i, int j, int k);
@@ -489,13 +514,14 @@ static void test_principal_axes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes),      cmocka_unit_test(test_distance),
-        cmocka_unit_test(test_mirrored),    cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_flat_voxels), cmocka_unit_test(test_touching),
-        cmocka_unit_test(test_thin),        cmocka_unit_test(test_all_cut),
-        cmocka_unit_test(test_refused),     cmocka_unit_test(test_noise),
-        cmocka_unit_test(test_choice),      cmocka_unit_test(test_surfaces),
-        cmocka_unit_test(test_one_surface), cmocka_unit_test(test_principal_axes),
+        cmocka_unit_test(test_shapes),         cmocka_unit_test(test_distance),
+        cmocka_unit_test(test_mirrored),       cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_flat_voxels),    cmocka_unit_test(test_sheared),
+        cmocka_unit_test(test_touching),       cmocka_unit_test(test_thin),
+        cmocka_unit_test(test_all_cut),        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_noise),          cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_surfaces),       cmocka_unit_test(test_one_surface),
+        cmocka_unit_test(test_principal_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
