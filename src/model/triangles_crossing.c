@@ -38,25 +38,27 @@ static double overlap(const double axis[3], const double a[3][3], const double b
     return fmin(to[0] - from[1], to[1] - from[0]) / length;
 }
 
-/* Of two triangles of about `size`, given from an origin near them; 0 or less: they do not cross.
- */
-static double depth_of(const double a[3][3], const double b[3][3], double size) {
-    double e[3][3], f[3][3], axis[3], depth = INFINITY;
+/* Of two triangles given from an origin near them; 0: none, or only as much as rounding makes of
+ * touching. */
+static double depth_of(const double a[3][3], const double b[3][3]) {
+    const double rounding = 1e-12; /* of their size */
+    double e[3][3], f[3][3], square = 0;
     for (int k = 0; k < 3; k++) {
         lar_minus(a[(k + 1) % 3], a[k], e[k]);
         lar_minus(b[(k + 1) % 3], b[k], f[k]);
+        square = fmax(square, fmax(lar_dot(a[k], a[k]), lar_dot(b[k], b[k])));
     }
-    const double shortest = 1e-13 * size * size;
-    lar_cross(e[0], e[1], axis);
-    depth = fmin(depth, overlap(axis, a, b, shortest));
-    lar_cross(f[0], f[1], axis);
-    depth = fmin(depth, overlap(axis, a, b, shortest));
-    for (int i = 0; i < 3 && depth > 0; i++)
-        for (int k = 0; k < 3 && depth > 0; k++) {
-            lar_cross(e[i], f[k], axis);
-            depth = fmin(depth, overlap(axis, a, b, shortest));
-        }
-    return depth;
+    const double shortest = 1e-13 * square, touching = rounding * sqrt(square);
+    double depth = INFINITY;
+    for (int test = 0; test < 11 && depth > touching; test++) {
+        double axis[3];
+        if (test < 2)
+            lar_cross(test ? f[0] : e[0], test ? f[1] : e[1], axis);
+        else
+            lar_cross(e[(test - 2) / 3], f[(test - 2) % 3], axis);
+        depth = fmin(depth, overlap(axis, a, b, shortest));
+    }
+    return isfinite(depth) && depth > touching ? depth : 0;
 }
 
 /* ---- all pairs ---------------------------------------------------------------------------- */
@@ -69,19 +71,17 @@ typedef struct search {
 } search;
 
 static bool compare(void *context, int32_t other) {
-    const double rounding = 1e-12; /* of the size of two triangles; depths below are touching */
     search *s = context;
     const int32_t *mine = s->surface->corner[s->triangle], *its = s->surface->corner[other];
     if (other <= s->triangle || common_corners(mine, its) > 1) return true;
     const double *origin = s->surface->vertex[mine[0]];
-    double a[3][3], b[3][3], size = 0;
+    double a[3][3], b[3][3];
     for (int k = 0; k < 3; k++) {
         lar_minus(s->surface->vertex[mine[k]], origin, a[k]);
         lar_minus(s->surface->vertex[its[k]], origin, b[k]);
-        size = fmax(size, fmax(lar_length(a[k]), lar_length(b[k])));
     }
-    double depth = depth_of(a, b, size);
-    if (!isfinite(depth) || !(depth > rounding * size)) return true;
+    double depth = depth_of(a, b);
+    if (depth == 0) return true;
     lar_crossings *found = s->found;
     if (depth > found->deepest) {
         found->deepest = depth;
