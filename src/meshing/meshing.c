@@ -121,6 +121,7 @@ static lar_status check_options(work *w) {
     if (o->title && !*o->title)
         return refuse(w, "%s", "the title is empty; leave it NULL or name one");
     lar_status status = check_paths(w);
+    if (!status) status = lar_support_check(o->fix, w->error);
     return status ? status : check_image_options(w);
 }
 

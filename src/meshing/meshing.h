@@ -37,6 +37,9 @@ struct lar_meshing {
     char *scene; /* path, once written */
 };
 
+/* Whether the rule is one, or NULL. */
+lar_status lar_support_check(const char *rule, lar_error *error);
+
 /* Adds the node sets "support" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
  * regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);

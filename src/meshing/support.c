@@ -12,7 +12,6 @@
  */
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,6 +86,33 @@ static lar_status add_set(choice *c, const char *name, const bool *in, int32_t *
 
 /* ---- what holds it ------------------------------------------------------------------------- */
 
+lar_status lar_support_check(const char *rule, lar_error *error) {
+    if (!rule || side_of(rule) >= 0 || strcmp(rule, "cut") == 0 || strcmp(rule, "none") == 0)
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "fix %.40s: there are left, right, back, front, bottom, top, cut and none",
+                    rule);
+}
+
+/* Whether the set is that of a cut with this name: where two cuts of an oblique image have the same
+ * one a number follows it. */
+static bool is_cut(const lar_set *set, const char *name) {
+    size_t length = strlen(name);
+    if (set->kind != LAR_SET_FACES || strncmp(set->name, "cut_", 4) != 0) return false;
+    if (strncmp(set->name + 4, name, length) != 0) return false;
+    const char *rest = set->name + 4 + length;
+    return !*rest || (rest[0] == '_' && rest[1] && !rest[1 + strspn(rest + 1, "0123456789")]);
+}
+
+static void mark_faces(choice *c, const lar_set *faces) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    for (int32_t k = 0; k < faces->count; k++)
+        for (int a = 0; a < 4; a++) {
+            int32_t face = faces->index[k];
+            c->held[mesh->element[face / 6][lar_face_node[face % 6][a]]] = true;
+        }
+}
+
 /* Marks the nodes of the flat cuts; returns the side that most of them are at. */
 static int mark_cuts(choice *c) {
     const lar_mesh *mesh = &c->meshing->mesh;
@@ -94,18 +120,15 @@ static int mark_cuts(choice *c) {
     int32_t most = 0;
     int where = -1;
     for (int i = 0; i < LAR_CUTS; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "cut_%s", boundary->cut[i].name);
-        const lar_set *faces = lar_mesh_find_set(mesh, name, LAR_SET_FACES);
-        if (!*boundary->cut[i].name || !faces) continue;
-        for (int32_t k = 0; k < faces->count; k++)
-            for (int a = 0; a < 4; a++) {
-                int32_t face = faces->index[k];
-                c->held[mesh->element[face / 6][lar_face_node[face % 6][a]]] = true;
+        const char *name = boundary->cut[i].name;
+        for (int32_t s = 0; *name && s < mesh->set_count; s++) {
+            const lar_set *faces = &mesh->set[s];
+            if (!is_cut(faces, name)) continue;
+            mark_faces(c, faces);
+            if (faces->count > most) {
+                most = faces->count;
+                where = side_of(name);
             }
-        if (faces->count > most) {
-            most = faces->count;
-            where = side_of(boundary->cut[i].name);
         }
     }
     return where;
@@ -144,12 +167,8 @@ static lar_status hold(choice *c, const char *rule, int *side) {
     } else if (*side >= 0) {
         mark_side(c, *side);
         support->rule = side_name[*side];
-    } else if (strcmp(rule, "none") == 0) {
-        support->rule = "none";
     } else {
-        return lar_fail(c->error, LAR_ERROR_ARGUMENT,
-                        "fix %.40s: there are left, right, back, front, bottom, top, cut and none",
-                        rule);
+        support->rule = "none";
     }
     int32_t count;
     lar_status status = add_set(c, "support", c->held, &count);

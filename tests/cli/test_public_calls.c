@@ -54,9 +54,68 @@ static void model_calls(void **unused) {
     REFUSED(lar_model_tool(NULL, 0, &tool, &error));
     REFUSED(lar_model_tool(model, 0, NULL, &error));
     REFUSED(lar_model_tool(model, 0, &tool, &error));
+    lar_embedded_info embedded;
+    assert_int_equal(lar_model_embedded(NULL, &embedded), 0);
+    assert_int_equal(lar_model_embedded(model, &embedded), 0);
+    lar_model_embedded_move(model, NULL, NULL);
+    assert_non_null(lar_model_element_nodes(model, 0));
+    assert_null(lar_model_element_nodes(model, -1));
+    assert_null(lar_model_element_nodes(NULL, 0));
     REFUSED(lar_demo_write(NULL, &error));
     lar_model_destroy(model);
     lar_model_destroy(NULL);
+}
+
+static int never(void *context, const char *what, double part) {
+    (void)context;
+    (void)what;
+    (void)part;
+    return 0;
+}
+
+static void meshing_calls(void **unused) {
+    (void)unused;
+    static const char *const none[] = {NULL}, *const text[] = {"organ.txt"},
+                             *const image[] = {"organ.nrrd"};
+    lar_model *model = NULL;
+    lar_meshing *meshing = NULL;
+    lar_mesh_quality quality;
+    lar_embedded_info embedded;
+    lar_meshing_options options = lar_meshing_options_default();
+    assert_int_equal(options.elements, 5000);
+    assert_true(options.scale == 1);
+    assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
+    REFUSED(lar_model_quality(NULL, NULL, 1, &quality, &error));
+    REFUSED(lar_model_quality(model, NULL, 1, NULL, &error));
+    REFUSED(lar_model_quality(model, "organ.stl", 0, &quality, &error));
+    REFUSED(lar_model_quality(model, "organ.stl", -1, &quality, &error));
+    REFUSED(lar_model_quality(model, "organ.stl", INFINITY, &quality, &error));
+    assert_int_equal(lar_model_quality(model, NULL, 1, &quality, &error), LAR_OK);
+    assert_true(quality.true_volume == 0 && quality.deviation_most == 0);
+    assert_true(quality.above_05 == 1 && quality.volume > 0);
+    assert_int_equal(lar_model_embedded(model, &embedded), 0);
+    REFUSED(lar_meshing_create(NULL, 1, NULL, &meshing, &error));
+    REFUSED(lar_meshing_create(image, 0, NULL, &meshing, &error));
+    REFUSED(lar_meshing_create(image, -1, NULL, &meshing, &error));
+    REFUSED(lar_meshing_create(image, 1, NULL, NULL, &error));
+    REFUSED(lar_meshing_create(none, 1, NULL, &meshing, &error));
+    REFUSED(lar_meshing_create(text, 1, NULL, &meshing, &error));
+    options.size = -1;
+    REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
+    options = (lar_meshing_options){.elements = -1};
+    REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
+    options = (lar_meshing_options){.label_count = -1};
+    REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
+    options = (lar_meshing_options){.fix = "sideways"};
+    REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
+    options = (lar_meshing_options){.watch = never};
+    REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
+    assert_int_equal(lar_meshing_create(image, 1, NULL, &meshing, NULL), LAR_ERROR_IO);
+    assert_null(meshing);
+    REFUSED(lar_meshing_region(NULL, 0, &(lar_region_info){0}, &error));
+    REFUSED(lar_meshing_write(NULL, "organ", NULL, &error));
+    lar_meshing_destroy(NULL);
+    lar_model_destroy(model);
 }
 
 static void simulation_calls(void **unused) {
@@ -169,7 +228,8 @@ static void restart_and_picture_calls(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(model_calls), cmocka_unit_test(simulation_calls),
-        cmocka_unit_test(tool_calls), cmocka_unit_test(restart_and_picture_calls)};
+        cmocka_unit_test(model_calls), cmocka_unit_test(meshing_calls),
+        cmocka_unit_test(simulation_calls), cmocka_unit_test(tool_calls),
+        cmocka_unit_test(restart_and_picture_calls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,134 @@
+#!/bin/sh
+# lariat mesh: from an image and from surfaces to scenes that run; lariat info tells their quality.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+
+# An ellipsoid of 40 x 32 x 24 mm, cut through the middle into two labels, in voxels of 2 mm; it
+# ends where the image does at its low x when `cut` is 1.
+image() {
+    awk -v cut="$1" 'BEGIN {
+        print "NRRD0004\ntype: uchar\ndimension: 3\nspace: right-anterior-superior"
+        print "sizes: " 24 - 10 * cut " 20 16\nencoding: text"
+        print "space directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: (-23,-19,-15)"
+        print "Segment0_LabelValue:=1\nSegment0_Name:=liver"
+        print "Segment1_LabelValue:=7\nSegment1_Name:=left kidney"
+        print "Segment2_LabelValue:=9\nSegment2_Name:=speck\n"
+        for (k = 0; k < 16; k++) for (j = 0; j < 20; j++) for (i = 10 * cut; i < 24; i++) {
+            x = (i - 11.5) / 10; y = (j - 9.5) / 8; z = (k - 7.5) / 6
+            v = x * x + y * y + z * z < 1 ? (x < 0.3 ? 1 : 7) : 0
+            print (i == 23 && j == 19 && k == 15 ? 9 : v)
+        }
+    }'
+}
+image 0 >two.nrrd
+image 1 >cut.nrrd
+
+# A bipyramid with a belt of 24 corners, closed, in millimetres; `open` leaves one side out.
+surface() {
+    awk -v open="$1" -v shift="$2" 'BEGIN {
+        n = 24; turn = 6.283185307179586 / n
+        print "# a spinning top\nv " shift " 0 30\nv " shift " 0 -30"
+        for (i = 0; i < n; i++) print "v", shift + 25 * cos(i * turn), 25 * sin(i * turn), 0
+        for (i = 0; i < n; i++) {
+            a = 3 + i; b = 3 + (i + 1) % n
+            print "f 1", a, b
+            if (i || !open) print "f 2", b, a
+        }
+    }'
+}
+surface 0 0 >top.obj
+surface 0 12 >other.obj
+
+expect 0 "$LARIAT" mesh two.nrrd --list
+says '24 x 20 x 16 voxels, 3 labels'
+says ' 7  left kidney '
+expect 0 "$LARIAT" mesh two.nrrd --list --json
+has_keys file labels.0.name --numbers voxels.0 labels.2.label labels.2.voxels labels.0.volume
+[ "$(value_of labels.2.voxels)" = 1 ] || fail "the speck has $(value_of labels.2.voxels) voxels"
+
+expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title "Two organs"
+[ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
+says '^Two organs: [56][0-9][0-9] elements of about 0.00[23]'
+says 'left kidney (7): [0-9]* elements'
+says '^held  *at the back: [0-9]* nodes'
+says '^deviation  *mean 0.000'
+says 'all of the elements are above 0.2'
+says '^lariat view Two_organs/Two_organs.yaml$'
+for file in .vtu .yaml _surface.vtp; do
+    [ -s "Two_organs/Two_organs$file" ] || fail "no Two_organs$file"
+done
+find . -name '*.part' | grep -q . && fail "a part file is left"
+
+# What is written does what is said of it.
+expect 0 "$LARIAT" info Two_organs/Two_organs.yaml
+says '^title  *Two organs'
+says '^deviation  *mean'
+says '^speed  *[0-9.]* times as fast'
+says 'liver_left_kidney: [0-9]* faces'
+says 'support: [0-9]* nodes'
+expect 0 "$LARIAT" info Two_organs/Two_organs.yaml --json
+has_keys speed.why_not --numbers quality.jacobian_histogram.9 quality.above_02 quality.above_05 \
+    quality.mean_edge quality.volume quality.true_volume quality.deviation_mean \
+    quality.deviation_95 quality.deviation_max speed.real_time_factor speed.wall_per_step_us
+expect 0 "$LARIAT" info Two_organs/Two_organs.yaml --json --no-speed
+value_of speed.why_not >/dev/null 2>&1 && fail "the speed was measured with --no-speed"
+expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --no-speed
+grep -q '^deviation' "$SCRATCH/out" && fail "a deviation from nothing"
+expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against Two_organs/Two_organs_surface.vtp
+says '^deviation  *mean 0.000'
+expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against top.obj --scale 0.001
+expect 1 "$LARIAT" info Two_organs/Two_organs.vtu --against none.stl
+complains 'none.stl'
+expect 2 "$LARIAT" info Two_organs/Two_organs.vtu --scale 0.001
+expect 0 "$LARIAT" run Two_organs/Two_organs.yaml --out results --json
+[ "$(value_of frames)" = 101 ] || fail "$(value_of frames) frames"
+awk -F, '$1 > 0.6 && $1 < 0.7 { moved = $3 > 1e-4 } END { exit !moved }' results/probes.csv ||
+    fail "the handle did not move to the front: $(head -n 40 results/probes.csv | tail -n 2)"
+
+# With its whole weight for two seconds.
+sed 's/^gravity: .*/gravity: [0, -9.81, 0]/' Two_organs/Two_organs.yaml >Two_organs/heavy.yaml
+expect 0 "$LARIAT" run Two_organs/heavy.yaml --time 2
+
+# A scene of the user's is not replaced; the rest of the folder's files is his, too.
+echo "# mine" >>Two_organs/Two_organs.yaml
+expect 1 "$LARIAT" mesh two.nrrd --label liver --elements 100 --title "Two organs"
+complains 'Two_organs.yaml is there already.*--force'
+tail -n 1 Two_organs/Two_organs.yaml | grep -q mine || fail "the user's scene was replaced"
+expect 0 "$LARIAT" mesh two.nrrd --label liver --elements 100 --title "Two organs" --force
+grep -q mine Two_organs/Two_organs.yaml && fail "--force replaced nothing"
+
+# The same input, the same bytes; figures as JSON.
+for out in first second; do
+    expect 0 "$LARIAT" mesh cut.nrrd --label liver --size 0.004 --out $out --json
+done
+cmp -s first/liver.vtu second/liver.vtu || fail "the same input gave two meshes"
+cmp -s first/liver.yaml second/liver.yaml || fail "the same input gave two scenes"
+has_keys scene title fix regions.0.name regions.0.tissue regions.0.source --numbers elements nodes \
+    size regions.0.tag regions.0.elements regions.0.volume regions.0.true_volume \
+    regions.0.shear_modulus regions.0.bulk_modulus regions.0.density cleaning.islands \
+    cleaning.island_cells cleaning.pinholes cleaning.pinhole_cells cleaning.added \
+    cleaning.removed cuts fixed_nodes scaled_jacobian.min scaled_jacobian.mean \
+    quality.deviation_max shortest_edge stable_step time_step speed.real_time_factor seconds
+[ "$(value_of fix)$(value_of cuts)$(value_of size)" = '"cut"10.0040000000000000001' ] ||
+    [ "$(value_of fix)$(value_of cuts)" = '"cut"1' ] || fail "a cut: $(value_of fix) $(value_of cuts)"
+[ "$(value_of scene)" = '"second/liver.yaml"' ] || fail "scene $(value_of scene)"
+value_of quality.above_02 | grep -qx '1.*' || fail "bad elements"
+
+# Names from a file, all labels as one, the image's own voxels, principal axes.
+printf 'label,name\n1,liver\n7,spleen\n' >names.csv
+expect 0 "$LARIAT" mesh cut.nrrd --names names.csv --label Spleen --elements 200
+[ -s spleen/spleen.yaml ] || fail "names.csv was not heard"
+expect 0 "$LARIAT" mesh cut.nrrd --label 1 --label 7 --fuse --voxel --out cubes --title cubes
+says '^cubes: [0-9]* elements of about 0.002 m'
+expect 0 "$LARIAT" mesh two.nrrd --label liver --principal --elements 200 --fix none --out free
+says '^held  *nowhere'
+expect 0 "$LARIAT" run free/liver.yaml
+
+# Surfaces: one and several.
+expect 0 "$LARIAT" mesh top.obj --scale 0.001 --elements 500 --fix bottom
+says '^held  *at the bottom'
+says '^speed'
+expect 0 "$LARIAT" run top/top.yaml --steps 100
+expect 0 "$LARIAT" mesh top.obj other.obj --scale 0.001 --elements 500 --title tops
+says 'other (2): [0-9]* elements'
+finish "mesh: images, surfaces, figures, scenes that run"

@@ -1,0 +1,118 @@
+#!/bin/sh
+# lariat mesh and files that cannot be meshed: one sentence, status 1, nothing written, little memory.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+
+# A box of labels in a text NRRD: header(field lines) voxels
+header='NRRD0004
+type: uchar
+dimension: 3
+space: right-anterior-superior
+sizes: 8 8 8
+encoding: text
+space directions: (2,0,0) (0,2,0) (0,0,2)
+space origin: (0,0,0)
+'
+voxels() { # a box of label 3, a single voxel of label 5
+    awk 'BEGIN { for (k = 0; k < 8; k++) for (j = 0; j < 8; j++) for (i = 0; i < 8; i++)
+        print (i > 1 && i < 6 && j > 1 && j < 6 && k > 1 && k < 6 ? 3 : i + j + k == 0 ? 5 : 0) }'
+}
+{ echo "$header"; voxels; } >good.nrrd
+
+# refused WORDS ARGUMENTS...: status 1, the sentence has the words, no file appears.
+refused() {
+    words=$1
+    shift
+    expect 1 "$LARIAT" mesh "$@" --out made
+    complains "^lariat mesh: .*$words"
+    silent
+    [ ! -e made ] || fail "something was written: $*"
+}
+
+refused 'there is no label "liver"' good.nrrd --label liver
+grep -q '3  *64 ' "$SCRATCH/err" || fail "the labels that there are were not listed"
+grep -q 'note: .*--names' "$SCRATCH/err" || fail "no word about --names"
+refused 'label "4" has no voxel' good.nrrd --label 4
+refused '1 voxel only' good.nrrd --label 5
+refused 'label 0' good.nrrd --label 0
+refused 'smaller size' good.nrrd --label 3 --size 0.02
+refused 'larger size' good.nrrd --label 3 --size 0.000001
+refused 'more elements' good.nrrd --label 3 --elements 1
+refused 'flat cut' good.nrrd --label 3 --fix cut --elements 100
+refused 'for surfaces only' good.nrrd --label 3 --scale 0.001
+refused 'principal' good.nrrd --label 3 --voxel --principal
+refused 'names.csv' good.nrrd --label 3 --names names.csv
+expect 2 "$LARIAT" mesh good.nrrd --size 0.004 --elements 100
+complains 'give one'
+expect 2 "$LARIAT" mesh good.nrrd --fix sideways
+expect 2 "$LARIAT" mesh good.nrrd --size 0
+expect 2 "$LARIAT" mesh
+complains 'INPUT'
+expect 2 "$LARIAT" mesh good.nrrd good.nrrd --list
+
+# Images that are none, or lie.
+{ echo "$header"; voxels | sed 's/^3$/2.5/'; } >scan.nrrd
+refused 'no label map' scan.nrrd
+{ echo "$header"; voxels | sed 's/^3$/-3/'; } >negative.nrrd
+refused 'no label map' negative.nrrd
+{ echo "$header"; voxels | sed 's/^.$/0/'; } >empty.nrrd
+refused 'no voxel has a label' empty.nrrd
+{ echo "$header"; voxels | head -n 100; } >short.nrrd
+refused 'short.nrrd' short.nrrd
+echo "$header" | sed 's/8 8 8/10000 10000 10000/; s/text/raw/' >vast.nrrd
+refused 'vast.nrrd' vast.nrrd
+echo "$header" | sed 's/dimension: 3/dimension: 4/; s/8 8 8/8 8 8 5/; s/(0,0,2)$/(0,0,2) none/' >series.nrrd
+refused 'series.nrrd' series.nrrd
+echo "$header" | sed 's/(0,2,0)/(2,0,0)/' >flat.nrrd
+refused 'flat.nrrd' flat.nrrd
+echo 'something else' >text.nii.gz
+refused 'text.nii' text.nii.gz
+: >nothing.nrrd
+refused 'nothing.nrrd' nothing.nrrd
+refused 'none.nrrd' none.nrrd
+refused 'extension' "$SCRATCH"
+cp good.nrrd good.png
+refused 'extension' good.png
+refused 'mesh one image' good.nrrd good.nrrd
+
+# Surfaces: open, crossing themselves, a mesh, without volume.
+octahedron() {
+    echo 'v 1 0 0
+v -1 0 0
+v 0 1 0
+v 0 -1 0
+v 0 0 1
+v 0 0 -1
+f 1 3 5
+f 3 2 5
+f 2 4 5
+f 4 1 5
+f 3 1 6
+f 2 3 6
+f 4 2 6'
+}
+octahedron >open.obj
+refused 'not closed' open.obj
+{ octahedron; echo 'f 1 4 6'; } >closed.obj
+expect 0 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100
+{ # the same twice, a little apart
+    octahedron
+    echo 'f 1 4 6'
+    octahedron | sed -n 's/^v \([^ ]*\) \([^ ]*\) \([^ ]*\)/\1 \2 \3/p' |
+        awk '{ print "v", $1 + 0.3, $2 + 0.2, $3 + 0.1 }'
+    { octahedron; echo 'f 1 4 6'; } | sed -n 's/^f //p' |
+        awk '{ print "f", $1 + 6, $2 + 6, $3 + 6 }'
+} >crossing.obj
+refused 'crossing.obj' crossing.obj --scale 0.05
+refused 'no labels' closed.obj --label 1
+refused 'flat cut' closed.obj --fix cut --elements 100 --scale 0.05
+expect 0 "$LARIAT" demo-model demo
+cp demo/uterus.vtu uterus.vtp
+refused 'uterus.vtp' uterus.vtp
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n' >leaf.obj
+refused 'leaf.obj' leaf.obj
+
+# Folders that cannot be.
+expect 1 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100 --out good.nrrd/x
+complains 'good.nrrd/x'
+finish "mesh: bad input is answered"
