@@ -241,28 +241,36 @@ static void rides(const char *scene_text, double scale) {
     lar_model_destroy(model);
 }
 
-static void test_surface(void **state) {
-    (void)state;
+static void write_plate(const char *text) {
     FILE *file = fopen(PLATE, "w");
     assert_non_null(file);
-    fputs("v 1 1 6\nv 18 2 8\nv 18 19 14\nv 1 18 10\nf 1 2 3 4\n", file);
+    fputs(text, file);
     assert_int_equal(fclose(file), 0);
+}
+
+static void test_surface(void **state) {
+    (void)state;
+    write_plate("v 1 1 6\nv 18 2 8\nv 18 19 14\nv 1 18 10\nf 1 2 3 4\n");
     rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 0.001}\n", 0.001);
     rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 1.1e-3}\n", 0.0011);
-    /* Without a scale of its own it has the mesh's. */
     rides(HEAD MATERIAL "scale: 1000\nsurface: {file: " PLATE ", scale: 1}\n", 1);
-    lar_model *model = scene(HEAD MATERIAL);
-    assert_int_equal(lar_model_embedded(model, NULL), 0);
-    lar_model_destroy(model);
-    lar_bytes bytes = {NULL, 0};
-    lar_error error = {0};
     const char *text = HEAD MATERIAL "surface: " PLATE "\n";
-    bytes = (lar_bytes){(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    lar_error error = {0};
     assert_int_equal(lar_scene_parse_with("s.yaml", &bytes, brick_read, &model, &error),
                      LAR_ERROR_MODEL);
     lar_bytes_free(&bytes);
     assert_int_equal(strncmp(error.message, "s.yaml:4:10: ", 13), 0);
     assert_non_null(strstr(error.message, "another unit (scale)"));
+    /* Without a scale of its own it has the scene's. */
+    write_plate(
+        "v 1e-3 1e-3 6e-3\nv .018 2e-3 8e-3\nv .018 .019 .014\nv 1e-3 .018 .01\nf 1 2 3 4\n");
+    rides(HEAD MATERIAL "scale: 10\nsurface: " PLATE "\n", 0.01);
+    rides(HEAD MATERIAL "scale: 10\nsurface: {file: " PLATE "}\n", 0.01);
+    model = scene(HEAD MATERIAL);
+    assert_int_equal(lar_model_embedded(model, NULL), 0);
+    lar_model_destroy(model);
     remove(PLATE);
 }
 
