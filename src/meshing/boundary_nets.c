@@ -24,9 +24,8 @@ typedef struct scan {
     const uint8_t *region_of_label;
     lar_nets *nets;
     bool write;
-    uint8_t
-        *slice[SLICES];  /* regions of voxels of slice k % SLICES: this one, the next, two before */
-    uint8_t *nothing;    /* a row of zeros */
+    uint8_t *slice[SLICES]; /* regions of voxels: this slice, the next, two before; k % SLICES */
+    uint8_t *nothing;       /* a row of zeros */
     int32_t *corners[2]; /* vertices of the corners below this slice and above it; -1: none yet */
     uint16_t (*around)[3][2]; /* first two regions at a vertex's edges along +i, +j, +k */
     int64_t vertices, quads;
@@ -69,12 +68,12 @@ static void add_edge(scan *s, int32_t low, int32_t high, int axis, const uint16_
 /* Between the voxels below and above along `axis`, at the corner `at`. */
 static void add_quad(scan *s, const int32_t at[3], int axis, uint16_t below, uint16_t above,
                      bool thin) {
-    int32_t quad = (int32_t)s->quads++, slice = at[2], corner[4];
+    int32_t quad = (int32_t)s->quads++, corner[4];
     for (int c = 0; c < 4; c++) {
         int32_t place[3] = {at[0], at[1], at[2]};
         place[(axis + 1) % 3] += c == 1 || c == 2;
         place[(axis + 2) % 3] += c >= 2;
-        corner[c] = vertex_at(s, place, slice);
+        corner[c] = vertex_at(s, place, at[2]);
     }
     if (!s->write) return;
     /* Outside and cuts are in front; of two regions the smaller one. */
