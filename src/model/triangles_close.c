@@ -138,7 +138,8 @@ static lar_status check_edges(const closing *c) {
         return lar_fail(c->error, LAR_ERROR_MODEL,
                         "%s: the surface is not closed: %" PRId64
                         " open edge%s, one at (%.6g, %.6g, %.6g) m; close the holes in a mesh "
-                        "editor (MeshLab: Close Holes; Blender: Fill Holes) and remove inner walls",
+                        "editor (MeshLab: Merge Close Vertices, Close Holes; Blender: Merge by "
+                        "Distance, Fill Holes) and remove inner walls",
                         source, open, open == 1 ? "" : "s", place[0], place[1], place[2]);
     return lar_fail(c->error, LAR_ERROR_MODEL,
                     "%s: the surface has no inside: its sides meet twisted at %" PRId64
