@@ -66,7 +66,8 @@ double lar_triangles_area(const lar_triangles *triangles);
 lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_error *error);
 
 /* Triangles that go through each other. The depth of a pair is how far one of the two must be moved
- * to be free of the other; touching is no crossing. Neighbours with a common edge are not looked
+ * to be free of the other; touching is no crossing, but lying on each other and looking the same
+ * way is. Neighbours with a common edge are not looked
  * at. Shallow: up to LAR_CROSSING_HARMLESS of the mean edge, as rounding and smoothing leave them;
  * they tell neither an inside from an outside wrongly nor show on any element. */
 #define LAR_CROSSING_HARMLESS 0.01

@@ -61,6 +61,38 @@ static double depth_of(const double a[3][3], const double b[3][3]) {
     return isfinite(depth) && depth > touching ? depth : 0;
 }
 
+/* The same for two that lie on each other and look the same way, as the sides of two bodies do that
+ * overlap: how far one must be moved within the plane. Bodies that touch look at each other. */
+static double lying_depth(const double a[3][3], const double b[3][3]) {
+    const double flat = 1e-6; /* of their size: what rounding to single precision leaves */
+    double e[2][3], f[2][3], normal[3], other[3], square = 0, depth = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        lar_minus(a[k + 1], a[k], e[k]);
+        lar_minus(b[k + 1], b[k], f[k]);
+    }
+    lar_cross(e[0], e[1], normal);
+    lar_cross(f[0], f[1], other);
+    if (!(lar_dot(normal, other) > 0)) return 0;
+    double lowest = 0, highest = 0;
+    for (int k = 0; k < 3; k++) {
+        double high[2] = {lar_dot(normal, a[k]), lar_dot(normal, b[k])};
+        lowest = fmin(lowest, fmin(high[0], high[1]));
+        highest = fmax(highest, fmax(high[0], high[1]));
+        square = fmax(square, fmax(lar_dot(a[k], a[k]), lar_dot(b[k], b[k])));
+    }
+    if (highest - lowest > flat * sqrt(square) * lar_length(normal)) return 0;
+    for (int k = 0; k < 3; k++) {
+        double edge[3], axis[3];
+        lar_minus(a[(k + 1) % 3], a[k], edge);
+        lar_cross(normal, edge, axis);
+        depth = fmin(depth, overlap(axis, a, b, 0));
+        lar_minus(b[(k + 1) % 3], b[k], edge);
+        lar_cross(normal, edge, axis);
+        depth = fmin(depth, overlap(axis, a, b, 0));
+    }
+    return isfinite(depth) ? fmax(depth, 0) : 0;
+}
+
 /* ---- all pairs ---------------------------------------------------------------------------- */
 
 typedef struct search {
@@ -73,14 +105,16 @@ typedef struct search {
 static bool compare(void *context, int32_t other) {
     search *s = context;
     const int32_t *mine = s->surface->corner[s->triangle], *its = s->surface->corner[other];
-    if (other <= s->triangle || common_corners(mine, its) > 1) return true;
+    int common = common_corners(mine, its);
+    if (other <= s->triangle || common == 2) return true;
     const double *origin = s->surface->vertex[mine[0]];
     double a[3][3], b[3][3];
     for (int k = 0; k < 3; k++) {
         lar_minus(s->surface->vertex[mine[k]], origin, a[k]);
         lar_minus(s->surface->vertex[its[k]], origin, b[k]);
     }
-    double depth = depth_of(a, b);
+    double depth = depth_of(a, b), lying = lying_depth(a, b);
+    if (lying > s->harmless) depth = fmax(depth, lying);
     if (depth == 0) return true;
     lar_crossings *found = s->found;
     if (depth > found->deepest) {

@@ -41,11 +41,14 @@ static void test_pairs(void **state) {
         {{{1, 1, -1}, {1, 1, 2}, {6, 6, 2}}, {3, 4, 5}, 1},     /* through it */
         {{{1, 1, -0.1}, {2, 1, 3}, {1, 2, 3}}, {3, 4, 5}, 0.1}, /* a tip */
         {{{10.2, -5, -5}, {-9.8, 5, -5}, {0.2, 0, 10}}, {3, 4, 5}, 0.0894427190999916}, /* by it */
-        {{{1, 1, 0}, {2, 1, 3}, {1, 2, 3}}, {3, 4, 5}, 0},    /* the tip touches */
-        {{{1, 1, 1e-3}, {2, 1, 3}, {1, 2, 3}}, {3, 4, 5}, 0}, /* a gap */
-        {{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}, {3, 4, 5}, 0},   /* an edge touches */
-        {{{1, 1, 0}, {6, 1, 0}, {1, 6, 0}}, {3, 4, 5}, 0},    /* in one plane */
-        {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {3, 4, 5}, 0},    /* the same twice */
+        {{{1, 1, 0}, {2, 1, 3}, {1, 2, 3}}, {3, 4, 5}, 0},                  /* the tip touches */
+        {{{1, 1, 1e-3}, {2, 1, 3}, {1, 2, 3}}, {3, 4, 5}, 0},               /* a gap */
+        {{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}, {3, 4, 5}, 0},                 /* an edge touches */
+        {{{1, 1, 0}, {6, 1, 0}, {1, 6, 0}}, {3, 4, 5}, 1.4142135623730951}, /* in one plane */
+        {{{1, 1, 0}, {1, 6, 0}, {6, 1, 0}}, {3, 4, 5}, 0}, /* the same, looking at each other */
+        {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {3, 4, 5}, 2.8284271247461903}, /* the same twice */
+        {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {1, 2, 0}, 2.8284271247461903}, /* by its corners */
+        {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {1, 0, 2}, 0},                  /* a leaf */
         {{{2, 2, -1}, {2, 2, 1}, {5, 5, 0}}, {3, 4, 5}, 0},   /* beside the long edge */
         {{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {0, 3, 1}, 0},    /* a common edge */
         {{{2, 1, -1}, {2, 1, 1}, {0, 0, 0}}, {0, 3, 4}, 1},   /* common corner */
@@ -90,7 +93,7 @@ static void test_two_balls(void **state) {
         int deep, shallow; /* 0: none, 1: some */
     } rows[] = {
         {2.5, 0, 0, 0},     {2, 0, 0, 0},     {1.999, 0, 0, 1}, {1.95, 0, 1, 0}, {1.5, 0, 1, 0},
-        {1.5, 0.017, 1, 1}, {0.4, 0.1, 1, 1}, {0, 0, 0, 0}, /* the same ball twice only touches */
+        {1.5, 0.017, 1, 1}, {0.4, 0.1, 1, 1}, {0, 0, 1, 0}, /* the same ball twice */
     };
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         lar_triangles a, b;
@@ -102,6 +105,22 @@ static void test_two_balls(void **state) {
         assert_int_equal(found.deep > 0, rows[r].deep);
         if (found.deep == 0) assert_int_equal(found.shallow > 0, rows[r].shallow);
         if (found.deep > 0) assert_true(found.pair[0] < found.pair[1]);
+        lar_triangles_clear(&both);
+    }
+}
+
+/* Two boxes side by side in line, so that their sides lie in common planes. */
+static void test_boxes_in_line(void **state) {
+    (void)state;
+    for (int way = 0; way < 3; way++) {
+        lar_triangles a, b;
+        double from = 0.5 + 0.5 * way; /* overlapping, touching, apart */
+        shape_box_surface(&a, origin, (double[]){1, 1, 1});
+        shape_box_surface(&b, (double[]){from, 0, 0}, (double[]){from + 1, 1, 1});
+        lar_triangles both = shape_both(&a, &b);
+        lar_crossings found = crossings_of(&both);
+        assert_int_equal(found.deep > 0, way == 0);
+        assert_int_equal(found.shallow, 0);
         lar_triangles_clear(&both);
     }
 }
@@ -129,9 +148,8 @@ static void test_many(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_closed_shapes),
-        cmocka_unit_test(test_two_balls),
+        cmocka_unit_test(test_pairs),     cmocka_unit_test(test_closed_shapes),
+        cmocka_unit_test(test_two_balls), cmocka_unit_test(test_boxes_in_line),
         cmocka_unit_test(test_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
