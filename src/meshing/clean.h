@@ -14,8 +14,8 @@
  *     what                                                        costs
  *     a point where the body is not clean                         most, always more than the rest
  *     a point where a region is not clean                         much
- *     a cell that fitting would squash (below)                    more than a cell's volume
  *     volume on the wrong side: share or 255 - share              0 .. 255 per cell
+ *     a cell that fitting would squash (below)                    about half a cell's volume
  *     a face between regions                                      little: among equals the smooth
  *
  * A cell takes the region of a neighbour wherever that lowers the sum. As every step lowers it, it
@@ -56,10 +56,11 @@ uint8_t lar_clean_fill(const lar_lattice *lattice, size_t cell);
 /* Joins, leaves out or gives away islands and fills pinholes; *changed: whether there were any. */
 lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed);
 
-/* Joins the piece of cell `start`, whose cells are marked with `mark` and no others are, to another
+/* Joins the piece of cell `start`, whose cells are marked `own` and all others `other`, to another
  * piece of its region: by cells outside that hold a part of the region, few and full ones rather
- * than many. They count as full from now on, so that they stay. */
-lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t mark, bool *joined);
+ * than many. They count as full from now on, so that they stay. The marks are as before then. */
+lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t own, uint8_t other,
+                            bool *joined);
 
 /* Neighbours of a cell by faces; those beyond the lattice are left out. */
 int lar_clean_neighbours(const lar_lattice *lattice, size_t cell, size_t found[6]);

@@ -49,8 +49,8 @@ static void take_way(lar_lattice *lattice, const search *way, int32_t end, uint8
     }
 }
 
-/* Marks of cells in a search: those that it has come by, and all others. */
-enum { OTHER = 1, DONE = 4 };
+/* The mark of cells that a search has come by. */
+enum { DONE = 4 };
 
 /* Goes on from one cell; *end: the last one of a way that has come to another piece. */
 static bool go_on(lar_cleaner *cleaner, search *way, int32_t index, int32_t cost, uint8_t own,
@@ -87,17 +87,21 @@ static bool run_search(lar_cleaner *cleaner, search *way, uint8_t own, int32_t *
     return true;
 }
 
-lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t mark, bool *joined) {
+lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t own, uint8_t other,
+                            bool *joined) {
     search *way = lar_calloc(1, sizeof *way);
     int32_t end = -1;
     *joined = false;
     if (!way) return lar_fail_memory(cleaner->error, sizeof *way, "the islands of the grid");
     for (int cost = 0; cost <= COST_MOST; cost++) way->first[cost] = -1;
     lar_status status = LAR_OK;
-    if (!reach(way, start, -1, 0) || !run_search(cleaner, way, mark, &end))
+    if (!reach(way, start, -1, 0) || !run_search(cleaner, way, own, &end))
         status = lar_fail_memory(cleaner->error, 2 * way->capacity * sizeof *way->all,
                                  "the islands of the grid");
-    for (size_t r = 0; r < way->count; r++) cleaner->mark[way->all[r].cell] = OTHER;
+    for (size_t r = 0; r < way->count; r++) {
+        const size_t cell = way->all[r].cell;
+        cleaner->mark[cell] = cleaner->lattice->region[cell] != 0 ? own : other;
+    }
     if (!status && end >= 0) {
         take_way(cleaner->lattice, way, end, cleaner->lattice->region[start]);
         *joined = true;

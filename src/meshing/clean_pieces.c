@@ -9,6 +9,9 @@ enum { ISLAND_CELLS = 3, PINHOLE_CELLS = 27 };
 /* An island goes to its neighbours when these have at least this part of its outer faces. */
 static const double GIVEN_PART = 0.25;
 
+/* Marks of cells: all, those of the piece that is looked at. */
+enum { OTHER = 1, OWN = 2 };
+
 /* Cells of one region that hang together by faces. */
 typedef struct piece {
     size_t start; /* its first cell */
@@ -84,7 +87,7 @@ static lar_status find_pieces(lar_cleaner *cleaner, piece **pieces, size_t *coun
                                    "the pieces of the grid");
         piece *found = &(*pieces)[(*count)++];
         *found = (piece){.start = c, .region = cleaner->lattice->region[c]};
-        lar_status status = visit(cleaner, c, 1, -1, &found->size, NULL);
+        lar_status status = visit(cleaner, c, OTHER, -1, &found->size, NULL);
         if (status) return status;
     }
     return LAR_OK;
@@ -101,36 +104,51 @@ static uint8_t heir_of(const surroundings *around, uint8_t region) {
     return (double)(sum - around->faces[0]) >= GIVEN_PART * (double)sum ? (uint8_t)heir : 0;
 }
 
+/* Marks a piece and looks around it. False when it is no longer the one that was found: islands
+ * beside it that were left out or given away may have opened it or made it part of another one; the
+ * next round judges it anew. */
+static lar_status open_piece(lar_cleaner *cleaner, const piece *one, surroundings *around,
+                             bool *same) {
+    int32_t size;
+    lar_status status = visit(cleaner, one->start, OWN, -1, &size, around);
+    *same = size == one->size && cleaner->lattice->region[one->start] == one->region;
+    return status;
+}
+
+/* Unmarks it again; gives it to another region when `label` is not negative. */
+static lar_status close_piece(lar_cleaner *cleaner, const piece *one, int label) {
+    int32_t size;
+    return visit(cleaner, one->start, OTHER, label, &size, NULL);
+}
+
 /* An island is joined to the rest of its region where the body leads there. A small one is given
  * away or left out otherwise. */
 static lar_status take_island(lar_cleaner *cleaner, const piece *island, bool *changed) {
     surroundings around = {{0}};
-    int32_t size;
-    bool joined = false;
-    lar_status status = visit(cleaner, island->start, 2, -1, &size, &around);
-    if (!status) status = lar_clean_bridge(cleaner, island->start, 2, &joined);
-    *changed = *changed || joined;
-    if (status || joined || size >= ISLAND_CELLS) return status;
+    bool joined = false, same;
+    lar_status status = open_piece(cleaner, island, &around, &same);
+    if (!status && same) status = lar_clean_bridge(cleaner, island->start, OWN, OTHER, &joined);
+    if (status) return status;
+    *changed = *changed || joined || !same || island->size < ISLAND_CELLS;
+    if (joined || !same || island->size >= ISLAND_CELLS) return close_piece(cleaner, island, -1);
     const uint8_t heir = heir_of(&around, island->region);
-    *changed = true;
     if (heir == 0) {
         cleaner->cleaning->islands++;
-        cleaner->cleaning->island_cells += size;
+        cleaner->cleaning->island_cells += island->size;
     }
-    return visit(cleaner, island->start, 3, heir, &size, NULL);
+    return close_piece(cleaner, island, heir);
 }
 
-static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole) {
+static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole, bool *changed) {
     surroundings around = {{0}};
-    int32_t size;
-    lar_status status = visit(cleaner, pinhole->start, 2, -1, &size, &around);
-    const uint8_t heir = heir_of(&around, 0);
-    if (!status) status = visit(cleaner, pinhole->start, 3, heir, &size, NULL);
-    if (!status) {
-        cleaner->cleaning->pinholes++;
-        cleaner->cleaning->pinhole_cells += size;
-    }
-    return status;
+    bool same;
+    lar_status status = open_piece(cleaner, pinhole, &around, &same);
+    if (status) return status;
+    *changed = true;
+    if (!same) return close_piece(cleaner, pinhole, -1);
+    cleaner->cleaning->pinholes++;
+    cleaner->cleaning->pinhole_cells += pinhole->size;
+    return close_piece(cleaner, pinhole, heir_of(&around, 0));
 }
 
 lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
@@ -150,8 +168,7 @@ lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
         if (one->region == 0) {
             const double limit = PINHOLE_PART * (double)body;
             if (one->size > PINHOLE_CELLS || (one->size > 1 && one->size >= limit)) continue;
-            status = fill_pinhole(cleaner, one);
-            *changed = true;
+            status = fill_pinhole(cleaner, one, changed);
         } else {
             const int32_t most = largest[one->region];
             if (one->size == most || (one->size > 1 && one->size >= ISLAND_PART * most)) continue;

@@ -1,7 +1,10 @@
 #include "meshing/clean.h"
 
-/* What the sum of clean.h adds up; a cell's volume is 255. */
-static const int32_t UNCLEAN_BODY = 100000, UNCLEAN_REGION = 1200, SQUASHED = 320, FACE = 10;
+/* What the sum of clean.h adds up; a cell's volume is 255. Where squashed cells cost nothing the
+ * thinnest fitted element is thinner (0.30 cells instead of 0.33, mean of 12 bodies of 1,000 to
+ * 2,000 elements), and the stable time step as much shorter; more than this gains nothing. */
+static const int32_t UNCLEAN_BODY = 100000, UNCLEAN_REGION = 1200, BUMP = 160, DENT = 100,
+                     FACE = 10;
 
 enum { MIDDLE = 2, SIDE = 5 };
 
@@ -104,6 +107,11 @@ static bool is_squashed(const uint8_t *cell) {
     return !is_in_sheet(cell, thin[0] ? 0 : thin[1] ? 1 : 2);
 }
 
+static int32_t squash_cost(const uint8_t *cell) {
+    if (!is_squashed(cell)) return 0;
+    return *cell != 0 ? BUMP : DENT;
+}
+
 int32_t lar_clean_cost(const lar_clean_window *window, int *unclean) {
     const uint8_t *middle = cells_of(window) + MIDDLE * (STEP[0] + STEP[1] + STEP[2]);
     int32_t cost = 0;
@@ -114,7 +122,7 @@ int32_t lar_clean_cost(const lar_clean_window *window, int *unclean) {
     for (int k = -1; k <= 1; k++)
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++)
-                if (is_squashed(middle + i * STEP[0] + j * STEP[1] + k * STEP[2])) cost += SQUASHED;
+                cost += squash_cost(middle + i * STEP[0] + j * STEP[1] + k * STEP[2]);
     for (int axis = 0; axis < 3; axis++)
         cost += FACE * ((middle[STEP[axis]] != *middle) + (middle[-STEP[axis]] != *middle));
     return cost;

@@ -91,6 +91,29 @@ static void touching_balls_become_one_solid(void **state) {
     lar_lattice_clear(&lattice);
 }
 
+/* A ball that a wavy surface divides: each region by itself is manifold too. */
+static int two_regions(const double x[3]) {
+    if (squared(x, 12, 12, 12) > 10.3 * 10.3) return 0;
+    return x[2] < 12 + 3 * sin(0.9 * x[0]) * cos(1.1 * x[1]) ? 1 : 2;
+}
+
+static void regions_are_manifold(void **state) {
+    (void)state;
+    lar_lattice lattice = solid_lattice(two_regions, 24, 24, 24);
+    const solid_surface raw = solid_judge_lattice(&lattice, 2);
+    assert_true(raw.bad_edges + raw.bad_nodes > 0);
+    lar_lattice_clear(&lattice);
+    lar_cleaning cleaning;
+    cleaned(two_regions, &lattice, &cleaning);
+    for (int32_t region = 1; region <= 2; region++) {
+        const solid_surface surface = solid_judge_lattice(&lattice, region);
+        assert_manifold(surface);
+        assert_int_equal(surface.shells, 1);
+        assert_int_equal(surface.euler, 2);
+    }
+    lar_lattice_clear(&lattice);
+}
+
 /* A large ball, one of 3 % beside it, and a speck; with a thin stalk between the balls, or none. */
 static bool has_stalk;
 
@@ -167,6 +190,7 @@ static void noise_ends_manifold(void **state) {
         lar_cleaning cleaning;
         lar_error error;
         const lar_status status = lar_lattice_clean(&lattice, &cleaning, &error);
+        for (int c = 0; c < 90; c++) assert_int_equal(lattice.region[c], 0);
         if (status == LAR_OK)
             assert_manifold(solid_judge_lattice(&lattice, 0));
         else
@@ -179,6 +203,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shapes_keep_their_topology),
         cmocka_unit_test(touching_balls_become_one_solid),
+        cmocka_unit_test(regions_are_manifold),
         cmocka_unit_test(islands_are_joined_kept_or_left_out),
         cmocka_unit_test(pinholes_are_filled),
         cmocka_unit_test(noise_ends_manifold),
