@@ -102,57 +102,66 @@ export function nearestPoint(x: Float32Array, quads: Uint32Array, to: Vector): [
     let least = Infinity;
     for (let q = 0; q < quads.length; q += 4)
         for (let half = 1; half < 3; half++) {
-            nearestOfTriangle(x, quads[q]! * 3, quads[q + half]! * 3, quads[q + half + 1]! * 3, to);
-            const square = (nearest[0]! - to.x) ** 2 + (nearest[1]! - to.y) ** 2 + (nearest[2]! - to.z) ** 2;
+            const square = nearOnTriangle(x, quads[q]! * 3, quads[q + half]! * 3, quads[q + half + 1]! * 3, to);
             if (square >= least) continue;
             least = square;
-            for (let k = 0; k < 3; k++) best[k] = nearest[k]!;
+            for (let k = 0; k < 3; k++) best[k] = near[k]!;
         }
     return best;
 }
 
-const nearest = new Float64Array(3); // the answer of what follows
+const near = new Float64Array(3); // the answer of what follows
 
 /* The nearest of the points a + u (b - a) + v (c - a): within the triangle where the plane's nearest point
- * is, else on one of its sides. */
-function nearestOfTriangle(x: Float32Array, a: number, b: number, c: number, to: Vector): void {
-    const p = [to.x, to.y, to.z];
-    let uu = 0;
-    let uv = 0;
-    let vv = 0;
-    let up = 0;
-    let vp = 0;
-    for (let k = 0; k < 3; k++) {
-        const u = x[b + k]! - x[a + k]!;
-        const v = x[c + k]! - x[a + k]!;
-        const d = p[k]! - x[a + k]!;
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        up += u * d;
-        vp += v * d;
-    }
+ * is, else on one of its sides. Gives the square of the distance. */
+function nearOnTriangle(x: Float32Array, a: number, b: number, c: number, to: Vector): number {
+    const ux = x[b]! - x[a]!;
+    const uy = x[b + 1]! - x[a + 1]!;
+    const uz = x[b + 2]! - x[a + 2]!;
+    const vx = x[c]! - x[a]!;
+    const vy = x[c + 1]! - x[a + 1]!;
+    const vz = x[c + 2]! - x[a + 2]!;
+    const dx = to.x - x[a]!;
+    const dy = to.y - x[a + 1]!;
+    const dz = to.z - x[a + 2]!;
+    const uu = ux * ux + uy * uy + uz * uz;
+    const uv = ux * vx + uy * vy + uz * vz;
+    const vv = vx * vx + vy * vy + vz * vz;
+    const up = ux * dx + uy * dy + uz * dz;
+    const vp = vx * dx + vy * dy + vz * dz;
     const det = uu * vv - uv * uv;
-    const u = det > 0 ? (vv * up - uv * vp) / det : -1;
-    const v = det > 0 ? (uu * vp - uv * up) / det : -1;
-    if (u >= 0 && v >= 0 && u + v <= 1) {
-        for (let k = 0; k < 3; k++)
-            nearest[k] = x[a + k]! + u * (x[b + k]! - x[a + k]!) + v * (x[c + k]! - x[a + k]!);
-        return;
+    const u = (vv * up - uv * vp) / det;
+    const v = (uu * vp - uv * up) / det;
+    if (det > 0 && u >= 0 && v >= 0 && u + v <= 1) {
+        near[0] = x[a]! + u * ux + v * vx;
+        near[1] = x[a + 1]! + u * uy + v * vy;
+        near[2] = x[a + 2]! + u * uz + v * vz;
+        return squareTo(to);
     }
-    let least = Infinity;
-    for (const [from, end] of [[a, b], [b, c], [c, a]] as const) {
-        let along = 0;
-        let length = 0;
-        for (let k = 0; k < 3; k++) {
-            along += (p[k]! - x[from + k]!) * (x[end + k]! - x[from + k]!);
-            length += (x[end + k]! - x[from + k]!) ** 2;
-        }
-        const t = length > 0 ? Math.min(1, Math.max(0, along / length)) : 0;
-        const here = [0, 1, 2].map((k) => x[from + k]! + t * (x[end + k]! - x[from + k]!));
-        const square = here.reduce((sum, value, k) => sum + (value - p[k]!) ** 2, 0);
-        if (square >= least) continue;
-        least = square;
-        nearest.set(here);
-    }
+    let least = nearOnSide(x, a, b, to, Infinity);
+    least = nearOnSide(x, b, c, to, least);
+    return nearOnSide(x, c, a, to, least);
+}
+
+function squareTo(to: Vector): number {
+    return (near[0]! - to.x) ** 2 + (near[1]! - to.y) ** 2 + (near[2]! - to.z) ** 2;
+}
+
+/* The nearest point of a side where it is nearer than `least`, the square of a distance. */
+function nearOnSide(x: Float32Array, a: number, b: number, to: Vector, least: number): number {
+    const ux = x[b]! - x[a]!;
+    const uy = x[b + 1]! - x[a + 1]!;
+    const uz = x[b + 2]! - x[a + 2]!;
+    const length = ux * ux + uy * uy + uz * uz;
+    const along = ux * (to.x - x[a]!) + uy * (to.y - x[a + 1]!) + uz * (to.z - x[a + 2]!);
+    const t = length > 0 ? Math.min(1, Math.max(0, along / length)) : 0;
+    const px = x[a]! + t * ux;
+    const py = x[a + 1]! + t * uy;
+    const pz = x[a + 2]! + t * uz;
+    const square = (px - to.x) ** 2 + (py - to.y) ** 2 + (pz - to.z) ** 2;
+    if (square >= least) return least;
+    near[0] = px;
+    near[1] = py;
+    near[2] = pz;
+    return square;
 }
