@@ -147,7 +147,7 @@ static bool push(const lar_collide *collide, const lar_state *state, int32_t nod
                  const lar_face_point *point, touching *t) {
     const lar_contact_surface *surface = collide->surface;
     const lar_contact_face *f = &surface->face[face];
-    double x[3], v[3], corner[4][3], speed[4][3], p[3], vp[3], square = 0, rate = 0;
+    double x[3], v[3], corner[4][3], speed[4][3], mass[4], p[3], vp[3], square = 0, rate = 0;
     place_of(collide, state, node, x, v);
     corners_of(collide, state, face, corner, speed);
     lar_face_mean((const double(*)[3])corner, point->weight, p);
@@ -157,7 +157,9 @@ static bool push(const lar_collide *collide, const lar_state *state, int32_t nod
     /* Without a length there is no direction. */
     if (!(point->height < 0) || !(depth > LAR_FACE_TIE * f->size)) return false;
     for (int i = 0; i < 3; i++) rate += (vp[i] - v[i]) * (p[i] - x[i]) / depth;
-    double moved = lar_contact_pair_mass(surface->node[node].mass, surface->body[f->body].mass);
+    for (int a = 0; a < 4; a++) mass[a] = surface->node[f->corner[a]].mass;
+    double moved =
+        lar_contact_pair_mass(surface->node[node].mass, lar_contact_face_mass(mass, point->weight));
     double force = lar_contact_force(&collide->law, moved, depth, rate);
     *t = (touching){.face = face, .depth = depth};
     memcpy(t->weight, point->weight, sizeof t->weight);

@@ -8,7 +8,7 @@
  * ones the one over or under whose plane the node is farthest, then the one with the lower number.
  * If the node is behind it, the closest point p pulls it: F along p - x, of the law of
  * mechanics/contact.h, -w_a F on the corners. The mass is that of the
- * node against a light face of the body. Which other pairs are in the list does not matter, nor
+ * node against that of the point of the face. Which other pairs are in the list does not matter, nor
  * when it was made, so searching in every step gives the same bits. Forces are rounded at the
  * corners, and the node gets minus their sum: momentum is kept to the last bit.
  *

@@ -291,8 +291,10 @@ static void advance_seat(void *context, int32_t number) {
 /* What the threads here have felt in the last advance. */
 static void report_here(const lar_computer *computer, lar_report *report) {
     *report = (lar_report){0};
-    for (int32_t i = 0; i < seats(computer); i++)
-        lar_report_add(report, &processor_of(computer, i)->worker[i % computer->threads].acting);
+    for (int32_t i = 0; i < seats(computer); i++) {
+        const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
+        lar_report_add(report, &worker->acting, &worker->state);
+    }
 }
 
 /* `first`: of the stretches of an advance. */

@@ -200,17 +200,15 @@ static lar_status number_bodies(draft *d, lar_error *error) {
     s->body = lar_calloc((size_t)s->body_count, sizeof *s->body);
     if (!s->body) return lar_fail_memory(error, (size_t)s->body_count * sizeof *s->body, "bodies");
     for (int32_t b = 0; b < s->body_count; b++)
-        s->body[b] = (lar_contact_body){{INFINITY, INFINITY}, INFINITY};
+        s->body[b] = (lar_contact_body){{INFINITY, INFINITY}};
     for (int32_t f = 0; f < d->model->surface.face_count; f++) {
         if (d->face_of[f] < 0) continue;
         lar_contact_face *face = &s->face[d->face_of[f]];
         face->body = s->node[face->corner[0]].body;
         lar_contact_body *body = &s->body[face->body];
-        double deep = thickness(&d->model->mesh, d->model->surface.face[f]), mass = 0;
-        for (int a = 0; a < 4; a++) mass += 0.25 * s->node[face->corner[a]].mass;
+        double deep = thickness(&d->model->mesh, d->model->surface.face[f]);
         body->reach[0] = fmin(body->reach[0], 0.5 * deep);
         body->reach[1] = fmin(body->reach[1], deep);
-        body->mass = fmin(body->mass, mass);
     }
     s->reach = INFINITY;
     for (int32_t b = 0; b < s->body_count; b++) {

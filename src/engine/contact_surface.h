@@ -13,9 +13,9 @@
  * mesh has the node in the layer below the face already at rest, where a body tapers.
  *
  * Bodies are the connected parts of the mesh. A node touches one face of every body at most. How
- * deep the layer is in which a body repels a node, and what mass the node seems to meet there, is
- * the same for all its faces: then the force is the gradient of one potential wherever the node
- * goes in and comes out, and cannot give back more than it took (docs/theory.md, contact).
+ * deep the layer is in which a body repels a node is the same for all its faces: nowhere does a
+ * node come into it but through a face, or leave it from less deep than it came (docs/theory.md,
+ * contact).
  */
 #ifndef LAR_ENGINE_CONTACT_SURFACE_H
 #define LAR_ENGINE_CONTACT_SURFACE_H
@@ -37,7 +37,6 @@ typedef struct lar_contact_face {
 typedef struct lar_contact_body {
     double reach[2]; /* thickness of the virtual body below its faces (T 2.2.8) for its own nodes,
                         half that of its thinnest element, and for others, all of it [m] */
-    double mass;     /* the least that a face's corners have on average [kg] */
 } lar_contact_body;
 
 /* Nodes of the faces below: "contact nodes". */

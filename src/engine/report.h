@@ -1,5 +1,6 @@
 /* What an advance brings besides the state: what the tools felt, what contact did. Sums of whole
- * numbers, so that threads and processors can be added in any order. Plain, travels as it is. */
+ * numbers but for the work, so that threads and processors can be added in any order. Plain,
+ * travels as it is. */
 #ifndef LAR_ENGINE_REPORT_H
 #define LAR_ENGINE_REPORT_H
 
@@ -9,6 +10,7 @@ typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MOST];
     lar_contact_info contact; /* since the start */
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
+    double taken;      /* by contact, as lar_state.contact: since the start [J] */
 } lar_report;
 
 static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_info *other) {
@@ -42,16 +44,19 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
     lar_report_contact(&sum->contact, &other->contact);
     sum->moved = lar_most(sum->moved, other->moved);
     sum->way = lar_most(sum->way, other->way);
+    sum->taken += other->taken;
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
-static inline void lar_report_add(lar_report *sum, const lar_acting *acting) {
+static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
+                                  const lar_state *state) {
     lar_report own;
     for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
     own.contact = acting->touch.seen;
     lar_report_contact(&own.contact, &acting->collide.info);
     own.moved = acting->collide.moved;
     own.way = acting->collide.way;
+    own.taken = state->contact;
     lar_report_join(sum, &own);
 }
 

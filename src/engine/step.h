@@ -23,15 +23,17 @@ typedef struct lar_trip {
         LAR_TRIP_SPEED,
         LAR_TRIP_LOAD,
         LAR_TRIP_CROWD, /* contact: more faces near a node than make sense */
-        LAR_TRIP_RUSH   /* contact: faster than processors can tell each other */
+        LAR_TRIP_RUSH,  /* contact: faster than processors can tell each other */
+        LAR_TRIP_GAIN   /* contact: it has given more energy than it took */
     } kind;
-    lar_gid element; /* of LAR_TRIP_ELEMENT; the node of the others */
+    lar_gid element; /* of LAR_TRIP_ELEMENT and LAR_TRIP_GAIN; the node of the others */
     uint64_t step;   /* the step under way */
     /* What lar_trip_examine found, for the report. */
     double place[3];     /* [m] */
-    double volume_ratio; /* of the element */
+    double volume_ratio; /* of the element; of LAR_TRIP_GAIN: in its worst corner */
     double growth;       /* of its frequency */
     double speed;        /* of the node [m/s] */
+    double given;        /* of LAR_TRIP_GAIN: more than it took [J] */
     bool crowded;        /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
     /* What lar_trip_blame found. */
     bool blamed, tool_pulls;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "mechanics/hex8_full.h"
+#include "mechanics/hexahedron.h"
 
 /* det F of an element and how much its smallest stretch has raised its frequency. */
 static void examine_element(const lar_domain *domain, const lar_state *state, lar_gid e,
@@ -17,6 +18,36 @@ static void examine_element(const lar_domain *domain, const lar_state *state, la
     *volume_ratio = lar_lane_cofactor((const double *)F, cof);
     /* |F^-1| / sqrt(3): 1 at rest */
     *frequency_growth = sqrt(lar_lane_square_sum(cof) / 3) / fabs(*volume_ratio);
+}
+
+/* The volume of an element in its worst corner, as a part of that at rest. */
+static double worst_corner(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double rest[8][3], now[8][3], u[8][3], at[3], J[2][3][3], cof[9], least = INFINITY;
+    lar_mesh_corners(&domain->model->mesh, e, rest);
+    lar_domain_corners(domain, state->u, e, u);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) now[a][i] = rest[a][i] + u[a][i];
+    for (int a = 0; a < 8; a++) {
+        for (int i = 0; i < 3; i++) at[i] = lar_node_sign[a][i];
+        lar_hexahedron_jacobian((const double(*)[3])rest, at, J[0]);
+        lar_hexahedron_jacobian((const double(*)[3])now, at, J[1]);
+        double ratio = lar_lane_cofactor((const double *)J[1], cof) /
+                       lar_lane_cofactor((const double *)J[0], cof);
+        if (!(ratio >= least)) least = ratio;
+    }
+    return least;
+}
+
+/* Where the surface is folded most. */
+static void examine_surface(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    const lar_surface *surface = &domain->model->surface;
+    trip->volume_ratio = INFINITY;
+    for (int32_t f = 0; f < surface->face_count; f++) {
+        double ratio = worst_corner(domain, state, surface->element[f]);
+        if (ratio >= trip->volume_ratio) continue;
+        trip->volume_ratio = ratio;
+        trip->element = surface->element[f];
+    }
 }
 
 /* What the instability begins with says more than the step size: nothing has had time to grow. */
@@ -134,6 +165,19 @@ static lar_status report_load(const lar_domain *domain, const lar_trip *trip, la
                     (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
 }
 
+static lar_status report_gain(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    if (trip->tool > 0)
+        return lar_trip_report_tool(domain, trip, "folds the surface over itself at", error);
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): contact has given %.3g J more than it took, "
+                    "for the surface is crushed or folded over itself, most at element %lld near "
+                    "(%.4g, %.4g, %.4g) m (volume ratio of its worst corner %.3g); use slower or "
+                    "smaller loads and motions, or a stiffer or finer mesh there",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    trip->given, (long long)domain->model->mesh.element_id[trip->element],
+                    trip->place[0], trip->place[1], trip->place[2], trip->volume_ratio);
+}
+
 static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): more than %d faces lie close to the surface "
@@ -173,6 +217,9 @@ void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip
     if (trip->kind == LAR_TRIP_ELEMENT) {
         examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
         examine_place(domain, state, trip);
+    } else if (trip->kind == LAR_TRIP_GAIN) {
+        examine_surface(domain, state, trip);
+        examine_place(domain, state, trip);
     } else if (trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH) {
         examine_speed(domain, state, trip);
     }
@@ -182,6 +229,7 @@ lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_e
     if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
     if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
     if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
+    if (trip->kind == LAR_TRIP_GAIN) return report_gain(domain, trip, error);
     if (trip->kind == LAR_TRIP_CROWD) return report_crowd(domain, trip, error);
     if (trip->kind == LAR_TRIP_RUSH) return report_rush(domain, trip, error);
     return report_speed(domain, trip, error);

@@ -46,11 +46,12 @@ static double holding_distance(const lar_domain *domain, int32_t tool, const dou
 void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
     const lar_touch *touch = &domain->acting.touch;
     bool moves = trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH;
-    if (trip->blamed || !(moves || trip->kind == LAR_TRIP_ELEMENT)) return;
+    bool of_element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
+    if (trip->blamed || !(moves || of_element)) return;
     trip->blamed = true;
     if (touch->face_count == 0 || trip->element < 0) return;
     double rest[3], edge = 0, closest = 1;
-    if (trip->kind == LAR_TRIP_ELEMENT) {
+    if (of_element) {
         edge = element_at_rest(domain, trip->element, rest);
     } else {
         memcpy(rest, domain->model->mesh.position[trip->element], sizeof rest);
@@ -80,7 +81,7 @@ lar_status lar_trip_report_tool(const lar_domain *domain, const lar_trip *trip,
                                 const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_tool *tool = &domain->acting.touch.list->tool[trip->tool - 1];
-    bool element = trip->kind == LAR_TRIP_ELEMENT;
+    bool element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[trip->element];
     char motion[80];
     if (trip->tool_speed > 0)

@@ -23,7 +23,7 @@ lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
 
 double lar_contact_face_mass(const double mass[4], const double weight[4]) {
     double sum = 0;
-    for (int a = 0; a < 4; a++) sum += weight[a] * weight[a] / mass[a];
+    for (int a = 0; a < 4; a++) sum += weight[a] / mass[a];
     return 1 / sum;
 }
 

@@ -90,6 +90,21 @@ static double height_over(const double x[3], const double corner[4][3], const do
     return length > 0 ? dot(away, normal) / length : 0;
 }
 
+/* See lar_face_point.toward: the ways along a triangle lie between those to its corners. */
+static double toward_of(const double x[3], const double corner[4][3], const double middle[3], int t,
+                        const double weight[4], double tie) {
+    const double *ends[3] = {corner[t], corner[(t + 1) % 4], middle};
+    double point[3], away[3], along[3], most = -1;
+    lar_face_mean(corner, weight, point);
+    between(point, x, away);
+    for (int i = 0; i < 3; i++) {
+        between(point, ends[i], along);
+        double length = sqrt(dot(along, along)), distance = sqrt(dot(away, away));
+        if (length > tie && distance > 0) most = fmax(most, dot(along, away) / (length * distance));
+    }
+    return most;
+}
+
 static void middle_of(const double corner[4][3], double middle[3]) {
     static const double even[4] = {0.25, 0.25, 0.25, 0.25};
     lar_face_mean(corner, even, middle);
@@ -113,13 +128,14 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
     for (int t = 0; t < 4; t++) {
         closest_of_part(x, corner, middle, t, part[t].weight);
         part[t].distance = distance_to(x, corner, part[t].weight);
-        part[t].height = NAN;
+        part[t].height = part[t].toward = NAN;
         least = fmin(least, part[t].distance);
     }
     const lar_face_point *chosen = NULL; /* stays so where there are no numbers */
     for (int t = 0; t < 4; t++) {
         if (!(part[t].distance <= least + tie)) continue;
         part[t].height = height_over(x, corner, middle, t, part[t].weight);
+        part[t].toward = toward_of(x, corner, middle, t, part[t].weight, tie);
         if (!chosen || lar_face_point_before(&part[t], chosen)) chosen = &part[t];
     }
     *point = chosen ? *chosen : part[0];

@@ -12,10 +12,13 @@
  * found in closed form, and the surface has no gaps between neighbouring faces either way.
  *
  * Which side. The sign of the distance to a closed surface is that of the height over the plane of
- * the closest triangle, if that is unique. On an edge or corner of several, the planes may
- * disagree; the one over or under which the point is farthest has the right sign (its plane lies
- * most squarely to the way from the point to the edge). That decides between the triangles of a
- * face here, and between faces in lar_face_point_before.
+ * the closest triangle, if that is unique. On an edge of two, the planes may disagree; the one over
+ * or under which the point is farthest has the right sign (its plane lies most squarely to the way
+ * from the point to the edge). In a corner of several, two of them count: those at the edge that
+ * turns most towards the point. Seen from the corner, all edges and planes are at least a right
+ * angle away from the point, so the way to the nearest of them ends at that edge and crosses no
+ * other: the planes beside it say which side it is. That decides between the triangles of a face
+ * here, and between faces in lar_face_point_before.
  */
 #ifndef LAR_MECHANICS_FACE_CONTACT_H
 #define LAR_MECHANICS_FACE_CONTACT_H
@@ -25,12 +28,16 @@
 typedef struct lar_face_point {
     double distance;  /* from the point to the closest one of the face, at least 0 [m] */
     double height;    /* of the point over the plane of that triangle, negative inside [m] */
+    double toward;    /* cosine between the way to the point and the way along the triangle that
+                         comes closest to it: 0 but where the closest point is a corner */
     double weight[4]; /* of the corners */
 } lar_face_point;
 
 /* Distances closer to each other than this part of the size of a face are equal: rounding must not
  * choose between two planes. */
 #define LAR_FACE_TIE 1e-9
+/* And such cosines. */
+#define LAR_TOWARD_TIE 1e-6
 
 /* The distance alone. `corner` counter-clockwise seen from outside. */
 double lar_face_distance(const double x[3], const double corner[4][3]);
@@ -42,6 +49,8 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
 
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
+    double more = a->toward - b->toward;
+    if (more > LAR_TOWARD_TIE || more < -LAR_TOWARD_TIE) return more > 0;
     double over = a->height < 0 ? -a->height : a->height;
     double under = b->height < 0 ? -b->height : b->height;
     return over > under;

@@ -282,13 +282,15 @@ static void forces_are_means_of_the_last_advance(void **unused) {
 static void long_advances_add_up(void **unused) {
     (void)unused;
     static lar_acting acting;
+    const lar_state state = {.contact = 0.25};
     lar_report sum = {0};
     acting.touch.sum[1] = (lar_tool_sum){.touching = 2};
     for (int step = 0; step < 1000; step++) {
         acting.touch.sum[1].force[0] -= (int64_t)1 << 60;
         acting.touch.sum[1].torque[2] += (int64_t)1 << 60;
     }
-    for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &acting);
+    for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &acting, &state);
+    assert_true(sum.taken == 1);
     assert_true((double)sum.tool[1].force[0] == -4000 * 0x1p60);
     assert_true((double)sum.tool[1].torque[2] == 4000 * 0x1p60);
     assert_int_equal(sum.tool[1].touching, 8);

@@ -135,6 +135,70 @@ static void inside_is_inside_also_at_edges(void **unused) {
         }
 }
 
+/* How often the surface of a body winds around x: the solid angles of its triangles (van Oosterom,
+ * Strackee 1983). */
+static double winding(const double x[3], const double corner[6][4][3]) {
+    double sum = 0;
+    for (int k = 0; k < 24; k++) {
+        const double(*c)[3] = corner[k / 4];
+        double r[3][3], length[3], dot[3] = {0}, volume = 0;
+        for (int i = 0; i < 3; i++) {
+            r[0][i] = c[k % 4][i] - x[i];
+            r[1][i] = c[(k + 1) % 4][i] - x[i];
+            r[2][i] = 0.25 * ((c[0][i] + c[1][i]) + (c[2][i] + c[3][i])) - x[i];
+        }
+        for (int a = 0; a < 3; a++) {
+            int b = (a + 1) % 3;
+            length[a] = sqrt(r[a][0] * r[a][0] + r[a][1] * r[a][1] + r[a][2] * r[a][2]);
+            for (int i = 0; i < 3; i++) dot[a] += r[a][i] * r[b][i];
+            volume += r[0][a] * (r[1][b] * r[2][3 - a - b] - r[1][3 - a - b] * r[2][b]);
+        }
+        double below = length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] +
+                       dot[2] * length[1];
+        sum += atan2(volume, below) / (2 * 3.14159265358979323846);
+    }
+    return sum;
+}
+
+/* Uneven cubes, drawn out and sheared into spikes: at their corners some edges turn in beside
+ * others that turn out. A plane at such a corner may have the point far on its wrong side, although
+ * it is not next to it. */
+static void inside_is_inside_also_at_dented_corners(void **unused) {
+    (void)unused;
+    int at_corners = 0;
+    for (int trial = 0; trial < 40000; trial++) {
+        double node[8][3], corner[6][4][3], x[3], least = INFINITY;
+        for (int n = 0; n < 8; n++)
+            for (int i = 0; i < 3; i++) node[n][i] = (n >> i & 1 ? 1 : -1) + 0.6 * noise();
+        for (int i = 0; i < 3; i++) {
+            double tilt = 2.5 * noise(), slide = 2.5 * noise();
+            for (int n = 0; n < 8; n++)
+                node[n][i] += tilt * node[n][(i + 1) % 3] + slide * node[n][(i + 2) % 3];
+        }
+        for (int i = 0; i < 3; i++) x[i] = node[trial % 8][i] + 1.5 * noise();
+        lar_face_point face[6];
+        for (int f = 0; f < 6; f++) {
+            cube_face(f, 0, corner[f]);
+            for (int a = 0; a < 4; a++) {
+                double *c = corner[f][a];
+                memcpy(c, node[(c[0] > 0) + 2 * (c[1] > 0) + 4 * (c[2] > 0)], sizeof corner[f][a]);
+            }
+            lar_face_closest(x, (const double(*)[3])corner[f], 1e-9, &face[f]);
+            least = fmin(least, face[f].distance);
+        }
+        int chosen = -1;
+        for (int f = 0; f < 6; f++)
+            if (face[f].distance <= least + 1e-9 &&
+                (chosen < 0 || lar_face_point_before(&face[f], &face[chosen])))
+                chosen = f;
+        double around = winding(x, (const double(*)[4][3])corner);
+        if (least < 1e-6) continue;
+        at_corners += face[chosen].toward < -LAR_TOWARD_TIE;
+        assert_true((face[chosen].height < 0) == (around > 0.5));
+    }
+    assert_true(at_corners > 2000);
+}
+
 static void what_has_no_size_makes_no_trouble(void **unused) {
     (void)unused;
     double corner[4][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -155,6 +219,7 @@ int main(void) {
         cmocka_unit_test(the_closest_point_is_the_closest),
         cmocka_unit_test(forces_and_moments_balance),
         cmocka_unit_test(inside_is_inside_also_at_edges),
+        cmocka_unit_test(inside_is_inside_also_at_dented_corners),
         cmocka_unit_test(what_has_no_size_makes_no_trouble),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
