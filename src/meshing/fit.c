@@ -19,7 +19,7 @@ static const lar_fit_law usual = {.shape = 0.001, .steep = 1, .aim = 0.55, .floo
 static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 
 /* Sweeps between two renewals of the planes; the last renewals balance volumes. */
-enum { SWEEPS = 3, RENEWALS = 16, BALANCE_FROM = 4 };
+enum { SWEEPS = 4, RENEWALS = 12, BALANCE_FROM = 3 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;

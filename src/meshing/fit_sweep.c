@@ -8,7 +8,7 @@
  * one, which a step of all nodes at once would. */
 
 /* Steps below it [cells] do not wake the neighbours; none is longer than the other. */
-static const double STILL = 1e-3, LONGEST = 0.35;
+static const double STILL = 5e-3, LONGEST = 0.35;
 enum { HALVINGS = 12 };
 
 /* ---- the energy around a node --------------------------------------------------------------- */
@@ -50,10 +50,11 @@ static void elements_newton(const lar_fit_work *work, int32_t n, lar_fit_newton 
     }
 }
 
-static void add_plane(const lar_fit_plane *plane, const double x[3], double share,
+static void add_plane(const lar_fit_plane *plane, double offset, const double x[3], double share,
                       lar_fit_newton *sum) {
     const double *normal = plane->normal;
-    const double off = lar_dot(normal, x) - normal[3], factor = 2 * plane->weight * share;
+    const double off = lar_dot(normal, x) - plane->level - offset,
+                 factor = 2 * plane->weight * share;
     sum->value += plane->weight * off * off;
     for (int i = 0; i < 3; i++) {
         sum->gradient[i] += factor * off * normal[i];
@@ -66,7 +67,9 @@ static void add_plane(const lar_fit_plane *plane, const double x[3], double shar
  * step that is tried. */
 static void boundary_newton(const lar_fit_work *work, int32_t n, lar_fit_newton *sum) {
     for (int32_t i = work->point_start[n]; i < work->point_start[n + 1]; i++)
-        if (work->point[i].plane.weight > 0) add_plane(&work->point[i].plane, work->x[n], 1, sum);
+        if (work->point[i].plane.weight > 0)
+            add_plane(&work->point[i].plane, work->pair[work->point[i].pair].offset, work->x[n], 1,
+                      sum);
     for (int32_t i = work->face_start[n]; i < work->face_start[n + 1]; i++) {
         const lar_fit_face *face = &work->face[work->face_around[i] / 4];
         const int own = work->face_around[i] & 3;
@@ -76,7 +79,8 @@ static void boundary_newton(const lar_fit_work *work, int32_t n, lar_fit_newton 
             for (int a = 0; a < 4; a++)
                 for (int k = 0; k < 3; k++)
                     x[k] += lar_fit_share[(a - g) & 3] * work->x[face->node[a]][k];
-            add_plane(&face->plane[g], x, lar_fit_share[(own - g) & 3], sum);
+            add_plane(&face->plane[g], work->pair[face->pair].offset, x,
+                      lar_fit_share[(own - g) & 3], sum);
         }
     }
 }

@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "meshing/fit_work.h"
@@ -11,9 +12,10 @@ const double lar_fit_share[4] = {0.62200846792814621559, 1.0 / 6, 0.044658198738
  * the mesh has there. */
 static const double REACH = 1.8;
 
-/* How much more a flat cut weighs: it is known exactly, and its edge shall be as sharp as it was
- * cut.
- */
+/* A plane serves until the point that it was asked for has moved so far [cells]. */
+static const double NEGLIGIBLE = 0.03;
+
+/* How much more a flat cut weighs: it is known exactly, and its edge shall be sharp. */
 static const double CUT_WEIGHT = 4;
 
 /* ---- trees ---------------------------------------------------------------------------------- */
@@ -79,11 +81,11 @@ static bool triangle_normal(const lar_fit_work *work, const lar_fit_pair *pair, 
 
 /* The nearest point of the pair's boundary to `ask`, seen from `x`, when it looks the same way. */
 static bool ask_tree(const lar_fit_work *work, const lar_fit_pair *pair, const double ask[3],
-                     const double x[3], const double facing[3], target *found) {
+                     double reach, const double x[3], const double facing[3], target *found) {
     double world[3];
     lar_nearest nearest;
     for (int i = 0; i < 3; i++) world[i] = work->origin[i] + work->size * ask[i];
-    if (!lar_triangle_tree_nearest(pair->tree, world, REACH * work->size, &nearest)) return false;
+    if (!lar_triangle_tree_nearest(pair->tree, world, reach * work->size, &nearest)) return false;
     if (!triangle_normal(work, pair, nearest.triangle, found->normal)) return false;
     if (!(lar_dot(found->normal, facing) > 0)) return false;
     for (int i = 0; i < 3; i++) {
@@ -96,14 +98,14 @@ static bool ask_tree(const lar_fit_work *work, const lar_fit_pair *pair, const d
 /* Where the mesh is about as thin as a cell, the nearest triangle may be one of the other side,
  * which looks the other way; then those beyond are asked, half a cell in front and behind. */
 static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
-                        const double facing[3], target *found) {
-    if (ask_tree(work, pair, x, x, facing, found)) return true;
+                        double reach, const double facing[3], target *found) {
+    if (ask_tree(work, pair, x, reach, x, facing, found)) return true;
     target other[2];
     bool any[2];
     for (int k = 0; k < 2; k++) {
         double ask[3];
         for (int i = 0; i < 3; i++) ask[i] = x[i] + (k ? -0.6 : 0.6) * facing[i];
-        any[k] = ask_tree(work, pair, ask, x, facing, &other[k]);
+        any[k] = ask_tree(work, pair, ask, REACH, x, facing, &other[k]);
     }
     if (!any[0] && !any[1]) return false;
     *found = other[!any[0] || (any[1] && lar_dot(other[1].away, other[1].away) <
@@ -117,15 +119,25 @@ static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, cons
 static void renew_plane(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
                         const double facing[3], double weight, lar_fit_plane *plane) {
     target found;
+    double reach = REACH;
+    if (plane->weight > 0) {
+        double moved[3], away[3];
+        lar_minus(x, plane->asked, moved);
+        if (lar_dot(moved, moved) < NEGLIGIBLE * NEGLIGIBLE) return;
+        lar_minus(x, plane->point, away);
+        reach = fmin(REACH, 1.0001 * lar_length(away) + 1e-6); /* there is one so near */
+    }
     plane->weight = 0;
-    if (!pair->tree || !find_target(work, pair, x, facing, &found)) return;
+    if (!pair->tree || !find_target(work, pair, x, reach, facing, &found)) return;
     const double distance = lar_length(found.away);
     if (distance > 0.02 && pair->region[1] < LAR_REGION_CUT) {
         const double sign = lar_dot(found.away, found.normal) < 0 ? -1 : 1;
         for (int i = 0; i < 3; i++) found.normal[i] = sign * found.away[i] / distance;
     }
-    for (int i = 0; i < 3; i++) plane->normal[i] = found.normal[i];
-    plane->normal[3] = lar_dot(found.normal, found.point) + pair->offset;
+    memcpy(plane->asked, x, sizeof plane->asked);
+    memcpy(plane->point, found.point, sizeof plane->point);
+    memcpy(plane->normal, found.normal, sizeof plane->normal);
+    plane->level = lar_dot(found.normal, found.point);
     plane->weight = pair->region[1] < LAR_REGION_CUT ? weight : CUT_WEIGHT * weight;
 }
 

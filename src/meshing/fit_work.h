@@ -15,9 +15,11 @@
 #include "meshing/fit_quality.h"
 #include "model/triangle_tree.h"
 
-/* A plane that a point of the mesh shall lie on: normal * x = normal[3]. Weight 0: none. */
+/* A plane that a point of the mesh shall lie on, or by the pair's offset before it: normal * x =
+ * level + offset. Weight 0: none. */
 typedef struct lar_fit_plane {
-    double normal[4], weight;
+    double normal[3], level, weight;
+    double asked[3], point[3]; /* from where it was found, and the boundary's nearest point */
 } lar_fit_plane;
 
 /* Faces are asked at the four points of Gauss' rule: the sum over them of the squared distances is
@@ -75,7 +77,7 @@ void lar_fit_work_clear(lar_fit_work *work);
 
 /* Trees over the triangles of each pair. */
 lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error);
-/* All planes anew, from where faces and nodes are now. */
+/* Planes anew, from where faces and nodes are now, for those that have moved on. */
 void lar_fit_targets_renew(lar_fit_work *work);
 
 /* The cubic cells that each region has and shall have; changes the pairs' offsets by what is
