@@ -4,8 +4,8 @@
 #include "meshing/clean.h"
 
 /* Limits of islands and pinholes, lattice.h. */
-static const double ISLAND_PART = 0.05, PINHOLE_PART = 0.01;
-enum { ISLAND_CELLS = 3, PINHOLE_CELLS = 27 };
+static const double ISLAND_PART = 0.05, SPECK_PART = 0.0005, PINHOLE_PART = 0.01;
+enum { PINHOLE_CELLS = 27 };
 /* An island goes to its neighbours when these have at least this part of its outer faces. */
 static const double GIVEN_PART = 0.25;
 
@@ -121,16 +121,18 @@ static lar_status close_piece(lar_cleaner *cleaner, const piece *one, int label)
     return visit(cleaner, one->start, OTHER, label, &size, NULL);
 }
 
-/* An island is joined to the rest of its region where the body leads there. A small one is given
- * away or left out otherwise. */
-static lar_status take_island(lar_cleaner *cleaner, const piece *island, bool *changed) {
+/* An island is joined to the rest of its region where the body leads there. A speck is given away
+ * or left out otherwise. */
+static lar_status take_island(lar_cleaner *cleaner, const piece *island, int32_t largest,
+                              bool *changed) {
+    const bool speck = island->size == 1 || island->size < SPECK_PART * largest;
     surroundings around = {{0}};
     bool joined = false, same;
     lar_status status = open_piece(cleaner, island, &around, &same);
     if (!status && same) status = lar_clean_bridge(cleaner, island->start, OWN, OTHER, &joined);
     if (status) return status;
-    *changed = *changed || joined || !same || island->size < ISLAND_CELLS;
-    if (joined || !same || island->size >= ISLAND_CELLS) return close_piece(cleaner, island, -1);
+    *changed = *changed || joined || !same || speck;
+    if (joined || !same || !speck) return close_piece(cleaner, island, -1);
     const uint8_t heir = heir_of(&around, island->region);
     if (heir == 0) {
         cleaner->cleaning->islands++;
@@ -172,7 +174,7 @@ lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
         } else {
             const int32_t most = largest[one->region];
             if (one->size == most || (one->size > 1 && one->size >= ISLAND_PART * most)) continue;
-            status = take_island(cleaner, one, changed);
+            status = take_island(cleaner, one, most, changed);
         }
     }
     free(pieces);

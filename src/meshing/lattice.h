@@ -65,10 +65,10 @@ typedef struct lar_cleaning {
  * two outside cells meet so; the same for each region where it is possible. Islands: of each
  * region, pieces with less than 5 % of the cells of its largest piece (less than 2 cells at least)
  * are joined to the rest where cells that hold a part of the region lead there; of the others those
- * of less than 3 cells go to the region around them, or are left out. Pinholes: enclosed outside
- * pieces of less than 1 % of the body's cells, at most 27. Cells flip in favour of their share.
- * Bumps and dents, which fitting would squash, are levelled; sheets and bars, and slots and tubes,
- * of one cell's width stay (clean.h). */
+ * of one cell or of less than 0.05 % go to the region around them, or are left out. Pinholes:
+ * enclosed outside pieces of less than 1 % of the body's cells, at most 27. Cells flip in favour of
+ * their share. Bumps and dents, which fitting would squash, are levelled; sheets and bars, and
+ * slots and tubes, of one cell's width stay (clean.h). */
 lar_status lar_lattice_clean(lar_lattice *lattice, lar_cleaning *cleaning, lar_error *error);
 
 #endif

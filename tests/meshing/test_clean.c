@@ -142,7 +142,7 @@ static void islands_are_joined_kept_or_left_out(void **state) {
 /* A ball of region 1 in which are a speck of region 2, a small hollow and a large one. */
 static int ball_with_specks(const double x[3]) {
     if (squared(x, 12, 12, 12) > 10 * 10) return 0;
-    if (fabs(x[0] - 12.5) < 0.4 && fabs(x[1] - 12.5) < 0.4 && fabs(x[2] - 7) < 0.9) return 2;
+    if (fabs(x[0] - 12.5) < 0.4 && fabs(x[1] - 12.5) < 0.4 && fabs(x[2] - 7.5) < 0.4) return 2;
     if (fabs(x[0] - 7) < 1.9 && fabs(x[1] - 12.5) < 0.4 && fabs(x[2] - 12.5) < 0.4) return 0;
     if (squared(x, 15.5, 12, 13.5) < 3 * 3) return 0;
     return squared(x, 12, 20, 12) < 3 * 3 ? 2 : 1;
@@ -158,7 +158,7 @@ static void pinholes_are_filled(void **state) {
     assert_int_equal(cleaning.pinhole_cells, 4);
     assert_int_equal(cleaning.islands, 0);
     assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 7, 12, 12)], 1);
-    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 12, 12, 6)], 1);
+    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 12, 12, 7)], 1);
     assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 15, 12, 13)], 0);
     assert_manifold(solid_judge_lattice(&lattice, 1));
     assert_manifold(solid_judge_lattice(&lattice, 2));
