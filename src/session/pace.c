@@ -3,14 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
-
-static const int64_t LAG_MOST = (int64_t)(1e9 * LAR_LAG_MOST);
 static const int64_t WINDOW_STEP = 100000000, SECOND = 1000000000; /* [ns] */
-
-/* How long before the tick sleeping ends and polling begins [ns]: about as much as a timer is late
- * on an idle machine. */
-static const int64_t WAKE_EARLY = 20000;
 
 /* A tick: three years, which a number of nanoseconds holds [ns]. */
 static const double LONGEST = 1e17;
@@ -25,24 +18,24 @@ static void set_factor(lar_pace *pace) {
 }
 
 void lar_pace_restart(lar_pace *pace, int64_t now) {
-    if (pace->pace > 0 && pace->due > now) return;
-    pace->before = played(pace, pace->pace > 0 ? pace->due : now);
-    pace->since = pace->due = now;
-    pace->fraction = 0;
+    if (pace->pace > 0 && pace->beat.due > now) return;
+    pace->before = played(pace, pace->pace > 0 ? pace->beat.due : now);
+    pace->since = now;
+    lar_beat_restart(&pace->beat, now);
 }
 
 void lar_pace_start(lar_pace *pace, int64_t now) {
     if (pace->running) return;
     pace->running = true;
-    pace->since = pace->due = now;
-    pace->fraction = 0;
+    pace->since = now;
+    lar_beat_restart(&pace->beat, now);
     pace->given_up_at = 0;
     pace->moments = 0; /* rates do not look across a pause */
 }
 
 void lar_pace_stop(lar_pace *pace, int64_t now) {
     if (!pace->running) return;
-    pace->before = played(pace, pace->pace > 0 && pace->due > now ? pace->due : now);
+    pace->before = played(pace, pace->pace > 0 && pace->beat.due > now ? pace->beat.due : now);
     pace->running = false;
     pace->total.played = pace->before;
     set_factor(pace);
@@ -54,32 +47,30 @@ void lar_pace_set(lar_pace *pace, double wanted, int64_t now) {
     if (wanted == pace->pace) return;
     lar_pace_restart(pace, now);
     /* What is left of the tick under way goes at the new pace. */
-    if (pace->running && wanted > 0 && pace->due > now) {
-        double left = (double)(pace->due - now) * (pace->pace / wanted);
-        pace->due = now + (int64_t)fmin(left, LONGEST);
+    if (pace->running && wanted > 0 && pace->beat.due > now) {
+        double left = (double)(pace->beat.due - now) * (pace->pace / wanted);
+        pace->beat.due = now + (int64_t)fmin(left, LONGEST);
     }
     pace->pace = wanted;
 }
 
 void lar_pace_wait(lar_pace *pace) {
-    if (pace->pace > 0) lar_clock_wait_until(pace->due, WAKE_EARLY);
+    if (pace->pace > 0) lar_beat_wait(&pace->beat);
 }
 
-/* What cannot be made up for within LAG_MOST. */
 static void give_up(lar_pace *pace, int64_t now) {
-    int64_t excess = now - pace->due - LAG_MOST;
-    if (excess <= 0) return;
-    pace->due += excess;
+    int64_t excess = lar_beat_give_up(&pace->beat, now);
+    if (excess == 0) return;
     pace->skipped += 1e-9 * (double)excess;
     pace->given_up_at = now;
 }
 
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
-    pace->period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
+    pace->beat.period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
     if (pace->pace > 0)
         give_up(pace, now);
     else
-        pace->due = now;
+        pace->beat.due = now;
     pace->total.at = now;
     pace->total.played = played(pace, now);
     set_factor(pace); /* without this tick, whose time is still to come */
@@ -92,13 +83,10 @@ void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine) {
 }
 
 void lar_pace_answered(lar_pace *pace, int64_t now) {
-    lar_histogram_add(&pace->ticks, (uint64_t)(now > pace->due ? now - pace->due : 0));
+    lar_histogram_add(&pace->ticks, (uint64_t)(now > pace->beat.due ? now - pace->beat.due : 0));
     pace->total.ticks++;
     if (pace->pace <= 0) return;
-    double next = pace->fraction + pace->period;
-    pace->due += (int64_t)next;
-    pace->fraction = next - floor(next);
-    if (now > pace->due) pace->misses++;
+    if (lar_beat_next(&pace->beat, now)) pace->misses++;
 }
 
 bool lar_pace_look(lar_pace *pace, int64_t now) {
@@ -142,8 +130,9 @@ void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
     status->ticks = pace->total.ticks;
     status->misses = pace->misses;
     status->skipped = pace->skipped;
-    status->lag =
-        pace->running && pace->pace > 0 && now > pace->due ? 1e-9 * (double)(now - pace->due) : 0;
+    status->lag = pace->running && pace->pace > 0 && now > pace->beat.due
+                      ? 1e-9 * (double)(now - pace->beat.due)
+                      : 0;
     status->slow_motion = pace->given_up_at > 0 && now - pace->given_up_at < SECOND;
     status->step_max = 1e-9 * (double)pace->steps.most;
     status->tick_max = 1e-9 * (double)pace->ticks.most;

@@ -18,10 +18,9 @@
 
 #include <stdbool.h>
 
+#include "base/beat.h"
 #include "base/histogram.h"
 #include "lariat.h"
-
-#define LAR_LAG_MOST 0.1 /* [s] */
 
 enum { LAR_PACE_WINDOW = 11 }; /* moments kept for rates: one every tenth of a second */
 
@@ -35,9 +34,7 @@ typedef struct lar_pace_moment {
 
 typedef struct lar_pace {
     double pace;         /* simulated per clock second; 0: as fast as it goes */
-    int64_t due;         /* when the tick under way, or the next one, is due [ns] */
-    double period;       /* of the tick under way [ns]; 0 without pace */
-    double fraction;     /* of a nanosecond, what `due` leaves out */
+    lar_beat beat;       /* of the tick under way, or the next one; its period is 0 without pace */
     bool running;        /* between lar_pace_start and lar_pace_stop */
     int64_t since;       /* of this stretch's start [ns] */
     double before;       /* played before this stretch [s] */
