@@ -90,16 +90,21 @@ static double height_over(const double x[3], const double corner[4][3], const do
     return length > 0 ? dot(away, normal) / length : 0;
 }
 
-/* See lar_face_point.toward: the ways along a triangle lie between those to its corners. */
+/* See lar_face_point.toward: the ways along a triangle lie between those to its corners. The
+ * closest point is a corner where one of its weights, exactly, is 1. */
 static double toward_of(const double x[3], const double corner[4][3], const double middle[3], int t,
                         const double weight[4], double tie) {
-    const double *ends[3] = {corner[t], corner[(t + 1) % 4], middle};
+    int next = (t + 1) % 4, other = (t + 2) % 4;
+    bool is_middle = weight[other] == 0.25 && weight[t] == 0.25 && weight[next] == 0.25;
+    if (weight[t] != 1 && weight[next] != 1 && !is_middle) return 0;
+    const double *ends[3] = {corner[t], corner[next], middle};
     double point[3], away[3], along[3], most = -1;
     lar_face_mean(corner, weight, point);
     between(point, x, away);
+    double distance = sqrt(dot(away, away));
     for (int i = 0; i < 3; i++) {
         between(point, ends[i], along);
-        double length = sqrt(dot(along, along)), distance = sqrt(dot(away, away));
+        double length = sqrt(dot(along, along));
         if (length > tie && distance > 0) most = fmax(most, dot(along, away) / (length * distance));
     }
     return most;
