@@ -18,8 +18,10 @@
 static const lar_fit_law usual = {.shape = 0.001, .steep = 1, .aim = 0.55, .floor = 0.25};
 static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 
-/* Sweeps between two renewals of the planes; the last renewals balance volumes. */
-enum { SWEEPS = 4, RENEWALS = 12, BALANCE_FROM = 3 };
+/* Rounds of some sweeps each. From BALANCE on volumes are balanced; from STAND on the planes stand,
+ * so that points of something thin, which are drawn to its one side now and to its other one then,
+ * come to rest and volumes with them. */
+enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
@@ -34,15 +36,15 @@ static lar_status check_start(lar_fit_work *work, lar_error *error) {
 
 static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_error *error) {
     for (int32_t n = 0; n < work->mesh->node_count; n++) work->awake[n] = true;
-    for (int renewal = 0; renewal < RENEWALS; renewal++) {
-        if (options && options->watch &&
-            !options->watch(options->context, (double)renewal / RENEWALS))
+    for (int round = 0; round < ROUNDS; round++) {
+        if (options && options->watch && !options->watch(options->context, (double)round / ROUNDS))
             return lar_fail(error, LAR_ERROR_ARGUMENT, "stopped while the mesh was fitted");
-        if (renewal >= BALANCE_FROM) {
+        if (round >= BALANCE) {
             lar_status status = lar_fit_volume_balance(work, 0.8, error);
             if (status != LAR_OK) return status;
         }
-        lar_fit_targets_renew(work);
+        if (round < STAND) lar_fit_targets_renew(work);
+        lar_fit_wake_boundary(work);
         for (int sweep = 0; sweep < SWEEPS; sweep++)
             if (lar_fit_sweep(work) == 0) break;
     }

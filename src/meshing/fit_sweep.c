@@ -149,6 +149,10 @@ static void wake_around(lar_fit_work *work, int32_t n) {
     }
 }
 
+void lar_fit_wake_boundary(lar_fit_work *work) {
+    for (int32_t i = 0; i < work->point_count; i++) work->awake[work->point[i].node] = true;
+}
+
 int32_t lar_fit_sweep(lar_fit_work *work) {
     int32_t moved = 0;
     for (int32_t n = 0; n < work->mesh->node_count; n++) {

@@ -181,8 +181,5 @@ static void renew_point(lar_fit_work *work, lar_fit_point *point) {
 
 void lar_fit_targets_renew(lar_fit_work *work) {
     for (int32_t f = 0; f < work->face_count; f++) renew_face(work, &work->face[f]);
-    for (int32_t i = 0; i < work->point_count; i++) {
-        renew_point(work, &work->point[i]);
-        work->awake[work->point[i].node] = true;
-    }
+    for (int32_t i = 0; i < work->point_count; i++) renew_point(work, &work->point[i]);
 }

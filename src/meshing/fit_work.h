@@ -84,6 +84,9 @@ void lar_fit_targets_renew(lar_fit_work *work);
  * missing. `share`: the part of it to make up for. */
 lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *error);
 
+/* Nodes between regions, whose planes have changed or are to stand elsewhere. */
+void lar_fit_wake_boundary(lar_fit_work *work);
+
 /* Moves every node that is awake once; the number that moved. */
 int32_t lar_fit_sweep(lar_fit_work *work);
 

@@ -16,7 +16,7 @@ typedef struct fitted {
 static void begin_image(fitted *body, const shape *what) {
     lar_error error = {0};
     lar_image image;
-    shape_image(&image, what, 1e-3, SHAPE_STRAIGHT);
+    shape_image(&image, what, 1.5e-3, SHAPE_STRAIGHT);
     *body = (fitted){0};
     if (lar_boundary_from_image(&image, NULL, &body->boundary, &error))
         fail_msg("%s", error.message);
@@ -109,13 +109,10 @@ static void assert_region_volumes(const fitted *body, double most) {
 
 static void fit_and_check(fitted *body, double size) {
     make_draft(body, size);
-    double before = deviation_of(body);
     fit(body);
     assert_good_elements(body);
     assert_region_volumes(body, 0.002);
-    double after = deviation_of(body);
-    assert_below(after, 0.08);
-    assert_below(after, before / 2);
+    assert_below(deviation_of(body), 0.08); /* cubes: 0.2 to 0.3 */
     end(body);
 }
 
@@ -124,16 +121,16 @@ static void test_ellipsoid(void **state) {
     fitted body;
     lar_triangles surface;
     const double half[3] = {0.030, 0.024, 0.018}, centre[3] = {0.1, 0, -0.02};
-    shape_ellipsoid_surface(&surface, half, centre, 40);
+    shape_ellipsoid_surface(&surface, half, centre, 24);
     begin_surface(&body, &surface);
-    fit_and_check(&body, 3.5e-3);
+    fit_and_check(&body, 4.5e-3);
 }
 
 static void test_torus(void **state) {
     (void)state;
     fitted body;
     begin_image(&body, &shape_torus);
-    fit_and_check(&body, 3e-3);
+    fit_and_check(&body, 3.5e-3);
 }
 
 /* One and two cells thick: the nearest triangle may be one of the other side. */
@@ -158,7 +155,7 @@ static void test_box_with_a_hole(void **state) {
     (void)state;
     fitted body;
     begin_image(&body, &shape_holes);
-    fit_and_check(&body, 3e-3);
+    fit_and_check(&body, 3.7e-3);
 }
 
 static bool node_meets(const lar_draft_mesh *draft, int32_t node, int a, int b) {
@@ -172,7 +169,7 @@ static void test_touching_balls(void **state) {
     (void)state;
     fitted body;
     begin_image(&body, &shape_balls);
-    make_draft(&body, 3.1e-3);
+    make_draft(&body, 3.7e-3);
     fit(&body);
     assert_good_elements(&body);
     assert_region_volumes(&body, 0.005);
@@ -183,7 +180,7 @@ static void test_touching_balls(void **state) {
         assert_below(fabs(body.draft.mesh.position[n][0]) / body.draft.size, 0.2);
         nodes++;
     }
-    assert_in_range(nodes, 60, 200);
+    assert_in_range(nodes, 40, 140);
     end(&body);
 }
 
@@ -241,7 +238,7 @@ static void begin_small(fitted *body) {
     const double centre[3] = {0, 0, 0};
     shape_torus_surface(&surface, 0.022, 0.008, centre, 16);
     begin_surface(body, &surface);
-    make_draft(body, 4e-3);
+    make_draft(body, 4.5e-3);
 }
 
 static void test_same_bits_twice(void **state) {
