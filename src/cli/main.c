@@ -9,8 +9,8 @@
 #include "cli/commands.h"
 
 static const cli_command *const commands[] = {
-    &cli_mesh,   &cli_info,      &cli_run,        &cli_view,  &cli_replay,
-    &cli_verify, &cli_partition, &cli_demo_model, &cli_bench, &cli_device};
+    &cli_mesh,      &cli_info,         &cli_run,        &cli_view,  &cli_replay, &cli_verify,
+    &cli_partition, &cli_requirements, &cli_predict, &cli_demo_model, &cli_bench, &cli_device};
 enum { COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_overview(FILE *out) {
@@ -19,7 +19,7 @@ static void print_overview(FILE *out) {
             "Usage: lariat COMMAND [ARGUMENTS]\n\nCommands:\n",
             lar_version());
     for (int i = 0; i < COUNT; i++)
-        fprintf(out, "  %-12s%s\n", commands[i]->name, commands[i]->summary);
+        fprintf(out, "  %-14s%s\n", commands[i]->name, commands[i]->summary);
     fprintf(out, "\nlariat COMMAND --help explains one command; lariat --version prints the "
                  "version.\n\nFor a first look:\n"
                  "  lariat demo-model demo\n"
