@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/folder.h"
+#include "base/vector.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 
@@ -63,6 +64,40 @@ static double damping(const lar_meshing *m) {
     return round(rate / digit) * digit;
 }
 
+static double least_height(const lar_mesh *mesh, int32_t e) {
+    static const uint8_t end[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                      {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+    double least = INFINITY, x[8][3], edge[3][3], area[3];
+    lar_mesh_corners(mesh, e, x);
+    for (int a = 0; a < 8; a++) {
+        double largest = 0;
+        for (int k = 0; k < 3; k++) lar_minus(x[end[a][k]], x[a], edge[k]);
+        for (int k = 0; k < 3; k++) {
+            lar_cross(edge[k], edge[(k + 1) % 3], area);
+            largest = fmax(largest, lar_length(area));
+        }
+        /* `area` is that of edges 2 and 0 now. */
+        least = fmin(least, fabs(lar_dot(area, edge[1])) / largest);
+    }
+    return least;
+}
+
+/* The least height of an element, divided by the speed of pressure waves in it, and half of that:
+ * an element that is squeezed to half its height still bears the step. The height at a corner is
+ * the volume that its edges span over the largest area of two of them. */
+static double squeezed_step(const lar_meshing *m) {
+    double least = INFINITY;
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        const lar_region_info *region = &m->region[r];
+        double modulus = region->bulk_modulus + 4 * region->shear_modulus / 3;
+        double speed = sqrt(modulus / region->density);
+        for (int32_t e = 0; e < m->mesh.element_count; e++)
+            if (m->mesh.element_tag[e] == region->tag)
+                least = fmin(least, least_height(&m->mesh, e) / speed);
+    }
+    return least / 2;
+}
+
 static void put_head(const lar_meshing *m, FILE *f) {
     const lar_meshing_info *info = &m->info;
     fputs("# ", f);
@@ -97,14 +132,16 @@ static void put_motion(const lar_meshing *m, FILE *f) {
     fprintf(
         f,
         "# No gravity: the scanner saw the organ sag already, and what was seen is its shape at\n"
-        "# rest here. For its full weight on top of that, %s:\n"
-        "# gravity: [0, %s]\n"
+        "# rest here. For its full weight on top of that, %s, take these two\n"
+        "# lines instead; elements that it squeezes need shorter steps than at rest:\n"
+        "#     gravity: [0, %s]\n"
+        "#     time_step: %.1e\n"
         "gravity: [0, 0, 0]\n"
         "time_step: auto\n"
         "damping: %g             # 1/s; let go, it comes to rest in a second or so\n"
         "duration: 2              # s; a run lasts so long unless --time says otherwise\n\n",
         m->image ? "the patient lying on the back" : "along -z", m->image ? "-9.81, 0" : "0, -9.81",
-        damping(m));
+        squeezed_step(m), damping(m));
 }
 
 static void put_material(const lar_region_info *region, FILE *f) {
