@@ -12,10 +12,11 @@ static int bin_of(uint64_t value) {
     return bin < BINS ? bin : BINS - 1;
 }
 
-static double middle_of(int bin) {
+/* The value at a part (0..1) of the bin's width. */
+static double value_in(int bin, double part) {
     if (bin < SPLIT) return bin;
     int octave = bin / SPLIT - 1;
-    return ldexp(SPLIT + bin % SPLIT + 0.5, octave);
+    return ldexp(SPLIT + bin % SPLIT + part, octave);
 }
 
 void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds) {
@@ -24,6 +25,15 @@ void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds) {
     histogram->count++;
     histogram->sum += nanoseconds;
     histogram->bin[bin_of(nanoseconds)]++;
+}
+
+void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other) {
+    if (other->count == 0) return;
+    if (histogram->count == 0 || other->least < histogram->least) histogram->least = other->least;
+    if (other->most > histogram->most) histogram->most = other->most;
+    histogram->count += other->count;
+    histogram->sum += other->sum;
+    for (int i = 0; i < BINS; i++) histogram->bin[i] += other->bin[i];
 }
 
 double lar_histogram_quantile(const lar_histogram *histogram, double share) {
@@ -35,5 +45,7 @@ double lar_histogram_quantile(const lar_histogram *histogram, double share) {
         below += histogram->bin[bin];
         if (below > 0 && (double)below >= wanted) break;
     }
-    return fmin(fmax(middle_of(bin), (double)histogram->least), (double)histogram->most);
+    double inside = (double)histogram->bin[bin];
+    double part = inside > 0 ? 1 - ((double)below - wanted) / inside : 1;
+    return fmin(fmax(value_in(bin, part), (double)histogram->least), (double)histogram->most);
 }

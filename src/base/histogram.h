@@ -3,7 +3,8 @@
  *     1 ns          2 ns          4 ns                           2^40 ns = 18 minutes
  *      |--64 bins----|--64 bins----|-- ... ------------------------|
  *
- * Every octave has 64 equal bins, so a percentile is known to 1.6 % whatever its size. Adding is a
+ * Every octave has 64 equal bins, so a percentile is known to 1.6 % whatever its size, and
+ * better where many values lie. Adding is a
  * few instructions; nothing is allocated. Minimum, maximum and sum are exact.
  */
 #ifndef LAR_BASE_HISTOGRAM_H
@@ -22,8 +23,11 @@ typedef struct lar_histogram {
 /* Adds a value [ns]. Values beyond the last bin are counted there. */
 void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds);
 
-/* The value below or at which `share` (0..1) of all values lie [ns]: the middle of its bin, never
- * outside least..most. 0 when empty. */
+/* Adds all values of another one. */
+void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other);
+
+/* The value below or at which `share` (0..1) of all values lie [ns]: as if those of its bin were
+ * spread over the bin evenly, never outside least..most. 0 when empty. */
 double lar_histogram_quantile(const lar_histogram *histogram, double share);
 
 #endif

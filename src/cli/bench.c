@@ -2,14 +2,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/bench_json.h"
+#include "cli/bench_frame.h"
 #include "cli/commands.h"
 #include "study/bench_kernel.h"
 
 /* ---- lariat bench kernel ---------------------------------------------------------------- */
 
-static void write_json(const lar_bench_kernel_result *r, bool general) {
-    json_writer json = json_begin(stdout);
+static void write_json(const bench_frame *frame, const lar_bench_kernel_result *r, bool general) {
+    json_writer json = bench_open_json(frame);
     json_number(&json, "ns_per_element", r->nanoseconds.median);
     json_integer(&json, "elements", r->elements);
     json_text(&json, "shape", general ? "general" : "box");
@@ -28,7 +28,7 @@ static void write_json(const lar_bench_kernel_result *r, bool general) {
     json_integer(&json, "steps_per_sample", (int64_t)r->steps);
     bench_write_spread(&json, "ns_per_element_spread", &r->nanoseconds);
     bench_write_spread(&json, "peak_gflops_spread", &r->peak_gflops);
-    json_end(&json);
+    bench_close_json(frame, &json);
 }
 
 static void print_table(const lar_bench_kernel_result *r, bool general) {
@@ -51,7 +51,7 @@ static int kernel_main(int argc, char **argv) {
     static const char *const precisions[] = {"double", NULL};
     int64_t elements = 1840, repeat = 9;
     int shape = 0, isa = 0, precision = 0;
-    bool json = false;
+    bench_frame frame = bench_frame_of(&cli_bench_kernel, "kernel");
     const cli_option options[] = {
         CLI_COUNT("--elements", "N", "about so many elements (1840)", &elements, 1, 2e7),
         CLI_CHOICE("--shape", "NAME", "general: each of its own shape (default); or box", &shape,
@@ -60,10 +60,16 @@ static int kernel_main(int argc, char **argv) {
         CLI_CHOICE("--isa", "NAME", "instruction set: auto (default), c, neon, avx2, avx512", &isa,
                    cli_isa_names),
         CLI_COUNT("--repeat", "N", "samples (9)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
-        CLI_FLAG("--json", "one JSON object on standard output", &json),
+        BENCH_OPTIONS(frame),
         CLI_END};
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
+    lar_bench_set_number(&frame.report, "elements", (double)elements);
+    lar_bench_set_text(&frame.report, "shape", shapes[shape]);
+    lar_bench_set_text(&frame.report, "precision", precisions[precision]);
+    lar_bench_set_text(&frame.report, "isa", cli_isa_names[isa]);
+    status = bench_begin(&frame);
+    if (status) return status;
     lar_bench_kernel_options wanted = {.elements = (int32_t)elements,
                                        .general = shape == 0,
                                        .isa = (lar_isa)isa,
@@ -71,12 +77,16 @@ static int kernel_main(int argc, char **argv) {
     lar_bench_kernel_result result;
     lar_error error;
     if (lar_bench_kernel(&wanted, &result, &error))
-        return cli_complain(&cli_bench_kernel, CLI_FAILED, "%s", error.message);
-    if (json)
-        write_json(&result, wanted.general);
+        return bench_abandon(&frame,
+                             cli_complain(&cli_bench_kernel, CLI_FAILED, "%s", error.message));
+    lar_bench_add(&frame.report, "ns", result.nanoseconds.median, true, "ns_per_element");
+    lar_bench_add(&frame.report, "Gflop/s", result.peak_gflops.median, true, "peak_gflops")->more =
+        true;
+    if (frame.json)
+        write_json(&frame, &result, wanted.general);
     else
         print_table(&result, wanted.general);
-    return CLI_DONE;
+    return bench_end(&frame);
 }
 
 const cli_command cli_bench_kernel = {
@@ -95,9 +105,9 @@ const cli_command cli_bench_kernel = {
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
 static int bench_main(int argc, char **argv) {
-    static const char *const names[] = {"kernel", "comm", "scaling", NULL};
-    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_comm,
-                                                    &cli_bench_scaling};
+    static const char *const names[] = {"kernel", "step", "comm", "scaling", "jitter", NULL};
+    static const cli_command *const benchmarks[] = {
+        &cli_bench_kernel, &cli_bench_step, &cli_bench_comm, &cli_bench_scaling, &cli_bench_jitter};
     static const cli_option none[] = {CLI_END};
     for (int i = 0; argc > 0 && names[i]; i++)
         if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
@@ -107,7 +117,7 @@ static int bench_main(int argc, char **argv) {
     }
     const char *meant = cli_nearest_name(argv[0], names);
     return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s%s", argv[0],
-                        meant ? "did you mean " : "there are: kernel, comm, scaling",
+                        meant ? "did you mean " : "there are: kernel, step, comm, scaling, jitter",
                         meant ? meant : "", meant ? "?" : "");
 }
 
@@ -115,12 +125,17 @@ const cli_command cli_bench = {
     .name = "bench",
     .summary = "measure this machine",
     .arguments = "WHAT",
-    .description = "WHAT is\n"
-                   "  kernel    time of a step per element, and the share of the core's peak\n"
-                   "  comm      latency and bandwidth between processors, for every backend\n"
-                   "  scaling   time of a step with several processors, against one\n"
-                   "and has options of its own: lariat bench kernel --help",
+    .description =
+        "WHAT is\n"
+        "  kernel    time of a step per element, and the share of the core's peak\n"
+        "  step      time of whole steps of a scene, the demonstration organ's or yours\n"
+        "  comm      latency and bandwidth between processors, for every backend\n"
+        "  scaling   time of a step with several processors, against one\n"
+        "  jitter    how punctual this machine is, a thousand times a second\n"
+        "and has options of its own: lariat bench kernel --help",
     .examples = "  lariat bench kernel\n"
+                "  lariat bench step demo/uterus.yaml\n"
                 "  lariat bench comm\n"
-                "  lariat bench scaling\n",
+                "  lariat bench scaling\n"
+                "  lariat bench jitter\n",
     .main = bench_main};

@@ -2,7 +2,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "cli/bench_json.h"
+#include "cli/bench_frame.h"
 #include "cli/commands.h"
 #include "study/bench_comm.h"
 
@@ -50,8 +50,8 @@ static void write_row(json_writer *json, const lar_bench_comm_result *r,
     json_close(json);
 }
 
-static void write_json(const lar_bench_comm_result *r) {
-    json_writer json = json_begin(stdout);
+static void write_json(const bench_frame *frame, const lar_bench_comm_result *r) {
+    json_writer json = bench_open_json(frame);
     json_integer(&json, "packet_bytes", r->bytes);
     json_integer(&json, "samples", r->repeat);
     json_open(&json, "cores", '[');
@@ -60,7 +60,8 @@ static void write_json(const lar_bench_comm_result *r) {
     json_number(&json, "portion_ns", r->portion);
     json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, r, &r->row[i]);
-    json_end(&json);
+    json_close(&json);
+    bench_close_json(frame, &json);
 }
 
 static void print_summary(const lar_bench_comm_result *r) {
@@ -130,33 +131,58 @@ static void print_table(const lar_bench_comm_result *r) {
                  offsetof(lar_bench_comm_figures, slowdown));
 }
 
+/* Packets of the size that was asked for. */
+static void add_figures(const lar_bench_comm_result *r, lar_bench_report *report) {
+    for (int i = 0; i < r->rows; i++) {
+        const lar_bench_comm_row *row = &r->row[i];
+        const lar_bench_comm_figures *at = &row->at[r->asked];
+        if (row->missing) continue;
+        lar_bench_add(report, "ns", row->latency.median, true, "%s: latency_ns", row->name);
+        if (!row->moves_packets) continue;
+        lar_bench_add(report, "MB/s", at->half_duplex, true, "%s: half_duplex_mb_s", row->name)
+            ->more = true;
+        lar_bench_add(report, "MB/s", at->full_duplex, true, "%s: full_duplex_mb_s", row->name)
+            ->more = true;
+        lar_bench_add(report, "ns", at->send, false, "%s: send_ns", row->name);
+        lar_bench_add(report, "ns", at->receive, false, "%s: receive_ns", row->name);
+    }
+}
+
 static int comm_main(int argc, char **argv) {
     int64_t bytes = 424, repeat = 15;
     const char *backends = NULL;
-    bool json = false, quick = false;
+    bool quick = false;
+    bench_frame frame = bench_frame_of(&cli_bench_comm, "comm");
     const cli_option options[] = {
         CLI_COUNT("--bytes", "N", "of a packet (424)", &bytes, 1, LAR_BENCH_COMM_BYTES_MOST),
         CLI_COUNT("--repeat", "N", "samples (15)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
         CLI_TEXT("--backend", "NAMES", "only these, as in shm,tcp (all)", &backends),
         CLI_FLAG("--quick", "does it work? few sizes, short samples", &quick),
-        CLI_FLAG("--json", "one JSON object on standard output", &json),
+        BENCH_OPTIONS(frame),
         CLI_END};
     int status = cli_parse(&cli_bench_comm, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
+    lar_bench_set_number(&frame.report, "bytes", (double)bytes);
+    lar_bench_set_text(&frame.report, "backend", backends ? backends : "all");
+    lar_bench_set_text(&frame.report, "quick", quick ? "yes" : "no");
+    status = bench_begin(&frame);
+    if (status) return status;
     lar_bench_comm_options wanted = {
         .bytes = (int32_t)bytes, .repeat = (int)repeat, .backends = backends, .quick = quick};
     lar_bench_comm_result result;
     lar_error error;
     if (lar_bench_comm(&wanted, &result, &error))
-        return cli_complain(&cli_bench_comm,
-                            error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED, "%s",
-                            error.message);
-    if (result.rows == 0) return CLI_DONE; /* the other process tells */
-    if (json)
-        write_json(&result);
+        return bench_abandon(
+            &frame, cli_complain(&cli_bench_comm,
+                                 error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED, "%s",
+                                 error.message));
+    if (result.rows == 0) return bench_abandon(&frame, CLI_DONE); /* the other process tells */
+    add_figures(&result, &frame.report);
+    if (frame.json)
+        write_json(&frame, &result);
     else
         print_table(&result);
-    return CLI_DONE;
+    return bench_end(&frame);
 }
 
 const cli_command cli_bench_comm = {

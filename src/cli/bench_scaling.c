@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/bench_json.h"
+#include "cli/bench_frame.h"
 #include "cli/parallel.h"
 #include "study/bench_scaling.h"
 
@@ -14,7 +14,8 @@ typedef struct scaling_settings {
     int64_t repeat, processor;
     const char *master;
     int scheme;
-    bool no_pin, json;
+    bool no_pin;
+    bench_frame frame;
     lar_bench_scaling_options wanted;
 } scaling_settings;
 
@@ -41,7 +42,7 @@ static void write_row(json_writer *json, const lar_bench_scaling_row *row) {
 static void write_json(const scaling_settings *s, const lar_bench_scaling_result *r) {
     char hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
-    json_writer json = json_begin(stdout);
+    json_writer json = bench_open_json(&s->frame);
     json_text(&json, "title", r->info.title);
     json_integer(&json, "elements", r->info.elements);
     json_integer(&json, "nodes", r->info.nodes);
@@ -56,20 +57,28 @@ static void write_json(const scaling_settings *s, const lar_bench_scaling_result
     json_text(&json, "state_hash", hash);
     json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, &r->row[i]);
-    json_end(&json);
+    json_close(&json);
+    bench_close_json(&s->frame, &json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */
 
-static void print_row(const lar_bench_scaling_row *row, bool plain) {
-    char name[LAR_GRID_TEXT + 40];
+enum { ROW_NAME = LAR_GRID_TEXT + 40 };
+
+static const char *name_row(const lar_bench_scaling_row *row, bool plain, char name[ROW_NAME]) {
     if (plain)
-        snprintf(name, sizeof name, "plain loop");
+        snprintf(name, ROW_NAME, "plain loop");
     else if (row->processors == 1)
-        snprintf(name, sizeof name, "%s, %d thread%s", row->grid, (int)row->threads,
+        snprintf(name, ROW_NAME, "%s, %d thread%s", row->grid, (int)row->threads,
                  row->threads == 1 ? "" : "s");
     else
-        snprintf(name, sizeof name, "%s by %s", row->grid, row->comm);
+        snprintf(name, ROW_NAME, "%s by %s", row->grid, row->comm);
+    return name;
+}
+
+static void print_row(const lar_bench_scaling_row *row, bool plain) {
+    char name[ROW_NAME];
+    name_row(row, plain, name);
     if (row->missing) {
         printf("%-20s missing: %s\n", name, row->missing);
         return;
@@ -108,7 +117,15 @@ static void show_turn(void *context, int turn) {
     fflush(stderr);
 }
 
-static int report(const scaling_settings *s) {
+static void add_figures(const lar_bench_scaling_result *r, lar_bench_report *report) {
+    char name[ROW_NAME];
+    for (int i = 0; i < r->rows; i++)
+        if (!r->row[i].missing)
+            lar_bench_add(report, "us", r->row[i].microseconds.median, true, "%s: us_per_step",
+                          name_row(&r->row[i], i == 0, name));
+}
+
+static int report(scaling_settings *s) {
     lar_bench_scaling_result result;
     lar_error error;
     lar_status status = lar_bench_scaling(&s->wanted, &result, &error);
@@ -120,11 +137,12 @@ static int report(const scaling_settings *s) {
                                                            : CLI_FAILED,
                             "%s", error.message);
     if (result.rows == 0) return CLI_DONE; /* the first process tells */
-    if (s->json)
+    add_figures(&result, &s->frame.report);
+    if (s->frame.json)
         write_json(s, &result);
     else
         print_table(s, &result);
-    return CLI_DONE;
+    return bench_end(&s->frame);
 }
 
 static int serve(const scaling_settings *s) {
@@ -155,6 +173,26 @@ static int check_settings(const scaling_settings *s) {
     return CLI_DONE;
 }
 
+/* What the figures depend on; a scene is known by what is in it. */
+static int begin(scaling_settings *s) {
+    lar_bench_report *r = &s->frame.report;
+    lar_model_info info;
+    lar_error error;
+    if (lar_model_inspect(s->wanted.model, &info, &error))
+        return cli_complain(&cli_bench_scaling, CLI_FAILED, "%s", error.message);
+    lar_bench_set_text(r, "title", info.title);
+    lar_bench_set_number(r, "elements", info.elements);
+    lar_bench_set_number(r, "nodes", info.nodes);
+    lar_bench_set_text(r, "processors", s->wanted.grids ? s->wanted.grids : s->wanted.processors);
+    lar_bench_set_text(r, "threads", s->wanted.threads);
+    lar_bench_set_text(r, "comm", s->wanted.comm ? s->wanted.comm : "");
+    lar_bench_set_text(r, "scheme", s->wanted.scheme ? s->wanted.scheme : cli_scheme_names[0]);
+    lar_bench_set_text(r, "distribution", s->wanted.distribution ? s->wanted.distribution : "cut");
+    lar_bench_set_text(r, "pin", s->wanted.pin ? "yes" : "no");
+    lar_bench_set_text(r, "quick", s->wanted.quick ? "yes" : "no");
+    return bench_begin(&s->frame);
+}
+
 static int measure(scaling_settings *s) {
     char elements[32];
     lar_model *model = NULL;
@@ -171,15 +209,21 @@ static int measure(scaling_settings *s) {
     s->wanted.argument[1] = s->scene ? s->scene : elements;
     s->wanted.turn = show_turn;
     s->wanted.context = s;
-    status = s->processor >= 0 ? serve(s) : report(s);
+    if (s->processor >= 0)
+        status = serve(s);
+    else {
+        status = begin(s);
+        if (!status) status = report(s);
+    }
     lar_model_destroy(model);
-    return status;
+    return bench_abandon(&s->frame, status);
 }
 
 static int scaling_main(int argc, char **argv) {
     scaling_settings s = {.repeat = 9,
                           .processor = -1,
                           .scheme = -1,
+                          .frame = bench_frame_of(&cli_bench_scaling, "scaling"),
                           .wanted = {.processors = "1,2", .threads = "2"}};
     const cli_option options[] = {
         CLI_COUNT("--elements", "N", "without a scene: a block of about so many (1840)",
@@ -200,7 +244,7 @@ static int scaling_main(int argc, char **argv) {
         CLI_FLAG("--no-pin", "leave it to the system which thread runs where", &s.no_pin),
         CLI_COUNT("--repeat", "N", "samples (9)", &s.repeat, 1, LAR_BENCH_REPEAT_MOST),
         CLI_FLAG("--quick", "does it work? few steps", &s.wanted.quick),
-        CLI_FLAG("--json", "one JSON object on standard output", &s.json),
+        BENCH_OPTIONS(s.frame),
         CLI_COUNT("--processor", "K",
                   "given, with --master, to the processes that the\nbenchmark starts itself",
                   &s.processor, 0, LAR_GRID_MOST - 1),

@@ -172,10 +172,19 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* Of sorted samples: the first with so many per cent of all at or below it. */
+static double percentile(const double *sample, int count, int percent) {
+    return sample[(count * percent + 99) / 100 - 1];
+}
+
 lar_spread lar_spread_of(double *sample, int count) {
     qsort(sample, (size_t)count, sizeof *sample, compare);
-    double median = 0.5 * (sample[(count - 1) / 2] + sample[count / 2]);
-    return (lar_spread){sample[0], median, sample[count - 1]};
+    return (lar_spread){.least = sample[0],
+                        .p25 = percentile(sample, count, 25),
+                        .median = 0.5 * (sample[(count - 1) / 2] + sample[count / 2]),
+                        .p75 = percentile(sample, count, 75),
+                        .p95 = percentile(sample, count, 95),
+                        .most = sample[count - 1]};
 }
 
 static lar_status measure(lar_simulation *simulation, const lar_fma_peak *peak,

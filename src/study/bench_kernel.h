@@ -28,9 +28,10 @@ typedef struct lar_bench_kernel_options {
     int repeat; /* samples, 1..LAR_BENCH_REPEAT_MOST */
 } lar_bench_kernel_options;
 
-/* Least, median and greatest of the samples. */
+/* Least, median and greatest of the samples; below or at p25, p75 and p95 lie so many per cent of
+ * them. */
 typedef struct lar_spread {
-    double least, median, most;
+    double least, median, most, p25, p75, p95;
 } lar_spread;
 
 /* Sorts the samples. */

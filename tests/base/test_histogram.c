@@ -36,6 +36,24 @@ static void small_values_are_exact(void **state) {
     free(h);
 }
 
+static void two_become_one(void **state) {
+    (void)state;
+    lar_histogram *a = empty(), *b = empty(), *both = empty(), *nothing = empty();
+    for (uint64_t i = 1; i <= 500; i++) {
+        lar_histogram_add(i % 3 ? a : b, 17 * i);
+        lar_histogram_add(both, 17 * i);
+    }
+    lar_histogram_merge(a, nothing);
+    lar_histogram_merge(a, b);
+    lar_histogram_merge(nothing, both);
+    assert_memory_equal(a, both, sizeof *a);
+    assert_memory_equal(nothing, both, sizeof *a);
+    free(a);
+    free(b);
+    free(both);
+    free(nothing);
+}
+
 static void every_size_is_known_to_a_bin(void **state) {
     (void)state;
     for (double value = 70; value < 1e12; value *= 1.37) {
@@ -75,9 +93,11 @@ static void values_beyond_the_last_bin_are_counted(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_added_is_zero), cmocka_unit_test(small_values_are_exact),
-        cmocka_unit_test(every_size_is_known_to_a_bin), cmocka_unit_test(tails_are_found),
-        cmocka_unit_test(values_beyond_the_last_bin_are_counted)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_added_is_zero),
+                                       cmocka_unit_test(small_values_are_exact),
+                                       cmocka_unit_test(two_become_one),
+                                       cmocka_unit_test(every_size_is_known_to_a_bin),
+                                       cmocka_unit_test(tails_are_found),
+                                       cmocka_unit_test(values_beyond_the_last_bin_are_counted)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
