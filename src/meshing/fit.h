@@ -34,7 +34,8 @@ typedef struct lar_fit_options {
 } lar_fit_options;
 
 /* Moves the draft's nodes: those where regions meet to the true boundary, all others so that the
- * elements are good. `options` may be NULL. The same input gives the same bits. */
+ * elements are good and each region keeps its volume. `options` may be NULL. The same input gives
+ * the same bits. On failure the draft is as it was. */
 lar_status lar_fit(const lar_boundary *boundary, lar_draft_mesh *draft,
                    const lar_fit_options *options, lar_error *error);
 

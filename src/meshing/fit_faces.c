@@ -70,13 +70,19 @@ static bool meets(const lar_fit_work *work, int32_t node, int32_t pair) {
     return false;
 }
 
+void lar_fit_area(const lar_fit_work *work, const int32_t node[4], double area[3]) {
+    double along[3], across[3];
+    lar_minus(work->x[node[2]], work->x[node[0]], along);
+    lar_minus(work->x[node[3]], work->x[node[1]], across);
+    lar_cross(along, across, area);
+    for (int i = 0; i < 3; i++) area[i] *= 0.5;
+}
+
 /* What lies in front of an outer face of region r: of what its four nodes all meet the outside,
  * or the flat cut that the face looks along best. */
 static int32_t outer_pair(const lar_fit_work *work, const int32_t node[4], int region) {
-    double along[3], across[3], normal[3];
-    lar_minus(work->x[node[2]], work->x[node[0]], along);
-    lar_minus(work->x[node[3]], work->x[node[1]], across);
-    lar_cross(along, across, normal);
+    double normal[3];
+    lar_fit_area(work, node, normal);
     int32_t best = -1;
     double best_cosine = -2;
     for (int32_t i = work->point_start[node[0]]; i < work->point_start[node[0] + 1]; i++) {

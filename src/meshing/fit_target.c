@@ -142,10 +142,7 @@ static void renew_plane(const lar_fit_work *work, const lar_fit_pair *pair, cons
 }
 
 static void unit_normal(const lar_fit_work *work, const lar_fit_face *face, double normal[3]) {
-    double along[3], across[3];
-    lar_minus(work->x[face->node[2]], work->x[face->node[0]], along);
-    lar_minus(work->x[face->node[3]], work->x[face->node[1]], across);
-    lar_cross(along, across, normal);
+    lar_fit_area(work, face->node, normal);
     const double length = lar_length(normal);
     for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
 }

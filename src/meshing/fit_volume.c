@@ -10,8 +10,8 @@
  *
  *     sum over its pairs (r, s) of area * (p_r - p_s) = what r misses
  *
- * a small symmetric positive definite system, solved by Gauss-Seidel. Flat cuts stay where they
- * are. */
+ * a small symmetric positive definite system, solved by damped Jacobi iteration. Flat cuts stay
+ * where they are. */
 enum { SWEEPS = 200 };
 
 /* Beyond this many cells the mesh cannot follow: a region that misses so much lacks cells. */
@@ -21,11 +21,9 @@ static void measure_areas(lar_fit_work *work) {
     for (int32_t p = 0; p < work->pair_count; p++) work->pair[p].area = 0;
     for (int32_t f = 0; f < work->face_count; f++) {
         const lar_fit_face *face = &work->face[f];
-        double along[3], across[3], normal[3];
-        lar_minus(work->x[face->node[2]], work->x[face->node[0]], along);
-        lar_minus(work->x[face->node[3]], work->x[face->node[1]], across);
-        lar_cross(along, across, normal);
-        work->pair[face->pair].area += lar_length(normal) / 2;
+        double area[3];
+        lar_fit_area(work, face->node, area);
+        work->pair[face->pair].area += lar_length(area);
     }
 }
 
@@ -49,7 +47,6 @@ static void solve_pressures(const lar_fit_work *work, const double *missing, dou
             sum[r] = missing[r];
             area[r] = 0;
         }
-        /* Jacobi, damped: as good for a handful of regions, and blind to their order. */
         for (int32_t p = 0; p < work->pair_count; p++) {
             const lar_fit_pair *pair = &work->pair[p];
             const int a = pair->region[0], b = pair->region[1];

@@ -93,6 +93,9 @@ int32_t lar_fit_sweep(lar_fit_work *work);
 /* The least scaled Jacobian, the part of the elements above `bar`. */
 double lar_fit_least(const lar_fit_work *work, double bar, double *part_above);
 
+/* The area of a quadrilateral, as a vector: half the product of its diagonals. */
+void lar_fit_area(const lar_fit_work *work, const int32_t node[4], double area[3]);
+
 /* Corners of element e, in cells. */
 void lar_fit_corners(const lar_fit_work *work, int32_t e, double corner[8][3]);
 
