@@ -9,8 +9,8 @@
 #include "cli/commands.h"
 
 static const cli_command *const commands[] = {
-    &cli_mesh,      &cli_info,         &cli_run,        &cli_view,  &cli_replay, &cli_verify,
-    &cli_partition, &cli_requirements, &cli_demo_model, &cli_bench, &cli_device};
+    &cli_mesh,      &cli_info,         &cli_run,     &cli_view,       &cli_replay, &cli_verify,
+    &cli_partition, &cli_requirements, &cli_predict, &cli_demo_model, &cli_bench,  &cli_device};
 enum { COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_overview(FILE *out) {
