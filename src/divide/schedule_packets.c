@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/union_find.h"
 #include "divide/schedule_plan.h"
 
 /* One possible packet: sender, stage, receiver. Counts first, then cursors. */
@@ -61,11 +62,6 @@ static bool sends(const table *t, int32_t from, int32_t to) {
     return false;
 }
 
-static int32_t root_of(int32_t *parent, int32_t p) {
-    while (parent[p] != p) p = parent[p] = parent[parent[p]];
-    return p;
-}
-
 /* Where data flows in one direction only, something must flow back (T 6.4). And signals that go
  * from neighbour to neighbour must reach everybody: bodies that do not touch are joined like the
  * nodes of a binary tree, by their first processors. */
@@ -74,17 +70,16 @@ static lar_status add_empty(table *t, lar_error *error) {
     int32_t *parent = lar_calloc((size_t)n * 2, sizeof *parent);
     if (!parent) return lar_fail_memory(error, (size_t)n * 2 * sizeof *parent, "processors");
     int32_t *body = parent + n, bodies = 0;
-    for (int32_t p = 0; p < n; p++) parent[p] = p;
+    lar_union_start(parent, n);
     for (int32_t p = 0; p < n; p++)
         for (int32_t q = p + 1; q < n; q++) {
             bool there = sends(t, p, q), back = sends(t, q, p);
             if (there && !back) cell_of(t, q, 0, p)->packet = LAR_AT_START;
             if (back && !there) cell_of(t, p, 0, q)->packet = LAR_AT_START;
-            int32_t a = root_of(parent, p), b = root_of(parent, q);
-            if (there || back) parent[a < b ? b : a] = a < b ? a : b;
+            if (there || back) lar_union_join(parent, p, q);
         }
     for (int32_t p = 0; p < n; p++)
-        if (root_of(parent, p) == p) body[bodies++] = p;
+        if (lar_union_root(parent, p) == p) body[bodies++] = p;
     for (int32_t i = 1; i < bodies; i++) {
         cell_of(t, body[i], 0, body[(i - 1) / 2])->packet = LAR_AT_START;
         cell_of(t, body[(i - 1) / 2], 0, body[i])->packet = LAR_AT_START;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
 #include "divide/incidence.h"
 
 /* While it is put together. */
@@ -48,21 +49,12 @@ static lar_status allocate_draft(draft *d, lar_error *error) {
 
 /* ---- bodies --------------------------------------------------------------------------------- */
 
-static int32_t root_of(int32_t *body, int32_t node) {
-    while (body[node] != node) node = body[node] = body[body[node]];
-    return node;
-}
-
 /* The lowest node of each connected part stands for it. */
 static void find_bodies(const lar_mesh *mesh, int32_t *body) {
-    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = n;
+    lar_union_start(body, mesh->node_count);
     for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int a = 1; a < 8; a++) {
-            int32_t one = root_of(body, mesh->element[e][0]);
-            int32_t other = root_of(body, mesh->element[e][a]);
-            body[one > other ? one : other] = one > other ? other : one;
-        }
-    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = root_of(body, n);
+        for (int a = 1; a < 8; a++) lar_union_join(body, mesh->element[e][0], mesh->element[e][a]);
+    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = lar_union_root(body, n);
 }
 
 /* ---- passes --------------------------------------------------------------------------------- */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
 #include "model/triangle_tree.h"
 
 static const double APART = 0.5, FAR = 1; /* in cells */
@@ -45,11 +46,6 @@ static lar_status make_skin(const lar_mesh *mesh, skin *s, lar_error *error) {
 
 /* ---- shells ------------------------------------------------------------------------------- */
 
-static int32_t root_of(int32_t *parent, int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
-
 typedef struct shells {
     int32_t *parent, *count; /* [vertices] a shell is named by its root */
     double *distance;        /* [vertices] summed up at the roots */
@@ -57,15 +53,12 @@ typedef struct shells {
 
 static void find_shells(const lar_triangles *surface, const skin *s, shells *found) {
     lar_nearest nearest;
-    for (int32_t v = 0; v < surface->vertex_count; v++) found->parent[v] = v;
+    lar_union_start(found->parent, surface->vertex_count);
     for (int32_t t = 0; t < surface->triangle_count; t++)
-        for (int k = 1; k < 3; k++) {
-            int32_t a = root_of(found->parent, surface->corner[t][0]);
-            int32_t b = root_of(found->parent, surface->corner[t][k]);
-            found->parent[a > b ? a : b] = a > b ? b : a;
-        }
+        for (int k = 1; k < 3; k++)
+            lar_union_join(found->parent, surface->corner[t][0], surface->corner[t][k]);
     for (int32_t v = 0; v < surface->vertex_count; v++) {
-        int32_t root = root_of(found->parent, v);
+        int32_t root = lar_union_root(found->parent, v);
         found->count[root]++;
         if (lar_triangle_tree_nearest(s->tree, surface->vertex[v], INFINITY, &nearest))
             found->distance[root] += nearest.distance;
@@ -77,7 +70,7 @@ static void drop_shells(lar_triangles *surface, const shells *found, double size
     for (int32_t v = 0; v < surface->vertex_count; v++)
         if (found->count[v] > found->count[largest]) largest = v;
     for (int32_t t = 0; t < surface->triangle_count; t++) {
-        int32_t root = root_of(found->parent, surface->corner[t][0]);
+        int32_t root = lar_union_root(found->parent, surface->corner[t][0]);
         bool apart = found->distance[root] > APART * size * found->count[root];
         if (apart && root != largest) continue;
         if (surface->tag) surface->tag[kept] = surface->tag[t];

@@ -8,13 +8,15 @@
  *         back                                          front
  *
  * A side is a tenth of the body's extent along the world's axis. A flat cut, where the image ends
- * in the middle of an organ, is held whole: the rest of the organ is behind it.
+ * in the middle of an organ, is held whole: the rest of the organ is behind it. A piece that none
+ * of this holds (the other kidney, a loose island) is held at its own tenth, so that it stays.
  */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
 #include "meshing/meshing.h"
 
 static const double TENTH = 0.1;
@@ -140,14 +142,65 @@ static void mark_side(choice *c, int side) {
         c->held[n] = c->surface[n] && at_side(c, side, tenth(c, side), mesh->position[n]);
 }
 
-static void mark_rigid(choice *c) {
+static bool is_rigid(const choice *c, int32_t tag) {
     const lar_meshing *m = c->meshing;
-    for (int32_t r = 0; r < m->info.regions; r++) {
-        if (!m->region[r].held) continue;
-        for (int32_t e = 0; e < m->mesh.element_count; e++)
-            for (int a = 0; a < 8 && m->mesh.element_tag[e] == m->region[r].tag; a++)
-                c->held[m->mesh.element[e][a]] = true;
+    for (int32_t r = 0; r < m->info.regions; r++)
+        if (m->region[r].held && m->region[r].tag == tag) return true;
+    return false;
+}
+
+static void mark_rigid(choice *c) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (is_rigid(c, mesh->element_tag[e]))
+            for (int a = 0; a < 8; a++) c->held[mesh->element[e][a]] = true;
+}
+
+/* Pieces of the mesh, each named by its least node, with their extent along an axis. */
+typedef struct pieces {
+    int32_t *parent;    /* [nodes] */
+    double (*range)[2]; /* [nodes] at the least nodes: lowest and highest place */
+    bool *held;         /* [nodes] the same: by the rule or by a bone */
+} pieces;
+
+static void find_pieces(const choice *c, int axis, pieces *p) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    lar_union_start(p->parent, mesh->node_count);
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 1; a < 8; a++)
+            lar_union_join(p->parent, mesh->element[e][0], mesh->element[e][a]);
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (is_rigid(c, mesh->element_tag[e]))
+            p->held[lar_union_root(p->parent, mesh->element[e][0])] = true;
+    for (int32_t n = 0; n < mesh->node_count; n++) {
+        int32_t root = lar_union_root(p->parent, n);
+        double place = mesh->position[n][axis], *range = p->range[root];
+        range[0] = root == n ? place : fmin(range[0], place); /* the least node comes first */
+        range[1] = root == n ? place : fmax(range[1], place);
+        p->held[root] = p->held[root] || c->held[n];
     }
+}
+
+/* Marks a tenth at `side` of every piece that nothing holds yet. */
+static lar_status mark_loose_pieces(choice *c, int side) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    size_t nodes = (size_t)mesh->node_count;
+    pieces p = {.parent = lar_calloc(nodes, sizeof *p.parent),
+                .range = lar_calloc(nodes, sizeof *p.range),
+                .held = lar_calloc(nodes, sizeof *p.held)};
+    bool ready = p.parent && p.range && p.held;
+    if (ready) find_pieces(c, side / 2, &p);
+    for (int32_t n = 0; ready && n < mesh->node_count; n++) {
+        int32_t root = lar_union_root(p.parent, n);
+        double depth = side % 2 ? p.range[root][1] - mesh->position[n][side / 2]
+                                : mesh->position[n][side / 2] - p.range[root][0];
+        if (!p.held[root] && c->surface[n])
+            c->held[n] = depth <= TENTH * (p.range[root][1] - p.range[root][0]);
+    }
+    free(p.parent);
+    free(p.range);
+    free(p.held);
+    return ready ? LAR_OK : lar_fail_memory(c->error, 24 * nodes, "the mesh's pieces");
 }
 
 /* Returns the side that is held, -1: none, in *side. */
@@ -170,8 +223,11 @@ static lar_status hold(choice *c, const char *rule, int *side) {
     } else {
         support->rule = "none";
     }
-    int32_t count;
-    lar_status status = add_set(c, "support", c->held, &count);
+    int32_t count = 0;
+    lar_status status = LAR_OK;
+    if (strcmp(rule, "none") != 0)
+        status = mark_loose_pieces(c, strcmp(rule, "cut") != 0 ? *side : BACK);
+    if (!status) status = add_set(c, "support", c->held, &count);
     support->held = count > 0;
     mark_rigid(c);
     for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) support->fixed_nodes += c->held[n];

@@ -4,28 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
+
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "messages are little endian and are written as they lie in memory"
 #endif
 
 /* ---- the surface, once -------------------------------------------------------------------- */
 
-static int32_t root_of(int32_t *parent, int32_t node) {
-    while (parent[node] != node) node = parent[node] = parent[parent[node]];
-    return node;
-}
-
 /* Bodies: faces that hang together by their nodes, numbered in the order of their first faces.
  * `parent`: scratch, [nodes]. */
 static void find_bodies(const uint32_t (*quad)[4], int32_t faces, int32_t nodes, int32_t *parent,
                         uint32_t *body) {
-    for (int32_t i = 0; i < nodes; i++) parent[i] = i;
+    lar_union_start(parent, nodes);
     for (int32_t f = 0; f < faces; f++)
-        for (int a = 1; a < 4; a++) {
-            int32_t one = root_of(parent, (int32_t)quad[f][0]);
-            int32_t other = root_of(parent, (int32_t)quad[f][a]);
-            parent[one > other ? one : other] = one < other ? one : other;
-        }
+        for (int a = 1; a < 4; a++)
+            lar_union_join(parent, (int32_t)quad[f][0], (int32_t)quad[f][a]);
     /* A root is the least node of its body; its number is stored below zero. */
     int32_t count = 0;
     for (int32_t f = 0; f < faces; f++) {

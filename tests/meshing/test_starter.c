@@ -5,13 +5,21 @@
 
 #include "image_file.h"
 #include "lariat.h"
+#include "model/model.h"
 #include "shapes.h"
 
 #define BALLS  LAR_TEST_BUILD "/starter_balls.nrrd"
 #define TORUS  LAR_TEST_BUILD "/starter_torus.vtp"
+#define PAIR   LAR_TEST_BUILD "/starter_pair.nrrd"
 #define FOLDER LAR_TEST_BUILD "/starter/deep"
 
 static lar_error error;
+
+/* Two balls of one label with a gap between them, along x. */
+static int pair_label(const double x[3]) {
+    double from_centre = fabs(x[0]) - 0.015;
+    return from_centre * from_centre + x[1] * x[1] + x[2] * x[2] < 0.012 * 0.012;
+}
 
 static int write_files(void **state) {
     (void)state;
@@ -21,6 +29,10 @@ static int write_files(void **state) {
     lar_triangles torus;
     shape_image(&image, &shape_balls, 2e-3, SHAPE_STRAIGHT);
     image_file(&image, BALLS, names, 2);
+    lar_image_clear(&image);
+    shape_image_of(&image, pair_label, (const int32_t[]){32, 16, 16},
+                   (const double[]){2e-3, 2e-3, 2e-3}, SHAPE_STRAIGHT);
+    image_file(&image, PAIR, NULL, 0);
     lar_image_clear(&image);
     const double centre[3] = {0, 0, 0};
     shape_torus_surface(&torus, 0.022, 0.008, centre, 16);
@@ -155,6 +167,29 @@ static void sides_are_where_they_are_said_to_be(void **state) {
     }
 }
 
+/* The left ball's support is the body's tenth at the left; the right one, which that does not
+ * reach, is held at its own left end. */
+static void a_loose_piece_is_held_at_its_own_end(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    lar_model *model = model_of(PAIR, (lar_meshing_options){.fix = "left"}, &info);
+    const lar_set *support = lar_mesh_find_set(&model->mesh, "support", LAR_SET_NODES);
+    assert_non_null(support);
+    assert_int_equal(support->count, info.fixed_nodes);
+    int32_t left = 0, right = 0;
+    for (int32_t i = 0; i < support->count; i++) {
+        double x = model->mesh.position[support->index[i]][0];
+        assert_true(x < -0.0195 || (x > 0 && x < 0.007));
+        left += x < 0;
+        right += x > 0;
+    }
+    assert_true(left > 3 && right > 3);
+    lar_model_destroy(model);
+    model = model_of(PAIR, (lar_meshing_options){.fix = "none"}, &info);
+    assert_int_equal(info.fixed_nodes, 0);
+    lar_model_destroy(model);
+}
+
 static void quality_of_a_model_is_that_of_its_meshing(void **state) {
     (void)state;
     lar_meshing_info info;
@@ -202,6 +237,7 @@ int main(void) {
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
                                        cmocka_unit_test(what_nothing_holds_is_stretched),
                                        cmocka_unit_test(sides_are_where_they_are_said_to_be),
+                                       cmocka_unit_test(a_loose_piece_is_held_at_its_own_end),
                                        cmocka_unit_test(quality_of_a_model_is_that_of_its_meshing),
                                        cmocka_unit_test(a_folder_that_cannot_be_is_told)};
     return cmocka_run_group_tests(tests, write_files, NULL);
