@@ -1,17 +1,31 @@
 /* lariat requirements: what machine a model needs. */
+#include <stdio.h>
+#include <unistd.h>
+
 #include "cli/commands.h"
 #include "cli/requirements_report.h"
 
-static int report_model(const char *path, const lar_requirements_options *wanted, bool thesis,
+/* NULL: it is over. */
+static void show_progress(void *context, const char *what) {
+    (void)context;
+    fprintf(stderr, "\r%60s\r", "");
+    if (what) fprintf(stderr, "counting and measuring: %s", what);
+    fflush(stderr);
+}
+
+static int report_model(const char *path, lar_requirements_options *wanted, bool thesis,
                         bool json) {
     lar_model *model = NULL;
     int status = cli_open_model(&cli_requirements, path, &model);
     if (status) return status;
+    if (isatty(STDERR_FILENO)) wanted->watch = show_progress;
     lar_requirements found;
     lar_model_info info;
     lar_error error;
-    if (lar_model_inspect(model, &info, &error) ||
-        lar_requirements_of(model, wanted, &found, &error)) {
+    bool failed = lar_model_inspect(model, &info, &error) ||
+                  lar_requirements_of(model, wanted, &found, &error);
+    if (wanted->watch) wanted->watch(NULL, NULL);
+    if (failed) {
         status = cli_complain(&cli_requirements, CLI_FAILED, "%s", error.message);
     } else {
         const char *title = info.title[0] ? info.title : path;

@@ -76,13 +76,13 @@ static void print_elements(const requirements_report *p) {
     print_point_table("TABLE 4.1  operations per integration point for an element matrix", row,
                       q->df_el);
     printf("  of an element with %.0f points, N_K (eq. 4.4): %.0f", q->n_int, lar_formula_N_K(q));
-    if (p->thesis) printf("; the thesis: 90,000");
+    if (p->thesis) printf("; the thesis: the same table, 90,000");
     printf("\n");
     lar_formula_vector(q->df_el, row);
     print_point_table("TABLE 4.2  operations per integration point for an element's forces", row,
                       q->df_el);
     printf("  of an element with %.0f points (eq. 4.10): %.0f", q->n_int, lar_formula_N_Ku(q));
-    if (p->thesis) printf("; the thesis: more than 20,000");
+    if (p->thesis) printf("; the thesis: the same table, more than 20,000");
     printf("\n");
 }
 

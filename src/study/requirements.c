@@ -16,6 +16,10 @@
 /* Which node of which element: the demonstration organ's (demo.h). */
 static const uint64_t DEMONSTRATION = 0x8931f41fa32444edULL;
 
+static void tell(const lar_requirements_options *options, const char *what) {
+    if (options->watch) options->watch(options->context, what);
+}
+
 /* ---- counted from the mesh ---------------------------------------------------------------- */
 
 /* Pairs of nodes that an element joins, each node with itself too: a third of the values that are
@@ -78,8 +82,10 @@ static void count_transfers(const lar_schedule_set *set, lar_requirements_sent *
 }
 
 static lar_status count_sent(const lar_mesh *mesh, const lar_incidence *incidence,
-                             const lar_distribution *distribution, lar_requirements *r,
+                             const lar_distribution *distribution,
+                             const lar_requirements_options *wanted, lar_requirements *r,
                              lar_error *error) {
+    tell(wanted, "schedules");
     for (int i = 0; i < LAR_SCHEMES; i++) {
         lar_schedule_options options = lar_schedule_options_default();
         lar_schedule_set set = {0};
@@ -143,7 +149,7 @@ static lar_status count_division(const lar_model *model, const lar_requirements_
         memcpy(r->grid, distribution.grid.edge, sizeof r->grid);
         r->quantities.n_p = distribution.grid.count;
         r->quantities.n_pav = lar_sharing_mean(&sharing);
-        status = count_sent(mesh, &incidence, &distribution, r, error);
+        status = count_sent(mesh, &incidence, &distribution, options, r, error);
     }
     lar_sharing_clear(&sharing);
     lar_distribution_clear(&distribution);
@@ -280,8 +286,10 @@ lar_status lar_requirements_of(const lar_model *model, const lar_requirements_op
                                lar_requirements *out, lar_error *error) {
     lar_requirements made = {.quantities = lar_thesis_quantities()};
     lar_model_info info;
+    tell(options, "the mesh");
     lar_status status = lar_model_inspect(model, &info, error);
     if (!status) status = count_division(model, options, &made, error);
+    if (!status) tell(options, "kernels");
     if (!status) status = count_kernels(model, &made, error);
     if (status) return status;
     if (options->iterations > 0) made.quantities.n_it = options->iterations;
@@ -289,7 +297,10 @@ lar_status lar_requirements_of(const lar_model *model, const lar_requirements_op
     made.quantities.step_ex = info.time_step;
     made.demonstration = model->mesh.element_count == LAR_DEMO_ELEMENTS &&
                          lar_mesh_fingerprint(&model->mesh) == DEMONSTRATION;
-    if (options->measure) measure(model, &made);
+    if (options->measure) {
+        tell(options, "steps on this machine");
+        measure(model, &made);
+    }
     *out = made;
     return LAR_OK;
 }
