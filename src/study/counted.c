@@ -4,7 +4,8 @@
  * number is a double all the time, and count.
  *
  * Compiled without optimisation (src/CMakeLists.txt), so that the operations are those that the
- * source writes.
+ * source writes. A kernel that takes up another function of base/simd.h which loads, stores, looks
+ * at bits or computes with integers needs a counting twin of it below; the test says when.
  */
 #include "study/counted.h"
 
