@@ -13,7 +13,7 @@ while read -r word line; do
 done <examples
 
 # Every option that --help lists.
-for command in mesh run verify partition requirements demo-model info device 'bench kernel' 'bench comm' 'bench scaling'; do
+for command in mesh run verify partition requirements demo-model info device 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do
@@ -25,12 +25,19 @@ done
 keys() {
     "$@" 2>/dev/null | grep -o '"[a-z0-9_]*":' | tr -d '":' | sort -u
 }
+# The second time against the first.
+bench_twice() {
+    "$LARIAT" bench "$@" --json >first.json
+    "$LARIAT" bench "$@" --json --against first.json
+}
 for key in $(keys "$LARIAT" info demo/uterus.yaml --json) \
     $(keys "$LARIAT" run demo/uterus.yaml --steps 1 --json) \
     $(keys "$LARIAT" verify demo/uterus.yaml --grid 2x1x1 --steps 1 --json) \
     $(keys "$LARIAT" partition demo/uterus.yaml --grid 2x2x3 --method cut --json) \
     $(keys "$LARIAT" requirements demo/uterus.yaml --json) \
-    $(keys "$LARIAT" bench kernel --elements 8 --repeat 1 --json) \
+    $(keys bench_twice kernel --elements 8 --repeat 1) \
+    $(keys bench_twice step demo/uterus.yaml --steps 1 --repeat 1) \
+    $(keys bench_twice jitter --seconds 0.02 --repeat 1) \
     $(keys "$LARIAT" bench comm --repeat 1 --json) \
     $(keys "$LARIAT" bench scaling --elements 8 --comm threads,mpi --quick --repeat 1 --json); do
     grep -q "\`$key\`" "$page" || echo "key $key"
