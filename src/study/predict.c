@@ -161,7 +161,7 @@ lar_status lar_predict_block(const lar_block_options *options, const lar_cluster
 /* ---- critical sub-domain -------------------------------------------------------------------- */
 
 static int32_t next_edge(int32_t edge) {
-    return edge < 12 ? edge + 1 : edge + edge / 6;
+    return edge < 12 ? edge + 1 : edge + edge / 8;
 }
 
 /* One size for all machines that have no answer yet. first[]: the size that had the efficiency,

@@ -13,7 +13,7 @@ while read -r word line; do
 done <examples
 
 # Every option that --help lists.
-for command in mesh run verify partition requirements demo-model info device 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter'; do
+for command in mesh run verify partition requirements predict demo-model info device 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do
@@ -35,6 +35,10 @@ for key in $(keys "$LARIAT" info demo/uterus.yaml --json) \
     $(keys "$LARIAT" verify demo/uterus.yaml --grid 2x1x1 --steps 1 --json) \
     $(keys "$LARIAT" partition demo/uterus.yaml --grid 2x2x3 --method cut --json) \
     $(keys "$LARIAT" requirements demo/uterus.yaml --json) \
+    $(keys "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --json) \
+    $(keys "$LARIAT" predict --scale-to 27 --elements-per-processor 8 --json) \
+    $(keys "$LARIAT" predict --critical --elements-per-processor 8 --json) \
+    $(keys "$LARIAT" predict --list-machines --json) \
     $(keys bench_twice kernel --elements 8 --repeat 1) \
     $(keys bench_twice step demo/uterus.yaml --steps 1 --repeat 1) \
     $(keys bench_twice jitter --seconds 0.02 --repeat 1) \
