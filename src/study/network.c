@@ -255,10 +255,11 @@ static void arrive(simulation *s, event e) {
 
 /* ---- the result ----------------------------------------------------------------------------- */
 
-/* Spans of the last step, cut to it, in time from its beginning. */
+/* Spans of the last step but one, cut to it, in time from its beginning: the moment in which the
+ * last thread ended the step before. The last step still runs beside it as all others did. */
 static void cut_spans(simulation *s) {
     lar_network_result *r = s->result;
-    double begin = s->step_end[s->steps - 1], length = s->step_end[s->steps] - begin;
+    double begin = s->step_end[s->steps - 2], length = s->step_end[s->steps - 1] - begin;
     size_t kept = 0;
     for (size_t i = 0; i < r->span_count; i++) {
         lar_network_span span = r->span[i];

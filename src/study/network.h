@@ -48,7 +48,7 @@ typedef struct lar_network_span {
     int32_t processor, thread; /* thread -1: the link */
     lar_span_kind kind;
     int32_t peer;      /* that the packet goes to, -1 */
-    double begin, end; /* [s] from the beginning of the step */
+    double begin, end; /* [s] from when the last thread ended the step before */
 } lar_network_span;
 
 /* Of one processor, per step; times added up over its threads [s]. */

@@ -225,6 +225,8 @@ static void kinds_stand_for_their_like(void **state) {
         lar_block_prediction b;
         assert_int_equal(lar_predict_block(&options, &m, &b, NULL), LAR_OK);
         assert_int_equal(b.grid[0] * b.edge[0], 8);
+        near(64 * b.alone, lar_cluster_alone(&m, 8 * 8 * 8, 9 * 9 * 9));
+        near(b.efficiency, b.alone / b.step);
         double whole = step_of_whole_body(scheme, &m);
         if (fabs(b.step / whole - 1) > 0.01)
             fail_msg("%s: %g us from kinds, %g us from the whole", lar_predict_scheme_name[scheme],
