@@ -5,9 +5,9 @@
  * The block has the wanted number of elements, near a cube: exact boxes, or with every node moved a
  * little by a fixed generator so that no element is a parallelepiped (the general case). Its
  * material is a nearly incompressible neo-Hookean one, with damping, and its nodes move smoothly.
- * A sample is the mean over enough steps for some milliseconds; the median of the samples counts,
- * with the best and the worst beside it. The peak (fma_peak.h) is sampled in between, because the
- * clock rate of a core changes from second to second.
+ * A sample is some milliseconds of steps, the median of twenty sections; the median of the samples
+ * counts, with the best and the worst beside it. The peak (fma_peak.h) is sampled in between,
+ * because the clock rate of a core changes from second to second.
  *
  * An element counts as 816 floating point operations, the thesis's count for the formulation of
  * its algorithm 1, whatever this code really needs: the figures stay comparable.
