@@ -200,13 +200,14 @@ static void a_slower_network_is_never_better(void **state) {
 /* ---- larger grids --------------------------------------------------------------------------- */
 
 /* 4 x 4 x 4 blocks of 2 x 2 x 2 elements, with schedules of their own. */
-static double step_of_whole_body(int scheme, const lar_cluster *machine) {
+static double step_of_whole_body(int scheme, int32_t threads, const lar_cluster *machine) {
     static const char *const name[] = {"all", "local", "local", "one", "two"};
     const int32_t edge[3] = {8, 8, 8};
     lar_model *model;
     lar_prediction p;
     lar_options options = lar_options_default();
     options.grid = "4x4x4";
+    options.threads = threads;
     options.scheme = name[scheme];
     options.channels = scheme == 2 ? "concurrent" : NULL;
     assert_int_equal(lar_bench_block(edge, false, &model, NULL), LAR_OK);
@@ -217,20 +218,23 @@ static double step_of_whole_body(int scheme, const lar_cluster *machine) {
     return step;
 }
 
+/* Exactly so with one thread; with several, ties between their batches may fall otherwise. */
 static void kinds_stand_for_their_like(void **state) {
     (void)state;
     lar_cluster m = machine_named("thesis");
-    for (int scheme = 0; scheme < LAR_PREDICT_SCHEMES; scheme++) {
-        const lar_block_options options = {.elements = 8, .processors = 64, .scheme = scheme};
+    for (int i = 0; i < 2 * LAR_PREDICT_SCHEMES; i++) {
+        const lar_block_options options = {
+            .elements = 8, .processors = 64, .threads = 1 + i % 2, .scheme = i / 2};
         lar_block_prediction b;
         assert_int_equal(lar_predict_block(&options, &m, &b, NULL), LAR_OK);
         assert_int_equal(b.grid[0] * b.edge[0], 8);
-        near(64 * b.alone, lar_cluster_alone(&m, 8 * 8 * 8, 9 * 9 * 9));
+        near(64 * options.threads * b.alone, lar_cluster_alone(&m, 8 * 8 * 8, 9 * 9 * 9));
         near(b.efficiency, b.alone / b.step);
-        double whole = step_of_whole_body(scheme, &m);
-        if (fabs(b.step / whole - 1) > 0.01)
-            fail_msg("%s: %g us from kinds, %g us from the whole", lar_predict_scheme_name[scheme],
-                     1e6 * b.step, 1e6 * whole);
+        double whole = step_of_whole_body(options.scheme, options.threads, &m);
+        if (fabs(b.step / whole - 1) > (options.threads == 1 ? 1e-9 : 0.01))
+            fail_msg("%s, %d threads: %g us from kinds, %g us from the whole",
+                     lar_predict_scheme_name[options.scheme], (int)options.threads, 1e6 * b.step,
+                     1e6 * whole);
     }
 }
 
