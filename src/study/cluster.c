@@ -156,15 +156,14 @@ static lar_status read_number(const char *path, lar_text *text, lar_span word, l
     return LAR_OK;
 }
 
-static lar_status read_file(const char *path, lar_cluster *out, lar_error *error) {
-    lar_bytes bytes;
+lar_status lar_cluster_parse(const char *path, const lar_bytes *bytes, lar_cluster *out,
+                             lar_error *error) {
     lar_cluster made = {.title = "from a file"};
-    lar_status status = lar_bytes_read(path, &bytes, error);
-    if (status) return status;
+    lar_status status = LAR_OK;
     const char *slash = strrchr(path, '/');
     snprintf(made.name, sizeof made.name, "%s", slash ? slash + 1 : path);
     for (int i = 0; i < LAR_CLUSTER_NUMBERS; i++) made.source[i] = "from the file";
-    lar_text text = lar_text_from(&bytes);
+    lar_text text = lar_text_from(bytes);
     lar_span word;
     while (!status && lar_text_word(&text, &word)) {
         if (*word.at == '#')
@@ -172,9 +171,17 @@ static lar_status read_file(const char *path, lar_cluster *out, lar_error *error
         else
             status = read_number(path, &text, word, &made, error);
     }
-    lar_bytes_free(&bytes);
     if (!status) status = lar_cluster_check(&made, error);
     if (!status) *out = made;
+    return status;
+}
+
+static lar_status read_file(const char *path, lar_cluster *out, lar_error *error) {
+    lar_bytes bytes;
+    lar_status status = lar_bytes_read(path, &bytes, error);
+    if (status) return status;
+    status = lar_cluster_parse(path, &bytes, out, error);
+    lar_bytes_free(&bytes);
     return status;
 }
 

@@ -17,7 +17,7 @@
 #ifndef LAR_STUDY_CLUSTER_H
 #define LAR_STUDY_CLUSTER_H
 
-#include "lariat.h"
+#include "base/memory.h"
 
 enum { LAR_CLUSTER_TEXT = 64, LAR_CLUSTER_NUMBERS = 11 };
 
@@ -52,6 +52,9 @@ const lar_cluster *lar_cluster_at(int i);
  * lar_cluster_number_name and a number, in us, bandwidth in MB/s; # begins a comment; what is not
  * given is 0. */
 lar_status lar_cluster_find(const char *name, lar_cluster *out, lar_error *error);
+/* The same from memory, for fuzzing; `path` is for messages. */
+lar_status lar_cluster_parse(const char *path, const lar_bytes *bytes, lar_cluster *out,
+                             lar_error *error);
 
 /* What makes sense: nothing negative or infinite, element and bandwidth above 0. */
 lar_status lar_cluster_check(const lar_cluster *machine, lar_error *error);
