@@ -247,6 +247,14 @@ static int check_mode(const predict_settings *s) {
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--measure, --trace, --svg, --grid, --distribution and --schedules "
                             "need a scene");
+    if (without && s->steps)
+        return cli_complain(&cli_predict, CLI_USAGE, "--steps belongs to a scene");
+    if (!s->scene && !s->scale && s->parallel.scheme >= 0)
+        return cli_complain(&cli_predict, CLI_USAGE,
+                            "--scheme belongs to a scene or to --scale-to; --critical tries all");
+    if (s->parallel.channels >= 0 &&
+        (s->parallel.scheme < 0 || strcmp(cli_scheme_names[s->parallel.scheme], "local") != 0))
+        return cli_complain(&cli_predict, CLI_USAGE, "--channels belongs to --scheme local");
     if (s->elements && !s->scale && !s->critical)
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--elements-per-processor belongs to --scale-to and --critical");

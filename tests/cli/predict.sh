@@ -64,6 +64,10 @@ complains 'no list'
 expect 2 "$LARIAT" predict demo/uterus.yaml --check
 expect 2 "$LARIAT" predict demo/uterus.yaml --measure --machine thesis
 expect 2 "$LARIAT" predict demo/uterus.yaml --channels concurrent
+expect 2 "$LARIAT" predict --scale-to 10 --channels concurrent
+expect 2 "$LARIAT" predict --scale-to 10 --steps 4
+expect 2 "$LARIAT" predict --critical --scheme two
+complains 'tries all'
 expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x2
 complains "'2x2' is no grid"
 silent
