@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -39,20 +38,22 @@ bool lar_text_line(lar_text *text, lar_span *line) {
     return true;
 }
 
-/* strtod in the C locale, whatever the program's locale is. */
-static double parse_double(const char *start, char **stop) {
+locale_t lar_text_locale(void) {
     static locale_t shared; /* made by the first thread that is here */
     locale_t known = __atomic_load_n(&shared, __ATOMIC_ACQUIRE);
-    if (!known) {
-        locale_t fresh = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-        if (!fresh) return strtod(start, stop);
-        if (__atomic_compare_exchange_n(&shared, &known, fresh, false, __ATOMIC_ACQ_REL,
-                                        __ATOMIC_ACQUIRE))
-            known = fresh;
-        else
-            freelocale(fresh);
-    }
-    return strtod_l(start, stop, known);
+    if (known) return known;
+    locale_t fresh = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!fresh) return fresh;
+    if (__atomic_compare_exchange_n(&shared, &known, fresh, false, __ATOMIC_ACQ_REL,
+                                    __ATOMIC_ACQUIRE))
+        return fresh;
+    freelocale(fresh);
+    return known;
+}
+
+static double parse_double(const char *start, char **stop) {
+    locale_t c_locale = lar_text_locale();
+    return c_locale ? strtod_l(start, stop, c_locale) : strtod(start, stop);
 }
 
 bool lar_span_double(lar_span span, double *value) {

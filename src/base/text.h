@@ -1,4 +1,5 @@
-/* Reading numbers and words from text in memory, with the line always known.
+/* Reading numbers and words from text in memory, with the line always known, and what writers need
+ * to print numbers that can be read again.
  *
  * Every text reader (legacy VTK, Gmsh, Abaqus, XML payloads) stands on this one scanner:
  * bounded, independent of the locale, and able to say where it stopped.
@@ -6,6 +7,7 @@
 #ifndef LAR_BASE_TEXT_H
 #define LAR_BASE_TEXT_H
 
+#include <locale.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -60,5 +62,10 @@ bool lar_span_split(lar_span span, char separator, lar_span *head, lar_span *res
 
 bool lar_span_equal(lar_span span, const char *word);
 bool lar_span_equal_nocase(lar_span span, const char *word);
+
+/* The C locale, in which numbers have a point. For uselocale() around what prints numbers into a
+ * file: an embedding program may have another one. Lives as long as the program; 0, with which
+ * uselocale() changes nothing, when there is no memory for it. */
+locale_t lar_text_locale(void);
 
 #endif

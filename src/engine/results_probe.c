@@ -2,12 +2,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "engine/measure.h"
 
 static lar_status fail_to(const lar_probe_file *file, const char *verb, int cause,
@@ -90,17 +90,15 @@ static lar_status append(lar_probe_file *file, const char *text, size_t size, la
     return LAR_OK;
 }
 
-/* The header (without a simulation) or a line of values, printed with a decimal point whatever
- * the program's locale is. */
+/* The header (without a simulation) or a line of values. */
 static lar_status add_line(lar_probe_file *file, const lar_model *model, lar_simulation *simulation,
                            lar_error *error) {
     char *text = NULL;
     size_t size = 0;
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    FILE *line = c_locale ? open_memstream(&text, &size) : NULL;
+    FILE *line = open_memstream(&text, &size);
     lar_status status = line ? LAR_OK : lar_fail_memory(error, BUFSIZ, "a line of probes.csv");
     if (line) {
-        locale_t before = uselocale(c_locale);
+        locale_t before = uselocale(lar_text_locale());
         if (simulation)
             status = print_values(line, simulation, error);
         else
@@ -110,7 +108,6 @@ static lar_status add_line(lar_probe_file *file, const lar_model *model, lar_sim
         if ((fclose(line) != 0 || !complete) && !status)
             status = lar_fail_memory(error, size, "a line of probes.csv");
     }
-    if (c_locale) freelocale(c_locale);
     if (!status) status = append(file, text, size, error);
     free(text);
     return status;

@@ -145,8 +145,10 @@ static char *name_of_file(const char *path) {
 /* As a file's name that needs no quotes anywhere. */
 static char *stem_of(const char *title) {
     char *stem = lar_strdup(title);
-    for (char *c = stem; c && *c; c++)
-        if (!isalnum((unsigned char)*c) && *c != '-' && *c != '.') *c = '_';
+    for (char *c = stem; c && *c; c++) {
+        bool plain = (unsigned char)*c < 128 && isalnum((unsigned char)*c);
+        if (!plain && *c != '-' && *c != '.') *c = '_';
+    }
     if (stem && (stem[0] == '.' || stem[0] == '-')) stem[0] = '_';
     return stem;
 }

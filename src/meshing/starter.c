@@ -1,5 +1,4 @@
 /* A meshing on disk: mesh, fine surface, and a scene that runs and says why it is as it is. */
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,9 +6,11 @@
 #include <string.h>
 
 #include "base/folder.h"
+#include "base/text.h"
 #include "base/vector.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
+#include "model/format/vtk_xml_write.h"
 
 /* ---- words -------------------------------------------------------------------------------- */
 
@@ -238,25 +239,13 @@ static void put_scene(const lar_meshing *m, FILE *f) {
     put_end(m, f);
 }
 
-/* First under another name, so that a full disk leaves no half file. */
-static lar_status write_scene(const lar_meshing *m, const char *path, const char *part,
-                              lar_error *error) {
-    FILE *file = fopen(part, "wb");
-    bool good = file != NULL;
-    int cause = errno;
-    if (file) {
-        put_scene(m, file);
-        good = fflush(file) == 0 && !ferror(file);
-        cause = errno;
-        if (fclose(file) != 0 && good) good = false, cause = errno;
-    }
-    if (good && rename(part, path) != 0) good = false, cause = errno;
-    if (good) return LAR_OK;
-    if (file) remove(part);
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause));
+static lar_status write_scene(const lar_meshing *m, const char *path, lar_error *error) {
+    lar_part_file out;
+    lar_status status = lar_part_open(&out, path, error);
+    locale_t before = uselocale(lar_text_locale());
+    if (!status) put_scene(m, out.file);
+    uselocale(before);
+    return lar_part_close(&out, status);
 }
 
 /* ---- files --------------------------------------------------------------------------------- */
@@ -281,16 +270,13 @@ lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const cha
     char *mesh = file_beside(meshing, folder, ".vtu");
     char *surface = file_beside(meshing, folder, "_surface.vtp");
     char *yaml = file_beside(meshing, folder, ".yaml");
-    char *part = file_beside(meshing, folder, ".yaml.part");
-    lar_status status = mesh && surface && yaml && part
-                            ? lar_folder_make(folder, error)
-                            : lar_fail_memory(error, strlen(folder), "a path");
+    lar_status status = mesh && surface && yaml ? lar_folder_make(folder, error)
+                                                : lar_fail_memory(error, strlen(folder), "a path");
     if (!status) status = lar_vtu_write(mesh, &(lar_vtu_frame){.mesh = &meshing->mesh}, error);
     if (!status) status = lar_vtp_write(surface, &meshing->outer, error);
-    if (!status) status = write_scene(meshing, yaml, part, error);
+    if (!status) status = write_scene(meshing, yaml, error);
     free(mesh);
     free(surface);
-    free(part);
     if (status) {
         free(yaml);
         return status;

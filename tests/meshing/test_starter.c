@@ -1,6 +1,7 @@
 /* The files of a meshing: a scene that reads, runs, and holds what it says it holds. */
 #include "testing.h"
 
+#include <locale.h>
 #include <sys/stat.h>
 
 #include "image_file.h"
@@ -232,6 +233,26 @@ static void a_folder_that_cannot_be_is_told(void **state) {
     lar_meshing_destroy(meshing);
 }
 
+/* The same bytes where a comma is the decimal point. Where no such locale is installed the test
+ * still holds. */
+static void numbers_have_a_point_everywhere(void **state) {
+    (void)state;
+    const char *path[] = {TORUS}, *scene;
+    const lar_meshing_options options = {.elements = 200};
+    lar_meshing *meshing = NULL;
+    lar_bytes text[2];
+    if (lar_meshing_create(path, 1, &options, &meshing, &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < 2; i++) {
+        setlocale(LC_ALL, i ? "de_DE.UTF-8" : "C");
+        lar_status status = lar_meshing_write(meshing, FOLDER, &scene, &error);
+        setlocale(LC_ALL, "C");
+        if (status || lar_bytes_read(scene, &text[i], &error)) fail_msg("%s", error.message);
+    }
+    assert_string_equal((const char *)text[0].data, (const char *)text[1].data);
+    for (int i = 0; i < 2; i++) lar_bytes_free(&text[i]);
+    lar_meshing_destroy(meshing);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
@@ -239,6 +260,7 @@ int main(void) {
                                        cmocka_unit_test(sides_are_where_they_are_said_to_be),
                                        cmocka_unit_test(a_loose_piece_is_held_at_its_own_end),
                                        cmocka_unit_test(quality_of_a_model_is_that_of_its_meshing),
+                                       cmocka_unit_test(numbers_have_a_point_everywhere),
                                        cmocka_unit_test(a_folder_that_cannot_be_is_told)};
     return cmocka_run_group_tests(tests, write_files, NULL);
 }

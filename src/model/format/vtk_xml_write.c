@@ -32,7 +32,9 @@ lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error)
 
 lar_status lar_part_close(lar_part_file *out, lar_status status) {
     if (out->file) {
-        if (!status && fflush(out->file) != 0) status = part_failed(out, "written", errno);
+        errno = 0;
+        bool whole = fflush(out->file) == 0 && !ferror(out->file);
+        if (!status && !whole) status = part_failed(out, "written", errno ? errno : EIO);
         if (fclose(out->file) != 0 && !status) status = part_failed(out, "written", errno);
         if (!status && rename(out->part, out->path) != 0)
             status = part_failed(out, "given its name", errno);

@@ -28,8 +28,9 @@ typedef struct lar_part_file {
 
 lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error);
 
-/* Ends the writing: with LAR_OK so far the file gets its name, else nothing stays. Returns the
- * final status. */
+/* Ends the writing: with LAR_OK so far the file gets its name, else nothing stays; also when
+ * something was written to out->file past the functions below and has failed. Returns the final
+ * status. */
 lar_status lar_part_close(lar_part_file *out, lar_status status);
 
 lar_status lar_part_write(lar_part_file *out, const void *data, size_t size);

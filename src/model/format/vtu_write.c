@@ -3,10 +3,10 @@
 #include "model/format/mesh_io.h"
 
 #include <inttypes.h>
-#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "model/format/vtk_grid.h"
 #include "model/format/vtk_xml_write.h"
 
@@ -139,10 +139,7 @@ lar_status lar_vtu_write(const char *path, const lar_vtu_frame *frame, lar_error
 
 lar_status lar_pvd_write(const char *path, const char *const *files, const double *times, int count,
                          lar_error *error) {
-    /* Times are printed with a point, whatever the program's locale is. */
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!c_locale) return lar_fail_memory(error, sizeof c_locale, path);
-    locale_t before = uselocale(c_locale);
+    locale_t before = uselocale(lar_text_locale());
     lar_part_file out;
     lar_status status = lar_part_open(&out, path, error);
     if (!status)
@@ -159,6 +156,5 @@ lar_status lar_pvd_write(const char *path, const char *const *files, const doubl
     if (!status) status = lar_part_print(&out, "</Collection>\n</VTKFile>\n");
     status = lar_part_close(&out, status);
     uselocale(before);
-    freelocale(c_locale);
     return status;
 }
