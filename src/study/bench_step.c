@@ -149,6 +149,7 @@ static lar_status take_samples(bench *b, lar_error *error) {
     for (int k = 0; k < r->repeat && !status; k++) status = take_sample(b, k, error);
     if (status) return status;
     r->microseconds = lar_spread_of(b->samples, r->repeat);
+    r->timed = b->times->count;
     r->mean = 1e-3 * (double)b->times->sum / (double)b->times->count;
     r->p50 = 1e-3 * lar_histogram_quantile(b->times, 0.5);
     r->p99 = 1e-3 * lar_histogram_quantile(b->times, 0.99);

@@ -31,6 +31,7 @@ typedef struct lar_bench_step_result {
     double time_step;        /* [s] */
     uint64_t warm_up, steps; /* of a sample */
     int repeat;
+    uint64_t timed;                 /* single steps, of all samples */
     lar_spread microseconds;        /* of a step: the samples' medians */
     double mean;                    /* of all steps [us] */
     double p50, p99, p999, longest; /* of single steps [us] */

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "model/model.h"
 #include "study/bench_scaling.h"
 #include "study/bench_step.h"
 
@@ -21,6 +22,7 @@ static uint64_t hash_of_run(const lar_model *model, uint64_t steps) {
 
 static void check_shape(const lar_bench_step_result *r) {
     const lar_spread *s = &r->microseconds;
+    assert_int_equal(r->timed, r->steps * (uint64_t)r->repeat);
     assert_true(s->least > 0 && s->least <= s->p25 && s->p25 <= s->median);
     assert_true(s->median <= s->p75 && s->p75 <= s->p95 && s->p95 <= s->most);
     assert_true(r->p50 > 0 && r->p50 <= r->p99 && r->p99 <= r->p999 && r->p999 <= r->longest);
@@ -47,7 +49,6 @@ static void samples_do_the_steps_of_a_run(void **unused) {
     lar_model_destroy(model);
 }
 
-/* Also where a run writes frames, more of them than steps or few. */
 static void a_number_of_steps_is_found(void **unused) {
     (void)unused;
     lar_model *model = NULL;
@@ -59,26 +60,28 @@ static void a_number_of_steps_is_found(void **unused) {
     while (digits % 10 == 0) digits /= 10;
     assert_true(digits == 1 || digits == 2 || digits == 5);
     assert_int_equal(r.warm_up, (r.steps + 4) / 5);
+    check_shape(&r);
     lar_model_destroy(model);
 }
 
-/* Its scene writes frames; advances end there, and the steps are the same. */
-static void the_organ_needs_no_file(void **unused) {
+/* Advances end where a run writes frames, be there more of them than steps or one in the end. The
+ * demonstration organ, whose scene has some, is in tests/cli/bench.sh. */
+static void frames_change_no_step(void **unused) {
     (void)unused;
-    lar_model *organ = NULL, *written = NULL;
+    lar_model *model = NULL;
     lar_bench_step_result r;
-    assert_int_equal(lar_bench_step_organ(&organ, NULL), LAR_OK);
-    assert_int_equal(lar_demo_write(LAR_TEST_BUILD "/bench_step", NULL), LAR_OK);
-    assert_int_equal(lar_model_open(LAR_TEST_BUILD "/bench_step/uterus.yaml", &written, NULL),
-                     LAR_OK);
-    assert_true(lar_model_output_interval(organ) > 0);
-    const lar_bench_step_options wanted = {.model = organ, .steps = 450, .warm_up = 0, .repeat = 2};
+    assert_int_equal(lar_bench_scaling_block(8, &model, NULL), LAR_OK);
+    const lar_bench_step_options wanted = {.model = model, .steps = 60, .warm_up = 5, .repeat = 1};
+    const uint64_t hash = hash_of_run(model, 65);
     assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_OK);
-    assert_true(450 * r.time_step > lar_model_output_interval(organ));
-    assert_true(r.hash == hash_of_run(written, 450));
-    assert_int_equal(r.info.elements, 1840);
-    lar_model_destroy(organ);
-    lar_model_destroy(written);
+    const double steps[] = {1e-9, 0.3, 1, 1.5, 7.3, 64.9, 65, 1e9, 1e300};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        model->output.every = steps[i] * r.time_step;
+        assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_OK);
+        assert_true(r.hash == hash);
+        check_shape(&r);
+    }
+    lar_model_destroy(model);
 }
 
 static void impossible_options_are_refused(void **unused) {
@@ -102,7 +105,7 @@ static void impossible_options_are_refused(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(samples_do_the_steps_of_a_run),
                                        cmocka_unit_test(a_number_of_steps_is_found),
-                                       cmocka_unit_test(the_organ_needs_no_file),
+                                       cmocka_unit_test(frames_change_no_step),
                                        cmocka_unit_test(impossible_options_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
