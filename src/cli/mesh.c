@@ -96,17 +96,22 @@ static void show_what_there_is(const mesh_settings *s) {
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
-/* A scene that is there may have been changed by hand: it stays, unless --force says otherwise. */
+/* A scene that is there may have been changed by hand, a mesh or surface may be somebody's own or
+ * even what is being meshed: they stay, unless --force says otherwise. */
 static int check_free(const mesh_settings *s, const char *folder, const char *stem) {
-    char path[4096];
-    int length = snprintf(path, sizeof path, "%s/%s.yaml", folder, stem);
-    if (length < 0 || (size_t)length >= sizeof path)
-        return cli_complain(&cli_mesh, CLI_FAILED, "the name of the folder is too long");
-    if (s->force || access(path, F_OK) != 0) return CLI_DONE;
-    return cli_complain(&cli_mesh, CLI_FAILED,
-                        "%s is there already, perhaps with changes of yours; --force replaces it, "
-                        "--out puts the new one elsewhere",
-                        path);
+    static const char *const endings[] = {".yaml", ".vtu", "_surface.vtp"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        char path[4096];
+        int length = snprintf(path, sizeof path, "%s/%s%s", folder, stem, endings[i]);
+        if (length < 0 || (size_t)length >= sizeof path)
+            return cli_complain(&cli_mesh, CLI_FAILED, "the name of the folder is too long");
+        if (s->force || access(path, F_OK) != 0) continue;
+        return cli_complain(&cli_mesh, CLI_FAILED,
+                            "%s is there already, perhaps with changes of yours; --force replaces "
+                            "it, --out puts the new one elsewhere",
+                            path);
+    }
+    return CLI_DONE;
 }
 
 /* Reads back what was written, as every other command will. */
@@ -212,7 +217,7 @@ static int mesh_main(int argc, char **argv) {
             &s.fix, fix_names),
         CLI_TEXT("--title", "TEXT", "title, and the name of the files", &s.title),
         CLI_TEXT("--out", "DIR", "folder for the files; without: called as the title", &s.out),
-        CLI_FLAG("--force", "replace a scene that is there", &s.force),
+        CLI_FLAG("--force", "replace files that are there", &s.force),
         CLI_FLAG("--json", "the report as one JSON object on standard output", &s.json),
         CLI_END};
     int status = cli_parse(&cli_mesh, options, argc, argv, s.input, INPUTS_MOST);

@@ -18,8 +18,13 @@
 
 #include "base/memory.h"
 
-/* Voxels that an image may have: 2 GB of labels would be refused. */
-enum { LAR_IMAGE_VOXELS_MOST = 1 << 29, LAR_IMAGE_LABEL_MOST = 65535 };
+/* Voxels that an image may have, and along one axis: labels take 1 GB at most, and a slice of the
+ * image, of which some are held besides, no more than that. */
+enum {
+    LAR_IMAGE_VOXELS_MOST = 1 << 29,
+    LAR_IMAGE_SIDE_MOST = 1 << 13,
+    LAR_IMAGE_LABEL_MOST = 65535
+};
 
 typedef struct lar_label_name {
     int32_t label;

@@ -91,7 +91,12 @@ lar_status lar_image_allocate(lar_image *image, const int64_t size[3], size_t by
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s: the image has %lld voxels along axis %c; write it again", path,
                             (long long)size[a], "ijk"[a]);
-        if (__builtin_mul_overflow(voxels, size[a], &voxels) || voxels > LAR_IMAGE_VOXELS_MOST)
+        if (size[a] > LAR_IMAGE_SIDE_MOST)
+            return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                            "%s: the image has %lld voxels along axis %c, more than %d; cut it to "
+                            "the organs that are wanted, or resample it",
+                            path, (long long)size[a], "ijk"[a], LAR_IMAGE_SIDE_MOST);
+        if ((voxels *= size[a]) > LAR_IMAGE_VOXELS_MOST)
             return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                             "%s: %lld x %lld x %lld voxels are more than %d; cut the image to the "
                             "organs that are wanted, or resample it",

@@ -61,6 +61,11 @@ refused 'no voxel has a label' empty.nrrd
 refused 'short.nrrd' short.nrrd
 echo "$header" | sed 's/8 8 8/10000 10000 10000/; s/text/raw/' >vast.nrrd
 refused 'vast.nrrd' vast.nrrd
+echo "$header" | sed 's/8 8 8/8000 8000 8000/; s/text/raw/' >large.nrrd
+refused 'large.nrrd: 8000 x 8000 x 8000 voxels are more' large.nrrd
+echo "$header" | sed 's/8 8 8/2000000 1 1/; s/text/raw/' >long.nrrd
+head -c 2000000 /dev/zero >>long.nrrd
+refused 'long.nrrd: .* 2000000 voxels along axis i' long.nrrd
 echo "$header" | sed 's/dimension: 3/dimension: 4/; s/8 8 8/8 8 8 5/; s/(0,0,2)$/(0,0,2) none/' >series.nrrd
 refused 'series.nrrd' series.nrrd
 echo "$header" | sed 's/(0,2,0)/(2,0,0)/' >flat.nrrd
@@ -111,6 +116,17 @@ cp demo/uterus.vtu uterus.vtp
 refused 'uterus.vtp' uterus.vtp
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n' >leaf.obj
 refused 'leaf.obj' leaf.obj
+
+# What is there already: a mesh of one's own, or what is being meshed.
+mkdir own
+cp closed.obj own/liver.vtu
+expect 1 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100 --title liver --out own
+complains 'own/liver.vtu is there already'
+mv own/liver.vtu own/liver_surface.vtp
+expect 1 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100 --title liver --out own
+complains 'own/liver_surface.vtp is there already'
+cmp closed.obj own/liver_surface.vtp || fail "a file that was there is gone"
+[ "$(ls own)" = liver_surface.vtp ] || fail "something was written"
 
 # Folders that cannot be.
 expect 1 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100 --out good.nrrd/x
