@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/triangle_tree.h"
 
 /* Samples in each direction, about; samples along a side of a face or triangle, at most; samples
@@ -40,16 +41,6 @@ static void halve_weights(samples *all, size_t first) {
         all->one[s].weight = sum > 0 ? 0.5 * all->one[s].weight / sum : 0;
 }
 
-static double cross_length(const double a[3], const double b[3]) {
-    double squared = 0;
-    for (int d = 0; d < 3; d++) {
-        const int u = (d + 1) % 3, v = (d + 2) % 3;
-        const double c = a[u] * b[v] - a[v] * b[u];
-        squared += c * c;
-    }
-    return sqrt(squared);
-}
-
 static void face_corners(const lar_mesh *mesh, int32_t face, double corner[4][3]) {
     for (int a = 0; a < 4; a++)
         memcpy(corner[a], mesh->position[mesh->element[face / 6][lar_face_node[face % 6][a]]],
@@ -58,7 +49,7 @@ static void face_corners(const lar_mesh *mesh, int32_t face, double corner[4][3]
 
 /* A place of a bilinear face, u and v from 0 to 1, and the area per du dv there. */
 static double place_on_face(const double corner[4][3], double u, double v, double point[3]) {
-    double along_u[3], along_v[3];
+    double along_u[3], along_v[3], normal[3];
     for (int d = 0; d < 3; d++) {
         const double low = corner[1][d] - corner[0][d], high = corner[2][d] - corner[3][d];
         const double left = corner[3][d] - corner[0][d], right = corner[2][d] - corner[1][d];
@@ -66,7 +57,8 @@ static double place_on_face(const double corner[4][3], double u, double v, doubl
         along_v[d] = left + u * (right - left);
         point[d] = corner[0][d] + u * low + v * along_v[d];
     }
-    return cross_length(along_u, along_v);
+    lar_cross(along_u, along_v, normal);
+    return lar_length(normal);
 }
 
 /* Samples along a side of a face or triangle of some area, for about SAMPLES_MOST in all. */
@@ -135,15 +127,13 @@ static lar_status sample_faces(const lar_mesh *mesh, const int32_t *face, int32_
     return status;
 }
 
+/* The area. */
 static double triangle_corners(const lar_triangles *surface, int32_t t, double corner[3][3]) {
-    double edge[2][3];
+    double normal[3];
     for (int a = 0; a < 3; a++)
         memcpy(corner[a], surface->vertex[surface->corner[t][a]], sizeof corner[a]);
-    for (int d = 0; d < 3; d++) {
-        edge[0][d] = corner[1][d] - corner[0][d];
-        edge[1][d] = corner[2][d] - corner[0][d];
-    }
-    return 0.5 * cross_length(edge[0], edge[1]);
+    lar_triangles_normal(surface, t, normal);
+    return lar_length(normal) / 2;
 }
 
 /* From the surface to the mesh: at the middles of the small triangles, cuts x cuts of them, into
@@ -184,7 +174,8 @@ static lar_status sample_vertices(const lar_triangles *from, const lar_triangle_
 
 static int compare_samples(const void *a, const void *b) {
     const sample *p = a, *q = b;
-    return (p->distance > q->distance) - (p->distance < q->distance);
+    if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
+    return (p->weight > q->weight) - (p->weight < q->weight);
 }
 
 static void summarise(samples *all, lar_deviation *deviation) {
@@ -213,9 +204,8 @@ lar_status lar_deviation_measure(const lar_mesh *mesh, const int32_t *face, int3
     lar_triangles fans = {0};
     lar_triangle_tree *surface_tree = NULL, *mesh_tree = NULL;
     samples all = {.error = error};
-    double face_area = 0, area = 0, corner[3][3];
-    for (int32_t t = 0; t < surface->triangle_count; t++)
-        area += triangle_corners(surface, t, corner);
+    const double area = lar_triangles_area(surface);
+    double face_area = 0;
     lar_status status = build_fans(mesh, face, count, &fans, &face_area, error);
     if (!status)
         status =

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/vector.h"
+
 /* A face that stands square to a triangle's normal is as wrong for it as one that is a cell away.
  */
 static const double TURN_WEIGHT = 1;
@@ -22,18 +24,11 @@ static int front_of(const uint16_t side[2]) {
 static void set_normals(const lar_boundary *boundary, double (*normal)[3]) {
     const lar_triangles *triangles = &boundary->triangles;
     for (int32_t t = 0; t < triangles->triangle_count; t++) {
-        const double *a = triangles->vertex[triangles->corner[t][0]];
-        const double *b = triangles->vertex[triangles->corner[t][1]];
-        const double *c = triangles->vertex[triangles->corner[t][2]];
-        double squared = 0;
-        for (int d = 0; d < 3; d++) {
-            const int u = (d + 1) % 3, v = (d + 2) % 3;
-            normal[t][d] = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-            squared += normal[t][d] * normal[t][d];
-        }
+        lar_triangles_normal(triangles, t, normal[t]);
+        const double length = lar_length(normal[t]);
         const uint16_t front = boundary->side[t][0];
         const double sign = front == 0 || front >= LAR_REGION_CUT ? 1 : -1;
-        for (int d = 0; d < 3; d++) normal[t][d] *= squared > 0 ? sign / sqrt(squared) : 0;
+        for (int d = 0; d < 3; d++) normal[t][d] *= length > 0 ? sign / length : 0;
     }
 }
 
@@ -72,9 +67,9 @@ static bool any_cut_near(const lar_draft_cuts *cuts, const double point[3], doub
     for (int c = 0; c < LAR_CUTS; c++) {
         const lar_cut *cut = &cuts->boundary->cut[c];
         if (!cuts->tree[1 + c]) continue;
-        double height = 0;
-        for (int d = 0; d < 3; d++) height += (point[d] - cut->through[d]) * cut->normal[d];
-        if (fabs(height) <= reach) return true;
+        double away[3];
+        lar_minus(point, cut->through, away);
+        if (fabs(lar_dot(away, cut->normal)) <= reach) return true;
     }
     return false;
 }
@@ -98,8 +93,7 @@ uint16_t lar_draft_cuts_front(const lar_draft_cuts *cuts, const lar_lattice *lat
         if (!cuts->tree[f] ||
             !lar_triangle_tree_nearest(cuts->tree[f], centre, 2 * REACH * lattice->size, &nearest))
             continue;
-        double along = 0;
-        for (int d = 0; d < 3; d++) along += sign * normal[d] * cuts->normal[nearest.triangle][d];
+        const double along = sign * lar_dot(normal, cuts->normal[nearest.triangle]);
         const double cost = nearest.distance / lattice->size + TURN_WEIGHT * (1 - along);
         if (cost < least) {
             least = cost;

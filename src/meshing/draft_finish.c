@@ -1,9 +1,9 @@
 #include <ctype.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "meshing/fit.h"
 #include "model/mesh_faces.h"
 
@@ -76,14 +76,11 @@ static void face_normal(const lar_mesh *mesh, int32_t face, double normal[3]) {
     const double *corner[4];
     for (int a = 0; a < 4; a++)
         corner[a] = mesh->position[mesh->element[face / 6][lar_face_node[face % 6][a]]];
-    double squared = 0;
-    for (int d = 0; d < 3; d++) {
-        const int u = (d + 1) % 3, v = (d + 2) % 3;
-        normal[d] = (corner[2][u] - corner[0][u]) * (corner[3][v] - corner[1][v]) -
-                    (corner[2][v] - corner[0][v]) * (corner[3][u] - corner[1][u]);
-        squared += normal[d] * normal[d];
-    }
-    for (int d = 0; d < 3; d++) normal[d] /= squared > 0 ? sqrt(squared) : 1;
+    double across[2][3];
+    for (int i = 0; i < 2; i++) lar_minus(corner[2 + i], corner[i], across[i]);
+    lar_cross(across[0], across[1], normal);
+    const double length = lar_length(normal);
+    for (int d = 0; d < 3; d++) normal[d] /= length > 0 ? length : 1;
 }
 
 static bool node_meets(const lar_draft_mesh *draft, int32_t node, uint16_t number) {
@@ -98,10 +95,9 @@ static bool is_on_cut(const finishing *work, int32_t face, int cut) {
         if (!node_meets(work->draft, mesh->element[face / 6][lar_face_node[face % 6][a]],
                         (uint16_t)(LAR_REGION_CUT + cut)))
             return false;
-    double normal[3], along = 0;
+    double normal[3];
     face_normal(mesh, face, normal);
-    for (int d = 0; d < 3; d++) along += normal[d] * work->boundary->cut[cut].normal[d];
-    return along > CUT_LEAN;
+    return lar_dot(normal, work->boundary->cut[cut].normal) > CUT_LEAN;
 }
 
 static lar_status add_cuts(finishing *work, int32_t *index) {

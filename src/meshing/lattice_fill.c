@@ -31,12 +31,9 @@ static double cut_area(const lar_boundary *boundary, int cut) {
     double area = 0;
     for (int32_t t = 0; t < boundary->triangles.triangle_count; t++) {
         if (boundary->side[t][0] != LAR_REGION_CUT + cut) continue;
-        const int32_t *c = boundary->triangles.corner[t];
-        double(*x)[3] = boundary->triangles.vertex, u[3], v[3], n[3];
-        for (int a = 0; a < 3; a++) u[a] = x[c[1]][a] - x[c[0]][a], v[a] = x[c[2]][a] - x[c[0]][a];
-        for (int a = 0; a < 3; a++)
-            n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-        area += sqrt(lar_dot(n, n)) / 2;
+        double normal[3];
+        lar_triangles_normal(&boundary->triangles, t, normal);
+        area += lar_length(normal) / 2;
     }
     return area;
 }

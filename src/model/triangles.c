@@ -16,18 +16,22 @@ void lar_triangles_clear(lar_triangles *triangles) {
     *triangles = (lar_triangles){0};
 }
 
-/* Seen from the first vertex, not from the origin: a body far from it would lose its digits. */
-static void corners_of(const lar_triangles *triangles, int32_t triangle, double corner[3][3]) {
-    for (int a = 0; a < 3; a++)
-        lar_minus(triangles->vertex[triangles->corner[triangle][a]], triangles->vertex[0],
-                  corner[a]);
+void lar_triangles_normal(const lar_triangles *triangles, int32_t triangle, double normal[3]) {
+    const int32_t *corner = triangles->corner[triangle];
+    const double *from = triangles->vertex[corner[0]];
+    double e[3], f[3];
+    lar_minus(triangles->vertex[corner[1]], from, e);
+    lar_minus(triangles->vertex[corner[2]], from, f);
+    lar_cross(e, f, normal);
 }
 
+/* Seen from the first vertex, not from the origin: a body far from it would lose its digits. */
 double lar_triangles_volume(const lar_triangles *triangles) {
     double volume = 0;
     for (int32_t t = 0; t < triangles->triangle_count; t++) {
         double c[3][3], turned[3];
-        corners_of(triangles, t, c);
+        for (int a = 0; a < 3; a++)
+            lar_minus(triangles->vertex[triangles->corner[t][a]], triangles->vertex[0], c[a]);
         lar_cross(c[1], c[2], turned);
         volume += lar_dot(c[0], turned);
     }
@@ -37,11 +41,8 @@ double lar_triangles_volume(const lar_triangles *triangles) {
 double lar_triangles_area(const lar_triangles *triangles) {
     double area = 0;
     for (int32_t t = 0; t < triangles->triangle_count; t++) {
-        double c[3][3], e[3], f[3], normal[3];
-        corners_of(triangles, t, c);
-        lar_minus(c[1], c[0], e);
-        lar_minus(c[2], c[0], f);
-        lar_cross(e, f, normal);
+        double normal[3];
+        lar_triangles_normal(triangles, t, normal);
         area += lar_length(normal);
     }
     return area / 2;
@@ -146,6 +147,10 @@ static const surface_format *find_format(const char *path) {
     for (int i = 0; i < FORMAT_COUNT; i++)
         if (strcasecmp(extension, formats[i].extension) == 0) return &formats[i];
     return NULL;
+}
+
+bool lar_triangles_named(const char *path) {
+    return find_format(path) != NULL;
 }
 
 /* Beyond FARTHEST metres products of coordinates would leave the range of a double. */

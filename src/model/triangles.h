@@ -33,6 +33,9 @@ void lar_triangles_clear(lar_triangles *triangles);
 lar_status lar_triangles_read(const char *path, double scale, lar_triangles *triangles,
                               lar_error *error);
 
+/* True when the path's extension is one of a surface. */
+bool lar_triangles_named(const char *path);
+
 /* The readers, also entry points for fuzzing; `path` is for messages only. On failure the caller
  * clears. Vertices are not yet joined (lar_triangles_join). */
 lar_status lar_stl_parse(const char *path, const lar_bytes *bytes, lar_triangles *triangles,
@@ -50,6 +53,9 @@ lar_status lar_triangles_join(lar_triangles *triangles, lar_error *error);
 
 /* Writes a .vtp, whole or not at all (as lar_vtu_write); the tags go along as cell array "tag". */
 lar_status lar_vtp_write(const char *path, const lar_triangles *triangles, lar_error *error);
+
+/* Twice the area times the unit normal of a triangle. */
+void lar_triangles_normal(const lar_triangles *triangles, int32_t triangle, double normal[3]);
 
 /* Enclosed volume, positive when the corners stand counter-clockwise seen from outside; area. */
 double lar_triangles_volume(const lar_triangles *triangles);

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/union_find.h"
 #include "base/vector.h"
 #include "model/triangle_tree.h"
 
@@ -150,14 +151,9 @@ static lar_status check_edges(const closing *c) {
 
 /* ---- shells ------------------------------------------------------------------------------- */
 
-static int32_t root_of(closing *c, int32_t patch) {
-    while (c->root[patch] != patch) patch = c->root[patch] = c->root[c->root[patch]];
-    return patch;
-}
-
 /* Patches that are open at an edge of more than two belong to one shell with the others there. */
 static void join_patches(closing *c) {
-    for (int32_t p = 0; p < c->patch_count; p++) c->root[p] = p;
+    lar_union_start(c->root, c->patch_count);
     for (int64_t first = 0, end; first < c->use_count; first = end) {
         end = edge_end(c, first);
         if (end - first == 2) continue;
@@ -167,13 +163,13 @@ static void join_patches(closing *c) {
         for (int64_t i = first; i < end; i++) {
             int32_t patch = c->patch[c->use[i].triangle];
             if (c->sum[patch] == 0) continue;
-            if (joined >= 0) c->root[root_of(c, patch)] = root_of(c, joined);
+            if (joined >= 0) lar_union_join(c->root, patch, joined);
             joined = patch;
         }
         for (int64_t i = first; i < end; i++) c->sum[c->patch[c->use[i].triangle]] = 0;
     }
     for (int32_t t = 0; t < c->triangles->triangle_count; t++)
-        c->patch[t] = root_of(c, c->patch[t]);
+        c->patch[t] = lar_union_root(c->root, c->patch[t]);
 }
 
 static void measure_shells(closing *c) {
