@@ -5,8 +5,6 @@
 #include <stdlib.h>
 
 static void inspect_elements(const lar_model *model, lar_model_info *info) {
-    static const int edge[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                                    {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
     info->shortest_edge = DBL_MAX;
     info->scaled_jacobian_min = DBL_MAX;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
@@ -23,7 +21,7 @@ static void inspect_elements(const lar_model *model, lar_model_info *info) {
         for (int k = 0; k < 12; k++) {
             double square = 0;
             for (int i = 0; i < 3; i++) {
-                double d = corner[edge[k][0]][i] - corner[edge[k][1]][i];
+                double d = corner[lar_edge_node[k][0]][i] - corner[lar_edge_node[k][1]][i];
                 square += d * d;
             }
             info->shortest_edge = fmin(info->shortest_edge, sqrt(square));

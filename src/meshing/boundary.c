@@ -148,7 +148,7 @@ static double find_moments(const lar_boundary *boundary, double moment[3][3]) {
     const lar_triangles *triangles = &boundary->triangles;
     double volume = 0, first[3] = {0};
     for (int32_t t = 0; t < triangles->triangle_count; t++) {
-        if (boundary->side[t][0] > 0 && boundary->side[t][0] < LAR_REGION_CUT) continue;
+        if (lar_boundary_region(boundary->side[t][0]) != 0) continue;
         double x[3][3], normal[3], sum[3];
         for (int c = 0; c < 3; c++)
             lar_minus(triangles->vertex[triangles->corner[t][c]], triangles->vertex[0], x[c]);
@@ -267,7 +267,7 @@ static bool held_by_another(const lar_triangle_tree *tree, const lar_boundary *b
 static lar_status find_seen(const lar_boundary *boundary, bool *seen, lar_error *error) {
     const lar_triangles *triangles = &boundary->triangles;
     for (int32_t t = 0; t < triangles->triangle_count; t++)
-        seen[t] = boundary->side[t][0] == 0 || boundary->side[t][0] >= LAR_REGION_CUT;
+        seen[t] = lar_boundary_region(boundary->side[t][0]) == 0;
     if (!boundary->nested) return LAR_OK;
     lar_triangle_tree *tree = NULL;
     lar_status status =

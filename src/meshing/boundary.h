@@ -58,6 +58,11 @@ typedef struct lar_boundary {
 
 void lar_boundary_clear(lar_boundary *boundary);
 
+/* The region on a side: beyond a cut it is the outside. */
+static inline int lar_boundary_region(uint16_t side) {
+    return side >= LAR_REGION_CUT ? 0 : side;
+}
+
 /* What is asked for of an image: labels (NULL: all that there are), each a region; or all in one.
  */
 typedef struct lar_label_choice {

@@ -19,19 +19,13 @@ typedef struct maker {
 
 /* ---- which labels --------------------------------------------------------------------------- */
 
-static const char *name_of(const lar_image *image, int32_t label) {
-    for (int32_t n = 0; n < image->name_count; n++)
-        if (image->name[n].label == label) return image->name[n].name;
-    return NULL;
-}
-
 /* "1, 2, 3 (liver), .." as far as they fit. */
 static void list_labels(const maker *m, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (int32_t label = 1; label < LABELS; label++) {
         if (!m->count[label]) continue;
-        const char *name = name_of(m->image, label);
+        const char *name = lar_image_label_name(m->image, label);
         char word[64];
         snprintf(word, sizeof word, "%s%d%s%.40s%s", used ? ", " : "", (int)label, name ? " (" : "",
                  name ? name : "", name ? ")" : "");
@@ -96,8 +90,8 @@ static lar_status add_label(maker *m, int32_t label, lar_error *error) {
                             "%s: more than %d labels; choose some, or fuse them", m->image->source,
                             (int)LAR_REGIONS_MOST);
         int32_t region = ++boundary->region_count;
-        lar_status status =
-            name_region(&boundary->region[region], name_of(m->image, label), label, error);
+        lar_status status = name_region(&boundary->region[region],
+                                        lar_image_label_name(m->image, label), label, error);
         if (status) return status;
     } else if (boundary->region[1].tag != 1 || strcmp(boundary->region[1].name, "body") != 0) {
         free(boundary->region[1].name);

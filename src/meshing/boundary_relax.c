@@ -119,10 +119,6 @@ static void choose_diagonals(lar_nets *nets) {
 
 /* ---- volumes -------------------------------------------------------------------------------- */
 
-static int region_of(uint16_t side) {
-    return side >= LAR_REGION_CUT ? 0 : side;
-}
-
 static void measure(relaxation *r) {
     const lar_nets *nets = r->nets;
     size_t all = (size_t)r->regions + 1;
@@ -131,7 +127,8 @@ static void measure(relaxation *r) {
     memset(r->area, 0, all * all * sizeof *r->area);
     for (int32_t q = 0; q < nets->quad_count; q++) {
         const int32_t *corner = nets->corner[q];
-        int front = region_of(nets->side[q][0]), behind = region_of(nets->side[q][1]);
+        int front = lar_boundary_region(nets->side[q][0]),
+            behind = lar_boundary_region(nets->side[q][1]);
         double x[4][3], n[2][3], volume = 0, area = 0;
         for (int c = 0; c < 4; c++) place_of(nets, corner[(c + nets->diagonal[q]) % 4], x[c]);
         normal_of(x, 0, 1, 2, n[0]);

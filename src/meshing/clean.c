@@ -6,6 +6,13 @@
 /* Flipping cells may cut off an island, leaving it out may open a joint: seldom more than once. */
 enum { ROUNDS_MOST = 6 };
 
+void lar_clean_position(const lar_lattice *lattice, size_t cell, int at[3]) {
+    for (int d = 0; d < 3; d++) {
+        at[d] = (int)(cell % (size_t)lattice->cells[d]);
+        cell /= (size_t)lattice->cells[d];
+    }
+}
+
 bool lar_clean_may_fill(const lar_lattice *lattice, const int at[3]) {
     for (int d = 0; d < 3; d++)
         if (at[d] < 1 || at[d] > lattice->cells[d] - 2) return false;

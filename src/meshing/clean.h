@@ -46,6 +46,9 @@ typedef struct lar_cleaner {
     lar_error *error;
 } lar_cleaner;
 
+/* i, j, k of a cell. */
+void lar_clean_position(const lar_lattice *lattice, size_t cell, int at[3]);
+
 /* True for a cell that may be inside: not of the outermost layer. */
 bool lar_clean_may_fill(const lar_lattice *lattice, const int at[3]);
 

@@ -33,10 +33,7 @@ static bool reach(search *way, size_t cell, int32_t from, int32_t cost) {
 static bool may_take(const lar_lattice *lattice, size_t cell, uint8_t region) {
     if (lattice->region[cell] != 0 || lattice->inner[cell] != region) return false;
     int at[3];
-    for (int d = 0; d < 3; d++) {
-        at[d] = (int)(cell % (size_t)lattice->cells[d]);
-        cell /= (size_t)lattice->cells[d];
-    }
+    lar_clean_position(lattice, cell, at);
     return lar_clean_may_fill(lattice, at);
 }
 

@@ -25,13 +25,6 @@ static int32_t volume_cost(const lar_lattice *lattice, size_t cell, uint8_t labe
     return cost + (label == lattice->inner[cell] ? 0 : WRONG_REGION);
 }
 
-static void cell_position(const lar_lattice *lattice, size_t cell, int at[3]) {
-    for (int d = 0; d < 3; d++) {
-        at[d] = (int)(cell % (size_t)lattice->cells[d]);
-        cell /= (size_t)lattice->cells[d];
-    }
-}
-
 static int labels_around(const lar_clean_window *window, uint8_t inner,
                          uint8_t label[LABELS_MOST]) {
     const uint8_t wanted[LABELS_MOST] = {window->label[2][2][2],
@@ -62,7 +55,7 @@ typedef struct flip {
 static flip best_flip(const lar_lattice *lattice, size_t cell) {
     flip best = {lattice->region[cell], 0};
     int at[3];
-    cell_position(lattice, cell, at);
+    lar_clean_position(lattice, cell, at);
     if (!lar_clean_may_fill(lattice, at)) return best;
     lar_clean_window window;
     lar_clean_look(lattice, at, &window);
@@ -88,7 +81,7 @@ static flip best_flip(const lar_lattice *lattice, size_t cell) {
 static void look_around(lar_cleaner *cleaner, size_t cell) {
     const lar_lattice *lattice = cleaner->lattice;
     int at[3];
-    cell_position(lattice, cell, at);
+    lar_clean_position(lattice, cell, at);
     for (int k = at[2] - 2; k <= at[2] + 2; k++)
         for (int j = at[1] - 2; j <= at[1] + 2; j++)
             for (int i = at[0] - 2; i <= at[0] + 2; i++) {

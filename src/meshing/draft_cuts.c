@@ -26,8 +26,7 @@ static void set_normals(const lar_boundary *boundary, double (*normal)[3]) {
     for (int32_t t = 0; t < triangles->triangle_count; t++) {
         lar_triangles_normal(triangles, t, normal[t]);
         const double length = lar_length(normal[t]);
-        const uint16_t front = boundary->side[t][0];
-        const double sign = front == 0 || front >= LAR_REGION_CUT ? 1 : -1;
+        const double sign = lar_boundary_region(boundary->side[t][0]) == 0 ? 1 : -1;
         for (int d = 0; d < 3; d++) normal[t][d] *= length > 0 ? sign / length : 0;
     }
 }

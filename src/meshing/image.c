@@ -23,14 +23,15 @@ static bool ends_with(const char *path, const char *ending) {
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
-static parser *parser_of(const char *path) {
-    for (int r = 0; r < READER_COUNT; r++)
-        if (ends_with(path, READERS[r].ending)) return READERS[r].parse;
-    return NULL;
+static int reader_of(const char *path) {
+    int r = 0;
+    while (r < READER_COUNT && !ends_with(path, READERS[r].ending)) r++;
+    return r;
 }
 
-bool lar_image_named(const char *path) {
-    return parser_of(path) != NULL;
+const char *lar_image_ending(const char *path) {
+    int reader = reader_of(path);
+    return reader < READER_COUNT ? READERS[reader].ending : NULL;
 }
 
 lar_status lar_image_read(const char *path, lar_image *image, lar_error *error) {
@@ -40,15 +41,15 @@ lar_status lar_image_read(const char *path, lar_image *image, lar_error *error) 
                         "%s: images in two files (.hdr and .img) are not read; write it as one, "
                         ".nii or .nii.gz",
                         path);
-    parser *parse = parser_of(path);
-    if (!parse)
+    int reader = reader_of(path);
+    if (reader == READER_COUNT)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: label images are read from .nii, .nii.gz, .nrrd and .nhdr; convert it",
                         path);
     lar_bytes bytes;
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
-    status = parse(path, &bytes, image, error);
+    status = READERS[reader].parse(path, &bytes, image, error);
     lar_bytes_free(&bytes);
     if (status) lar_image_clear(image);
     return status;
@@ -73,6 +74,12 @@ double lar_image_voxel_volume(const lar_image *image) {
     return fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                 m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                 m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+}
+
+const char *lar_image_label_name(const lar_image *image, int32_t label) {
+    for (int32_t n = 0; n < image->name_count; n++)
+        if (image->name[n].label == label) return image->name[n].name;
+    return NULL;
 }
 
 /* ---- names ---------------------------------------------------------------------------------- */

@@ -40,8 +40,8 @@ typedef struct lar_image {
     lar_label_name *name;
 } lar_image;
 
-/* True when the path's ending is one of a label image. */
-bool lar_image_named(const char *path);
+/* The path's ending when it is one of a label image (".nii.gz"), else NULL. */
+const char *lar_image_ending(const char *path);
 
 /* By extension. `image` is zeroed before; on failure it is cleared. */
 lar_status lar_image_read(const char *path, lar_image *image, lar_error *error);
@@ -54,6 +54,9 @@ lar_status lar_nifti_parse(const char *path, const lar_bytes *bytes, lar_image *
                            lar_error *error);
 lar_status lar_nrrd_parse(const char *path, const lar_bytes *bytes, lar_image *image,
                           lar_error *error);
+
+/* The name that the file gives to a label, or NULL. Owned by the image. */
+const char *lar_image_label_name(const lar_image *image, int32_t label);
 
 /* Voxels of every label, [LAR_IMAGE_LABEL_MOST + 1], by the caller. */
 void lar_image_count(const lar_image *image, int64_t *count);

@@ -165,10 +165,6 @@ lar_status lar_lines_create(const lar_boundary *boundary, const lar_lattice *lat
 
 /* ---- along the lines ------------------------------------------------------------------------ */
 
-static int region_number(uint16_t side) {
-    return side >= LAR_REGION_CUT ? 0 : side;
-}
-
 /* The region that has a place: of all that are entered the last one. */
 static int region_here(const int32_t entered[COUNTERS], int most) {
     for (int r = most; r > 0; r--)
@@ -179,8 +175,8 @@ static int region_here(const int32_t entered[COUNTERS], int most) {
 static void step_over(const lar_lines *lines, const lar_crossing *c, int32_t entered[COUNTERS]) {
     bool against = c->triangle < 0;
     const uint16_t *side = lines->boundary->side[against ? ~c->triangle : c->triangle];
-    entered[region_number(side[against])]++;
-    entered[region_number(side[!against])]--;
+    entered[lar_boundary_region(side[against])]++;
+    entered[lar_boundary_region(side[!against])]--;
 }
 
 bool lar_lines_follow(const lar_lines *lines, size_t line, lar_stretch *add, void *context) {
@@ -192,7 +188,7 @@ bool lar_lines_follow(const lar_lines *lines, size_t line, lar_stretch *add, voi
         step_over(lines, c, entered);
         const uint16_t *side = lines->boundary->side[c->triangle < 0 ? ~c->triangle : c->triangle];
         for (int s = 0; s < 2; s++)
-            if (region_number(side[s]) > most) most = region_number(side[s]);
+            if (lar_boundary_region(side[s]) > most) most = lar_boundary_region(side[s]);
     }
     for (int r = 0; r <= most; r++)
         if (entered[r] != 0) return false;

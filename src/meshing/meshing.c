@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "meshing/fine_surface.h"
 #include "meshing/fit.h"
@@ -46,20 +45,6 @@ typedef struct work {
     lar_error *error;
 } work;
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), wanted = strlen(ending);
-    return length > wanted && strcasecmp(path + length - wanted, ending) == 0;
-}
-
-static const char *const image_endings[] = {".nii.gz", ".nii", ".nrrd", ".nhdr", NULL};
-static const char *const surface_endings[] = {".stl", ".obj", ".vtk", ".vtp", NULL};
-
-static const char *ending_of(const char *path, const char *const *endings) {
-    for (; *endings; endings++)
-        if (ends_with(path, *endings)) return *endings;
-    return NULL;
-}
-
 static lar_status refuse(const work *w, const char *format, const char *text) {
     return lar_fail(w->error, LAR_ERROR_ARGUMENT, format, text);
 }
@@ -69,8 +54,8 @@ static lar_status check_paths(work *w) {
         const char *path = w->path[i];
         if (!path || !*path)
             return refuse(w, "%s", "the name of a file to mesh is empty; give one");
-        bool image = ending_of(path, image_endings) != NULL;
-        if (!image && !ending_of(path, surface_endings))
+        bool image = lar_image_ending(path) != NULL;
+        if (!image && !lar_triangles_named(path))
             return refuse(w,
                           "%.400s: this extension is not known; label images are .nii .nii.gz "
                           ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp",
@@ -137,9 +122,10 @@ static lar_status tell(const work *w, const char *what, double part) {
 /* The name of a file without folder and known ending. */
 static char *name_of_file(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    const char *ending = ending_of(name, image_endings);
-    if (!ending) ending = ending_of(name, surface_endings);
-    return lar_strndup(name, strlen(name) - (ending ? strlen(ending) : 0));
+    const char *ending = lar_image_ending(name);
+    size_t length = strlen(name);
+    size_t left_out = ending ? strlen(ending) : strlen(lar_path_extension(name)) + 1;
+    return lar_strndup(name, left_out < length ? length - left_out : length);
 }
 
 /* As a file's name that needs no quotes anywhere. */

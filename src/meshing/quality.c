@@ -7,20 +7,6 @@
 #include "meshing/meshing.h"
 #include "model/model.h"
 
-/* Over the elements' edges, each as often as elements have it. */
-static double mean_edge(const lar_mesh *mesh) {
-    static const int edge[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                                    {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    double sum = 0;
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int k = 0; k < 12; k++) {
-            const double *a = mesh->position[mesh->element[e][edge[k][0]]];
-            const double *b = mesh->position[mesh->element[e][edge[k][1]]];
-            sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-        }
-    return sum / (12.0 * mesh->element_count);
-}
-
 static double volume(const lar_mesh *mesh) {
     double sum = 0, corner[8][3];
     for (int32_t e = 0; e < mesh->element_count; e++) {
@@ -51,7 +37,7 @@ lar_status lar_quality_measure(const lar_mesh *mesh, const lar_triangles *surfac
     memcpy(quality->jacobian_bin, jacobians.bin, sizeof quality->jacobian_bin);
     quality->above_02 = jacobians.above_02;
     quality->above_05 = jacobians.above_05;
-    quality->mean_edge = mean_edge(mesh);
+    quality->mean_edge = lar_mesh_mean_edge(mesh);
     quality->volume = volume(mesh);
     return surface ? measure_deviation(mesh, surface, quality, error) : LAR_OK;
 }

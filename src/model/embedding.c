@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/triangle_tree.h"
+#include "model/mesh_skin.h"
 
 /* Vertices farther from the body than so many mean edges are another body's. */
 static const double REACH = 2;
@@ -123,31 +123,15 @@ typedef struct binder {
     const lar_mesh *mesh;
     double mean_edge;
     /* The tree knows boxes of triangles: one per element stands for the element's box. */
-    lar_triangles boxes, boundary;
-    lar_triangle_tree *box_tree, *boundary_tree;
-    int32_t *face; /* the boundary: element * 6 + local face, two triangles each */
+    lar_triangles boxes;
+    lar_triangle_tree *box_tree;
+    lar_mesh_skin skin;
 } binder;
 
 static void binder_clear(binder *b) {
     lar_triangle_tree_destroy(b->box_tree);
-    lar_triangle_tree_destroy(b->boundary_tree);
-    free(b->boxes.vertex);
-    free(b->boxes.corner);
-    free(b->boundary.corner);
-    free(b->face);
-}
-
-static double mean_edge(const lar_mesh *mesh) {
-    static const uint8_t end[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                                       {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    double sum = 0;
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int i = 0; i < 12; i++) {
-            const double *p = mesh->position[mesh->element[e][end[i][0]]];
-            const double *q = mesh->position[mesh->element[e][end[i][1]]];
-            sum += hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
-        }
-    return sum / (12.0 * mesh->element_count);
+    lar_triangles_clear(&b->boxes);
+    lar_mesh_skin_clear(&b->skin);
 }
 
 /* A triangle with the same box as the element: from its lower corner to its upper one and back by
@@ -181,27 +165,6 @@ static lar_status make_boxes(binder *b, lar_error *error) {
     return lar_triangle_tree_create(&b->boxes, NULL, mesh->element_count, &b->box_tree, error);
 }
 
-static lar_status make_boundary(binder *b, lar_error *error) {
-    const lar_mesh *mesh = b->mesh;
-    int32_t faces;
-    lar_status status = lar_mesh_boundary(mesh, &b->face, &faces, error);
-    if (status) return status;
-    if (faces > INT32_MAX / 2) return lar_fail_memory(error, SIZE_MAX, "the boundary of the mesh");
-    b->boundary.corner = lar_calloc(2 * (size_t)faces, sizeof *b->boundary.corner);
-    if (!b->boundary.corner)
-        return lar_fail_memory(error, 24 * (size_t)faces, "the boundary of the mesh");
-    b->boundary.vertex = mesh->position; /* lent */
-    b->boundary.vertex_count = mesh->node_count;
-    b->boundary.triangle_count = 2 * faces;
-    for (int32_t t = 0; t < 2 * faces; t++)
-        for (int i = 0; i < 3; i++) {
-            int a = i == 0 ? 0 : i + t % 2; /* 0 1 2, 0 2 3 */
-            int32_t face = b->face[t / 2];
-            b->boundary.corner[t][i] = mesh->element[face / 6][lar_face_node[face % 6][a]];
-        }
-    return lar_triangle_tree_create(&b->boundary, NULL, 2 * faces, &b->boundary_tree, error);
-}
-
 typedef struct search {
     const binder *binder;
     const double *point;
@@ -231,8 +194,7 @@ static lar_status refuse_far(const binder *b, const lar_triangles *surface, int3
     const double *p = surface->vertex[vertex];
     lar_nearest nearest;
     double distance = NAN;
-    if (lar_triangle_tree_nearest(b->boundary_tree, p, INFINITY, &nearest))
-        distance = nearest.distance;
+    if (lar_triangle_tree_nearest(b->skin.tree, p, INFINITY, &nearest)) distance = nearest.distance;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: the vertex at (%g, %g, %g) m lies %.3g m from the mesh, farther than "
                     "two of its mean edges (%.3g m each); is it the surface of another body, or "
@@ -253,8 +215,8 @@ static lar_status bind_vertex(const binder *b, lar_embedding *embedding, int32_t
     lar_triangle_tree_boxes(b->box_tree, point, point, SKIN * b->mean_edge, try_element, &s);
     lar_nearest nearest;
     if ((s.element < 0 || s.out > 1 + SKIN) &&
-        lar_triangle_tree_nearest(b->boundary_tree, point, REACH * b->mean_edge, &nearest)) {
-        int32_t face = b->face[nearest.triangle / 2];
+        lar_triangle_tree_nearest(b->skin.tree, point, REACH * b->mean_edge, &nearest)) {
+        int32_t face = b->skin.face[nearest.triangle / 2];
         s.element = face / 6;
         for (int i = 0; i < 3; i++) s.xi[i] = 0;
         for (int c = 0; c < 3; c++) {
@@ -280,14 +242,14 @@ lar_status lar_embedding_bind(const lar_mesh *mesh, lar_triangles *surface,
     *embedding = (lar_embedding){.surface = *surface};
     *surface = (lar_triangles){0};
     size_t vertices = (size_t)embedding->surface.vertex_count;
-    binder b = {.mesh = mesh, .mean_edge = mean_edge(mesh)};
+    binder b = {.mesh = mesh, .mean_edge = lar_mesh_mean_edge(mesh)};
     embedding->element = lar_calloc(vertices, sizeof *embedding->element);
     embedding->weight = lar_calloc(vertices, sizeof *embedding->weight);
     lar_status status = LAR_OK;
     if (!embedding->element || !embedding->weight)
         status = lar_fail_memory(error, 36 * vertices, "a surface that rides on the mesh");
     if (!status) status = make_boxes(&b, error);
-    if (!status) status = make_boundary(&b, error);
+    if (!status) status = lar_mesh_skin_create(mesh, &b.skin, error);
     for (int32_t v = 0; !status && v < embedding->surface.vertex_count; v++)
         status = bind_vertex(&b, embedding, v, error);
     binder_clear(&b);

@@ -1,10 +1,14 @@
 #include "model/mesh.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 const uint8_t lar_face_node[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                      {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+
+const uint8_t lar_edge_node[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                      {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
 const int8_t lar_node_sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
@@ -33,6 +37,17 @@ const lar_set *lar_mesh_find_set(const lar_mesh *mesh, const char *name, lar_set
 void lar_mesh_corners(const lar_mesh *mesh, int32_t e, double corner[8][3]) {
     for (int a = 0; a < 8; a++)
         memcpy(corner[a], mesh->position[mesh->element[e][a]], sizeof corner[a]);
+}
+
+double lar_mesh_mean_edge(const lar_mesh *mesh) {
+    double sum = 0;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int k = 0; k < 12; k++) {
+            const double *a = mesh->position[mesh->element[e][lar_edge_node[k][0]]];
+            const double *b = mesh->position[mesh->element[e][lar_edge_node[k][1]]];
+            sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+        }
+    return mesh->element_count > 0 ? sum / (12.0 * mesh->element_count) : 0;
 }
 
 static int compare_int32(const void *a, const void *b) {

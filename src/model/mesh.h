@@ -51,6 +51,8 @@ typedef struct lar_mesh {
 
 /* Corners of local face f, counter-clockwise seen from outside. */
 extern const uint8_t lar_face_node[6][4];
+/* Ends of the twelve edges. */
+extern const uint8_t lar_edge_node[12][2];
 /* Signs of the natural coordinates of local node a. */
 extern const int8_t lar_node_sign[8][3];
 
@@ -82,6 +84,9 @@ double lar_scaled_jacobian(const double corner[8][3]);
 
 /* Volume of the trilinear hexahedron, exact. */
 double lar_hexahedron_volume(const double corner[8][3]);
+
+/* Mean length of the elements' edges [m], each counted as often as elements have it. */
+double lar_mesh_mean_edge(const lar_mesh *mesh);
 
 /* Copies the corners of element e. */
 void lar_mesh_corners(const lar_mesh *mesh, int32_t e, double corner[8][3]);

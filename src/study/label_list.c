@@ -12,12 +12,6 @@ void lar_label_list_clear(lar_label_list *list) {
     *list = (lar_label_list){0};
 }
 
-static const char *name_of(const lar_image *image, int32_t label) {
-    for (int32_t n = 0; n < image->name_count; n++)
-        if (image->name[n].label == label) return image->name[n].name;
-    return NULL;
-}
-
 static lar_status fill(const lar_image *image, lar_label_list *list, lar_error *error) {
     int64_t *voxels = lar_calloc(LAR_IMAGE_LABEL_MOST + 1, sizeof *voxels);
     size_t rows = 0;
@@ -27,7 +21,7 @@ static lar_status fill(const lar_image *image, lar_label_list *list, lar_error *
     bool good = list->row != NULL;
     for (int32_t l = 1; good && l <= LAR_IMAGE_LABEL_MOST; l++) {
         if (voxels[l] == 0) continue;
-        const char *name = name_of(image, l);
+        const char *name = lar_image_label_name(image, l);
         lar_label_row *row = &list->row[list->count++];
         *row = (lar_label_row){l, name ? lar_strdup(name) : NULL, voxels[l]};
         good = !name || row->name;

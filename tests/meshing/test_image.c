@@ -58,8 +58,8 @@ static void by_extension(void **state) {
 
     static const char *const IMAGES[] = {"a.nii", "x/a.NII.gz", "a.nrrd", "a.nhdr"};
     static const char *const OTHERS[] = {"a.gz", ".nii", "a.stl", "nrrd", "a.nii/b", "a.nrrd.gz"};
-    for (int i = 0; i < 4; i++) assert_true(lar_image_named(IMAGES[i]));
-    for (int i = 0; i < 6; i++) assert_false(lar_image_named(OTHERS[i]));
+    for (int i = 0; i < 4; i++) assert_true(lar_image_ending(IMAGES[i]));
+    for (int i = 0; i < 6; i++) assert_false(lar_image_ending(OTHERS[i]));
 
     expect_unread(FOLDER "/a.png", LAR_ERROR_UNSUPPORTED, "a.png: |.nii.gz|.nrrd");
     expect_unread(FOLDER "/a.hdr", LAR_ERROR_UNSUPPORTED, "a.hdr: |two files|.nii.gz");
