@@ -105,9 +105,11 @@ const cli_command cli_bench_kernel = {
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
 static int bench_main(int argc, char **argv) {
-    static const char *const names[] = {"kernel", "step", "comm", "scaling", "jitter", NULL};
-    static const cli_command *const benchmarks[] = {
-        &cli_bench_kernel, &cli_bench_step, &cli_bench_comm, &cli_bench_scaling, &cli_bench_jitter};
+    static const char *const names[] = {"kernel", "step",      "comm", "scaling",
+                                        "jitter", "precision", NULL};
+    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_step,
+                                                    &cli_bench_comm,   &cli_bench_scaling,
+                                                    &cli_bench_jitter, &cli_bench_precision};
     static const cli_option none[] = {CLI_END};
     for (int i = 0; argc > 0 && names[i]; i++)
         if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
@@ -117,7 +119,8 @@ static int bench_main(int argc, char **argv) {
     }
     const char *meant = cli_nearest_name(argv[0], names);
     return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s%s", argv[0],
-                        meant ? "did you mean " : "there are: kernel, step, comm, scaling, jitter",
+                        meant ? "did you mean "
+                              : "there are: kernel, step, comm, scaling, jitter, precision",
                         meant ? meant : "", meant ? "?" : "");
 }
 
@@ -132,10 +135,12 @@ const cli_command cli_bench = {
         "  comm      latency and bandwidth between processors, for every backend\n"
         "  scaling   time of a step with several processors, against one\n"
         "  jitter    how punctual this machine is, a thousand times a second\n"
+        "  precision what single precision would lose and win\n"
         "and has options of its own: lariat bench kernel --help",
     .examples = "  lariat bench kernel\n"
                 "  lariat bench step demo/uterus.yaml\n"
                 "  lariat bench comm\n"
                 "  lariat bench scaling\n"
-                "  lariat bench jitter\n",
+                "  lariat bench jitter\n"
+                "  lariat bench precision\n",
     .main = bench_main};

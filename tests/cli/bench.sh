@@ -112,6 +112,15 @@ says 'misses'
 expect 2 "$LARIAT" bench jitter --priority 100
 expect 2 "$LARIAT" bench jitter --seconds 0
 
+# Three ways of computing the same.
+expect 0 "$LARIAT" bench precision --elements 8 --steps 200 --isa c --json
+has_head precision
+has_keys --numbers elements nodes steps time_step ns_per_element.double ns_per_element.mixed \
+    stable_step_ratio.double stable_step_ratio.mixed stable_step_ratio.single
+expect 0 "$LARIAT" bench precision "$SCRATCH/demo/uterus.yaml" --steps 20 --isa c
+says 'mixed'
+expect 2 "$LARIAT" bench precision --steps 19
+
 # Against an earlier run. A baseline whose figures no machine reaches, or every one.
 earlier=$SCRATCH/earlier.json
 baseline() { # FACTOR of every figure
