@@ -7,7 +7,7 @@
 #   build   what the library, the command and their tests need; an error when it cannot be had
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2,
-#           libnifti, the cross compiler and emulator for NEON
+#           libnifti, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #
 # What belongs to `web`, `check` and `fuzz` is optional: without it the tests that need it are left
@@ -44,6 +44,8 @@ SDL_PACKAGES="
 libsdl2-dev       m:sdl2"
 NIFTI_PACKAGES="
 libnifti-dev      -"
+PETSC_PACKAGES="
+petsc-dev         m:PETSc"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
@@ -163,6 +165,7 @@ for group in "$@"; do
         ;;
     check)
         want_clang "the sanitizers run with gcc instead of clang"
+        want "$PETSC_PACKAGES" "lariat bench implicit is built and tested with its own solver only" || true
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
         want "$HWLOC_PACKAGES" "threads are not bound to cores" || true
         want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
