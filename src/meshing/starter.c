@@ -8,6 +8,7 @@
 #include "base/folder.h"
 #include "base/text.h"
 #include "base/vector.h"
+#include "meshing/fit_quality.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 #include "model/format/vtk_xml_write.h"
@@ -66,13 +67,11 @@ static double damping(const lar_meshing *m) {
 }
 
 static double least_height(const lar_mesh *mesh, int32_t e) {
-    static const uint8_t end[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
-                                      {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
     double least = INFINITY, x[8][3], edge[3][3], area[3];
     lar_mesh_corners(mesh, e, x);
     for (int a = 0; a < 8; a++) {
         double largest = 0;
-        for (int k = 0; k < 3; k++) lar_minus(x[end[a][k]], x[a], edge[k]);
+        for (int k = 0; k < 3; k++) lar_minus(x[lar_fit_edge[a][k]], x[a], edge[k]);
         for (int k = 0; k < 3; k++) {
             lar_cross(edge[k], edge[(k + 1) % 3], area);
             largest = fmax(largest, lar_length(area));
