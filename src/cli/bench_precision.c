@@ -148,7 +148,7 @@ static int run(settings *s) {
     if (status) return status;
     lar_bench_report *r = &s->frame.report;
     lar_bench_set_text(r, "scene", s->scene ? s->scene : "blocks");
-    lar_bench_set_number(r, "elements_wanted", (double)s->elements);
+    if (!model) lar_bench_set_number(r, "elements", (double)s->elements);
     lar_bench_set_number(r, "steps", (double)s->steps);
     lar_bench_set_text(r, "isa", cli_isa_names[s->isa]);
     status = bench_begin(&s->frame);
