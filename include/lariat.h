@@ -300,7 +300,8 @@ LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
 
 /* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, to ride on it)
  * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
- * missing. *scene (may be NULL): the scene's path, freed with the meshing. */
+ * missing; files that are there are replaced, each whole. *scene (may be NULL): the scene's path,
+ * freed with the meshing. */
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 

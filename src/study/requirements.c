@@ -16,6 +16,9 @@
 /* Which node of which element: the demonstration organ's (demo.h). */
 static const uint64_t DEMONSTRATION = 0x8931f41fa32444edULL;
 
+_Static_assert(LAR_REQUIREMENTS_SCHEMES == (int)LAR_SCHEMES, "there is a place for each scheme");
+_Static_assert(LAR_REQUIREMENTS_SHAPES == (int)LAR_SHAPE_COUNT, "there is a place for each shape");
+
 static void tell(const lar_requirements_options *options, const char *what) {
     if (options->watch) options->watch(options->context, what);
 }
