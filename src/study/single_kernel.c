@@ -11,6 +11,10 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 #pragma GCC diagnostic ignored "-Wunused-function"
+#ifdef __clang__
+#pragma GCC diagnostic ignored "-Wunused-const-variable"
+#pragma GCC diagnostic ignored "-Wkeyword-macro"
+#endif
 
 #if LAR_SIMD == LAR_SIMD_AVX512
 
