@@ -130,7 +130,9 @@ static char *name_of_file(const char *path) {
 
 /* As a file's name that needs no quotes anywhere. */
 static char *stem_of(const char *title) {
+    enum { MOST = 100 }; /* with an ending it is still a name that every file system takes */
     char *stem = lar_strdup(title);
+    if (stem && strlen(stem) > MOST) stem[MOST] = 0;
     for (char *c = stem; c && *c; c++) {
         bool plain = (unsigned char)*c < 128 && isalnum((unsigned char)*c);
         if (!plain && *c != '-' && *c != '.') *c = '_';

@@ -20,6 +20,7 @@ typedef struct lar_support {
     const char *handle;  /* the side of the node set "handle"; NULL: there is none */
     bool opposed;        /* "handle_opposite" is pulled the other way: nothing holds the body */
     double pull[3];      /* [N] at "handle" */
+    double slowest;      /* [1/s] angular frequency of the slowest motion; 0: not known */
 } lar_support;
 
 struct lar_meshing {

@@ -45,25 +45,27 @@ static void put(FILE *file, const char *text, bool quoted) {
 
 /* ---- the scene ----------------------------------------------------------------------------- */
 
-/* The slowest motion of a clamped block, ω = π/2 sqrt(G/ρ)/L, with 0.7 of the damping that would
- * just keep it from swaying: in about 4/(0.7 ω) seconds it is at rest. Two digits. */
+/* A motion that is damped by c while it swings at w decays with c/2, as long as c is below 2 w. The
+ * guess at w is up to twice the truth, so c = w; far below it where a body is held at many places,
+ * so c is 1/s at least. Two digits. */
 static double damping(const lar_meshing *m) {
-    static const double QUARTER_TURN = 1.57079632679489662, RATIO = 0.7;
-    double length = 0, slowest = INFINITY;
-    for (int i = 0; i < 3; i++) {
-        double lower = INFINITY, upper = -INFINITY;
-        for (int32_t n = 0; n < m->mesh.node_count; n++) {
-            lower = fmin(lower, m->mesh.position[n][i]);
-            upper = fmax(upper, m->mesh.position[n][i]);
-        }
-        length = fmax(length, upper - lower);
-    }
-    for (int32_t r = 0; r < m->info.regions; r++)
-        if (m->region[r].elements > 0)
-            slowest = fmin(slowest, sqrt(m->region[r].shear_modulus / m->region[r].density));
-    double rate = 2 * RATIO * QUARTER_TURN * slowest / length;
+    static const double WITHOUT = 10, LEAST = 1;
+    double rate = fmax(LEAST, m->support.slowest);
+    if (!(m->support.slowest > 0)) return WITHOUT;
     double digit = pow(10, floor(log10(rate)) - 1);
     return round(rate / digit) * digit;
+}
+
+/* Time in which the slowest motion has become a hundredth, with some room for the guess. */
+static double settling(const lar_meshing *m) {
+    return 2 * log(300) / damping(m);
+}
+
+/* The pull and what comes after it; half seconds. */
+static double duration(const lar_meshing *m) {
+    static const double PULL = 1.2, LEAST = 2;
+    if (!m->support.handle) return LEAST;
+    return fmax(LEAST, ceil(2 * (PULL + settling(m))) / 2);
 }
 
 static double least_height(const lar_mesh *mesh, int32_t e) {
@@ -138,10 +140,10 @@ static void put_motion(const lar_meshing *m, FILE *f) {
         "#     time_step: %.1e\n"
         "gravity: [0, 0, 0]\n"
         "time_step: auto\n"
-        "damping: %g             # 1/s; let go, it comes to rest in a second or so\n"
-        "duration: 2              # s; a run lasts so long unless --time says otherwise\n\n",
+        "damping: %g             # 1/s; let go, it comes to rest in about %.2g s\n"
+        "duration: %g              # s; a run lasts so long unless --time says otherwise\n\n",
         m->image ? "the patient lying on the back" : "along -z", m->image ? "-9.81, 0" : "0, -9.81",
-        squeezed_step(m), damping(m));
+        squeezed_step(m), damping(m), settling(m), duration(m));
 }
 
 static void put_material(const lar_region_info *region, FILE *f) {

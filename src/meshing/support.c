@@ -18,10 +18,14 @@
 
 #include "base/union_find.h"
 #include "meshing/meshing.h"
+#include "meshing/motion.h"
 
 static const double TENTH = 0.1;
 /* What the pull would stretch a bar of the handle's cross-section by. */
 static const double STRETCH = 0.3;
+/* What the pull would move the handle by at most, as part of its way to what is held: thin bodies
+ * that are pulled across bend long before they stretch. */
+static const double BEND = 0.4;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };
@@ -277,7 +281,7 @@ static double rounded(double force) {
 
 /* The handle is opposite of what is held, or, when nothing is free there, at the next side that has
  * free nodes. */
-static lar_status pull(choice *c, int held_side, bool *in) {
+static lar_status pull(choice *c, int held_side, bool *handle, bool *in) {
     static const int next[SIDES] = {FRONT, TOP, BOTTOM, LEFT, RIGHT, BACK};
     lar_support *support = &c->meshing->support;
     double shear = mean_shear(c->meshing);
@@ -285,16 +289,22 @@ static lar_status pull(choice *c, int held_side, bool *in) {
     int side = held_side >= 0 ? opposite(held_side) : FRONT;
     lar_status status = LAR_OK;
     if (shear <= 0) return LAR_OK;
-    status = add_handle(c, "handle", side, in, &count);
+    status = add_handle(c, "handle", side, handle, &count);
     for (int i = 0; !status && count == 0 && i < SIDES; i++) {
         if (next[i] == held_side) continue;
         side = next[i];
-        status = add_handle(c, "handle", side, in, &count);
+        status = add_handle(c, "handle", side, handle, &count);
     }
     if (!status && count > 0 && support->fixed_nodes == 0)
         status = add_handle(c, "handle_opposite", opposite(side), in, &opposed);
     support->opposed = opposed > 0;
+    lar_motion motion = {0};
+    if (!status && count > 0)
+        status = lar_motion_estimate(c->meshing, support->opposed ? in : c->held, handle, side / 2,
+                                     &motion, c->error);
+    support->slowest = motion.slowest;
     double force = 3 * shear * STRETCH * cross_section(c, side);
+    if (motion.compliance > 0) force = fmin(force, BEND * motion.reach / motion.compliance);
     if (status || count == 0 || !(force > 0)) return status;
     if (support->fixed_nodes == 0 && !support->opposed) return LAR_OK;
     support->handle = side_name[side];
@@ -304,13 +314,13 @@ static lar_status pull(choice *c, int held_side, bool *in) {
 
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error) {
     size_t nodes = (size_t)meshing->mesh.node_count;
-    bool *mark = lar_calloc(3 * nodes, sizeof *mark);
-    if (!mark) return lar_fail_memory(error, 3 * nodes, "marks of nodes");
+    bool *mark = lar_calloc(4 * nodes, sizeof *mark);
+    if (!mark) return lar_fail_memory(error, 4 * nodes, "marks of nodes");
     choice c = {.meshing = meshing, .surface = mark, .held = mark + nodes, .error = error};
     int side = -1;
     lar_status status = mark_surface(&c);
     if (!status) status = hold(&c, rule, &side);
-    if (!status) status = pull(&c, side, mark + 2 * nodes);
+    if (!status) status = pull(&c, side, mark + 2 * nodes, mark + 3 * nodes);
     free(mark);
     meshing->info.fix = meshing->support.rule;
     meshing->info.fixed_nodes = meshing->support.fixed_nodes;
