@@ -290,7 +290,8 @@ static inline size_t lar_block_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
 }
 
-/* A bit per element of a chunk has no room for 64 of them; nobody reads the bits here. */
+/* A bit per element of a chunk: 64 of them. */
+#define unsigned uint64_t
 #define _Static_assert(condition, text) extern int single_nothing
 #define JOIN_(a, b, c)     a##b##c
 #define JOIN(a, b, c)      JOIN_(a, b, c)
@@ -300,6 +301,7 @@ static inline size_t lar_block_size(lar_block_shape shape) {
 #define LAR_LANES LANES
 #include "mechanics/hex8_kernel.c"
 #undef double
+#undef unsigned
 
 /* ------------------------------------------------------------------------------------------ */
 
