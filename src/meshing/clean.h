@@ -17,6 +17,8 @@
  *     volume on the wrong side: share or 255 - share              0 .. 255 per cell
  *     a cell that fitting would squash (below)                    about half a cell's volume
  *     a face between regions                                      little: among equals the smooth
+ *     a cell that a region lacks or has too many, where there     a cell's volume
+ *     are several
  *
  * A cell takes the region of a neighbour wherever that lowers the sum. As every step lowers it, it
  * ends. Steps that mend no point must leave the topology alone: the cell is a simple point
@@ -39,8 +41,9 @@ typedef struct lar_cleaner {
     size_t cells;
     uint8_t *before; /* [cells] regions before cells were flipped; islands and pinholes are
                         flipped in it too */
-    uint8_t *mark;   /* [cells] */
-    int32_t *stack;  /* grows */
+    int32_t count[LAR_REGIONS_MOST + 1]; /* cells of each region, while they are flipped */
+    uint8_t *mark;                       /* [cells] */
+    int32_t *stack;                      /* grows */
     size_t stack_capacity;
     lar_cleaning *cleaning;
     lar_error *error;

@@ -15,7 +15,7 @@
 enum { SWEEPS = 200 };
 
 /* Beyond this many cells the mesh cannot follow: a region that misses so much lacks cells. */
-static const double FARTHEST = 0.2;
+static const double FARTHEST = 0.4;
 
 static void measure_areas(lar_fit_work *work) {
     for (int32_t p = 0; p < work->pair_count; p++) work->pair[p].area = 0;

@@ -18,10 +18,13 @@ typedef struct lar_lattice {
     double axis[3][3]; /* rows: unit directions of i, j, k; right-handed */
     double size;       /* edge of a cell [m] */
     uint8_t *region;   /* [cells] 0: outside. Regions by majority: 0 when less than half of the cell
-                          is inside, else the region with the largest part */
+                          is inside, else the region with the largest part. Of several regions parts
+                          are weighted, lattice_votes.h */
     uint8_t *inner;    /* [cells] the region with the largest part, whatever is outside; 0: none */
-    uint8_t *share;    /* [cells] part of the cell that is inside any region, 0..255 */
-    int32_t repaired;  /* lines that did not come out of the body again and took no part */
+    uint8_t *share;    /* [cells] part of the cell that is inside any region, by weight, 0..255 */
+    double wanted[LAR_REGIONS_MOST + 1]; /* cells that each region's volume fills, where there are
+                                            several; 0: unknown */
+    int32_t repaired; /* lines that did not come out of the body again and took no part */
 } lar_lattice;
 
 static inline size_t lar_lattice_cell(const lar_lattice *lattice, int i, int j, int k) {

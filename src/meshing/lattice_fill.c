@@ -1,6 +1,7 @@
 /* Which region has how much of every cell. A line that does not come out of the body again takes no
  * part: the others of its row stand for it. */
 #include "meshing/lattice_lines.h"
+#include "meshing/lattice_votes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +18,7 @@ typedef struct work {
     double *length; /* [regions + 1][cells along] parts of the cells of one row */
     bool met[COUNTERS];
     uint8_t *row_lines; /* [rows] lines that count */
+    lar_votes votes;    /* of several regions */
 } work;
 
 /* ---- where the lattice lies ----------------------------------------------------------------- */
@@ -129,10 +131,11 @@ static void add_length(void *context, int region, double from, double to) {
     for (int32_t i = first; i < cells && i < to; i++) length[i] += fmin(to, i + 1) - fmax(from, i);
 }
 
-static void write_row(work *w, int32_t j, int32_t k, int lines) {
+static bool write_row(work *w, int32_t j, int32_t k, int lines) {
     lar_lattice *lattice = w->lattice;
     int32_t cells = lattice->cells[0];
     size_t row = lar_lattice_cell(lattice, 0, j, k);
+    bool kept = true;
     for (int32_t i = 0; i < cells && lines > 0; i++) {
         double inside = 0, largest = 0;
         int inner = 0;
@@ -140,6 +143,8 @@ static void write_row(work *w, int32_t j, int32_t k, int lines) {
             if (!w->met[r]) continue;
             double part = w->length[(size_t)r * (size_t)cells + (size_t)i];
             inside += part;
+            if (w->boundary->region_count > 1 && part > 0)
+                kept = kept && lar_votes_add(&w->votes, row + (size_t)i, r, part / lines);
             if (part > largest) largest = part, inner = r;
         }
         inside = fmin(1, inside / lines);
@@ -152,6 +157,7 @@ static void write_row(work *w, int32_t j, int32_t k, int lines) {
         if (w->met[r])
             memset(&w->length[(size_t)r * (size_t)cells], 0, (size_t)cells * sizeof *w->length);
     memset(w->met, 0, sizeof w->met);
+    return kept;
 }
 
 /* A row of which no line counts becomes like the nearest one before it, or else after it. */
@@ -190,8 +196,12 @@ static lar_status follow_lines(work *w, lar_error *error) {
             }
             lattice->repaired += LINES * LINES - good;
             w->row_lines[(size_t)k * (size_t)lattice->cells[1] + (size_t)j] = (uint8_t)good;
-            write_row(w, j, k, good);
+            if (!write_row(w, j, k, good))
+                return lar_fail_memory(error, 2 * w->votes.capacity * sizeof *w->votes.vote,
+                                       "the regions' parts of cells");
         }
+    if (w->boundary->region_count > 1)
+        lar_votes_count(&w->votes, w->boundary->region_count, lattice);
     if (lattice->repaired) copy_rows(w);
     return LAR_OK;
 }
@@ -231,6 +241,7 @@ lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_latti
         lar_lines_clear(&w.lines);
         free(w.length);
         free(w.row_lines);
+        lar_votes_clear(&w.votes);
     }
     if (status)
         lar_lattice_clear(&made);
