@@ -105,11 +105,11 @@ const cli_command cli_bench_kernel = {
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
 static int bench_main(int argc, char **argv) {
-    static const char *const names[] = {"kernel", "step",      "comm", "scaling",
-                                        "jitter", "precision", NULL};
-    static const cli_command *const benchmarks[] = {&cli_bench_kernel, &cli_bench_step,
-                                                    &cli_bench_comm,   &cli_bench_scaling,
-                                                    &cli_bench_jitter, &cli_bench_precision};
+    static const char *const names[] = {"kernel", "step",      "comm",     "scaling",
+                                        "jitter", "precision", "implicit", NULL};
+    static const cli_command *const benchmarks[] = {
+        &cli_bench_kernel, &cli_bench_step,      &cli_bench_comm,    &cli_bench_scaling,
+        &cli_bench_jitter, &cli_bench_precision, &cli_bench_implicit};
     static const cli_option none[] = {CLI_END};
     for (int i = 0; argc > 0 && names[i]; i++)
         if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
@@ -120,7 +120,8 @@ static int bench_main(int argc, char **argv) {
     const char *meant = cli_nearest_name(argv[0], names);
     return cli_complain(&cli_bench, CLI_USAGE, "there is no benchmark %s; %s%s%s", argv[0],
                         meant ? "did you mean "
-                              : "there are: kernel, step, comm, scaling, jitter, precision",
+                              : "there are: kernel, step, comm, scaling, jitter, precision, "
+                                "implicit",
                         meant ? meant : "", meant ? "?" : "");
 }
 
@@ -136,6 +137,7 @@ const cli_command cli_bench = {
         "  scaling   time of a step with several processors, against one\n"
         "  jitter    how punctual this machine is, a thousand times a second\n"
         "  precision what single precision would lose and win\n"
+        "  implicit  the same slow loading, implicitly and explicitly\n"
         "and has options of its own: lariat bench kernel --help",
     .examples = "  lariat bench kernel\n"
                 "  lariat bench step demo/uterus.yaml\n"

@@ -7,7 +7,8 @@
 
 extern const cli_command cli_info, cli_run, cli_verify, cli_partition, cli_demo_model, cli_bench,
     cli_device, cli_view, cli_replay, cli_mesh, cli_bench_kernel, cli_bench_comm, cli_bench_scaling,
-    cli_bench_step, cli_bench_jitter, cli_bench_precision, cli_requirements, cli_predict;
+    cli_bench_step, cli_bench_jitter, cli_bench_precision, cli_bench_implicit, cli_requirements,
+    cli_predict;
 
 /* Opens a model and prints its notices to standard error. Returns the exit status; messages are
  * printed. */

@@ -26,6 +26,9 @@ static PetscErrorCode prepare(KSP ksp, const lar_linear_options *o, Mat matrix) 
     if (!code) code = KSPSetType(ksp, o->method);
     if (!code) code = KSPGetPC(ksp, &pc);
     if (!code) code = PCSetType(pc, o->preconditioner);
+    /* Incomplete factors of stiff, nearly incompressible matrices may lose a pivot's sign. */
+    if (!code && (!strcmp(o->preconditioner, PCILU) || !strcmp(o->preconditioner, PCICC)))
+        code = PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE);
     if (!code) code = KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED);
     if (!code && strcmp(o->method, KSPCG) != 0) code = KSPSetPCSide(ksp, PC_RIGHT);
     if (!code) code = KSPSetTolerances(ksp, o->tolerance, 0, 1e8, o->iterations_most);

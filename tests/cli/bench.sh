@@ -187,4 +187,19 @@ cp "$SCRATCH/out" "$earlier"
 expect 0 "$LARIAT" bench scaling --elements 8 --quick --repeat 1 --processors 1 --threads 1 \
     --against "$earlier" --tolerance 1e6
 says 'plain loop: us_per_step'
+# Both ways of integrating: alike where loading is slow, and where there is no equilibrium one ends.
+expect 0 "$LARIAT" bench implicit --step 0.02 --json
+has_head implicit
+awk -F'[:,]' '/"apart"/ && $2 + 0 >= 0 && $2 + 0 < 0.01 { found = 1 } END { exit !found }' \
+    "$SCRATCH/out" || fail "implicit and explicit answers differ: $(grep apart "$SCRATCH/out")"
+expect 0 "$LARIAT" bench implicit --case loose --static
+grep -q 'The implicit way fails: .* finds no equilibrium' "$SCRATCH/out" ||
+    fail "a loose piece was in equilibrium"
+expect 2 "$LARIAT" bench implicit --case slow "$SCRATCH/demo/uterus.yaml"
+expect 2 "$LARIAT" bench implicit --preconditioner icc
+if "$LARIAT" bench implicit --solver bcgs --step 0.05 >"$SCRATCH/out" 2>"$SCRATCH/err"; then
+    grep -q 'PETSc .* bcgs + jacobi' "$SCRATCH/out" || fail "bcgs was not PETSc's"
+else
+    grep -q 'install petsc-dev' "$SCRATCH/err" || fail "no PETSc, and no word of it"
+fi
 finish "benchmark: keys and limits"

@@ -13,7 +13,7 @@ while read -r word line; do
 done <examples
 
 # Every option that --help lists.
-for command in mesh run verify partition requirements predict demo-model info device 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter' 'bench precision'; do
+for command in mesh run verify partition requirements predict demo-model info device 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter' 'bench precision' 'bench implicit'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do
@@ -41,6 +41,7 @@ for key in $(keys "$LARIAT" info demo/uterus.yaml --json) \
     $(keys "$LARIAT" predict --list-machines --json) \
     $(keys bench_twice kernel --elements 8 --repeat 1) \
     $(keys bench_twice step demo/uterus.yaml --steps 1 --repeat 1) \
+    $(keys bench_twice implicit --case loose) \
     $(keys bench_twice jitter --seconds 0.02 --repeat 1) \
     $(keys bench_twice precision --elements 8 --steps 20 --isa c) \
     $(keys "$LARIAT" bench comm --repeat 1 --json) \

@@ -2,7 +2,7 @@
  * the linear solvers say; what an implicit step cannot solve. */
 #include "engine/engine_test.h"
 
-#include "study/implicit.h"
+#include "study/bench_implicit.h"
 
 enum { NODES_MOST = 200 };
 
@@ -214,6 +214,42 @@ static void contact_is_refused(void **state) {
     lar_model_destroy(model);
 }
 
+static lar_bench_implicit_result bench(lar_implicit_case which, bool quasi_static) {
+    lar_bench_implicit_options options = {.linear = lar_linear_options_default(),
+                                          .implicit = lar_implicit_options_default()};
+    lar_bench_implicit_result result;
+    lar_error error;
+    options.linear.tolerance = options.implicit.tolerance = 1e-4;
+    options.implicit.time_step = 0.02;
+    options.implicit.quasi_static = quasi_static;
+    options.implicit.halvings_most = 3;
+    assert_int_equal(lar_implicit_case_create(which, &options.model, NULL), LAR_OK);
+    lar_tool *tool = LAR_MODEL_APPEND(options.model, tool); /* left out, and there afterwards */
+    tool->radius = 0.01;
+    if (lar_bench_implicit(&options, &result, &error)) fail_msg("%s", error.message);
+    assert_int_equal(result.left_out, 1);
+    assert_int_equal(options.model->tool_count, 1);
+    lar_model_destroy(options.model);
+    return result;
+}
+
+/* Table 2.1: the same answers within 1 % where loading is slow; where the tangent becomes singular,
+ * or nothing holds a piece, the explicit way goes on alone. */
+static void cases(void **state) {
+    (void)state;
+    lar_bench_implicit_result slow = bench(LAR_IMPLICIT_SLOW, false);
+    assert_true(!slow.failed && slow.apart >= 0 && slow.apart < 0.01);
+    assert_true(slow.largest > 1e-3 && slow.reached == slow.until);
+    lar_bench_implicit_result buckle = bench(LAR_IMPLICIT_BUCKLE, true);
+    assert_true(buckle.failed && buckle.reached > 0.1 && buckle.reached < 0.6);
+    assert_non_null(strstr(buckle.reason, "finds no equilibrium"));
+    assert_true(buckle.largest > 0.01 && buckle.until >= 1); /* the run went on */
+    lar_bench_implicit_result loose = bench(LAR_IMPLICIT_LOOSE, true);
+    assert_true(loose.failed && loose.reached == 0 && loose.apart == -1);
+    loose = bench(LAR_IMPLICIT_LOOSE, false);
+    assert_true(!loose.failed && loose.apart >= 0 && loose.apart < 0.01);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agrees_with_the_engine),
@@ -222,6 +258,7 @@ int main(void) {
         cmocka_unit_test(solvers_agree),
         cmocka_unit_test(indefinite_matrix_is_told),
         cmocka_unit_test(contact_is_refused),
+        cmocka_unit_test(cases),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
