@@ -164,7 +164,8 @@ static bool node_meets(const lar_draft_mesh *draft, int32_t node, int a, int b) 
     return false;
 }
 
-/* Each has its volume, and the disc where they touch is flat, to its rim. */
+/* Each has its volume, and the disc where they touch is flat, to its rim. It lies in the middle of
+ * a layer of cells, which belong to one ball or the other by a hair: the worst case for it. */
 static void test_touching_balls(void **state) {
     (void)state;
     fitted body;
@@ -248,7 +249,8 @@ static int shell_in_ball(const double x[3]) {
     return radius > 0.014 - 1e-3 * THICK ? 2 : 3;
 }
 
-/* By majority it has hardly a cell. */
+/* By majority the plate's volume is 3.6 % off. The shell stays 9 % off, and what is inside it 12 %:
+ * half a cell thick and curved, it is no manifold of cells everywhere. */
 static void test_thin_region(void **state) {
     (void)state;
     int (*const label[])(const double x[3]) = {plate_in_block, shell_in_ball};
@@ -268,7 +270,7 @@ static void test_thin_region(void **state) {
         lar_jacobians_count(&body.draft.mesh, &jacobians);
         assert_below(0.25, jacobians.least);
         assert_below(0.9, jacobians.above_05);
-        assert_region_volumes(&body, s == 0 ? 0.02 : 0.15); /* by majority: 0.5 and more */
+        assert_region_volumes(&body, s == 0 ? 0.02 : 0.15);
         assert_below(deviation_of(&body), 0.15);
         end(&body);
     }
