@@ -128,6 +128,24 @@ static int inspect(mesh_report *report) {
     return status;
 }
 
+/* What the user should look at twice: another unit, parts that the grid is too coarse for. */
+static void doubt(const mesh_report *report) {
+    static const double LARGE = 10, LOST = 0.1;
+    const lar_mesh_quality *quality = &report->info.quality;
+    double size = 0, lost = 1 - quality->volume / quality->true_volume;
+    for (int i = 0; i < 3; i++) size = fmax(size, report->model.upper[i] - report->model.lower[i]);
+    if (size > LARGE)
+        cli_complain(
+            &cli_mesh, CLI_DONE,
+            "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
+            size);
+    if (quality->true_volume > 0 && fabs(lost) > LOST)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the mesh holds %.0f %% %s than the true surface, of which parts are "
+                     "thinner than an element of %.3g m: take more elements or a smaller size",
+                     100 * fabs(lost), lost > 0 ? "less" : "more", report->info.size);
+}
+
 static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double seconds) {
     mesh_report report = {.meshing = meshing, .seconds = seconds};
     lar_error error;
@@ -142,6 +160,7 @@ static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double s
         mesh_report_json(&report);
     else
         mesh_report_table(&report);
+    doubt(&report);
     return CLI_DONE;
 }
 

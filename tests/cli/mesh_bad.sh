@@ -100,6 +100,12 @@ octahedron >open.obj
 refused 'not closed' open.obj
 { octahedron; echo 'f 1 4 6'; } >closed.obj
 expect 0 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100
+# Another unit, and what is too thin for the grid, are meshed and doubted.
+expect 0 "$LARIAT" mesh closed.obj --scale 50 --elements 100 --out large
+complains 'm long; if the file is in millimetres, say --scale 0.001'
+sed 's/^v 0 0 \(-*\)1$/v 0 0 \10.02/' closed.obj >leaf_thin.obj
+expect 0 "$LARIAT" mesh leaf_thin.obj --scale 0.05 --size 0.0015 --out thin
+complains 'less than the true surface, of which parts are thinner than an element'
 { # the same twice, a little apart
     octahedron
     echo 'f 1 4 6'
