@@ -132,7 +132,7 @@ static int report(settings *s, const outcome *o) {
     static const char *const keys[] = {"ns_per_element.double", "ns_per_element.mixed"};
     for (int w = 0; w < 2; w++)
         lar_bench_add(&s->frame.report, "ns", o->result[0].way[w].nanoseconds.median,
-                      o->result[0].way[w].went, keys[w]);
+                      o->result[0].way[w].went, "%s", keys[w]);
     if (s->frame.json)
         write_json(s, o);
     else
