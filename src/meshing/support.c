@@ -185,7 +185,8 @@ static void find_pieces(const choice *c, int axis, pieces *p) {
     }
 }
 
-/* Marks a tenth at `side` of every piece that nothing holds yet. */
+/* Marks the elements that reach into the last tenth, at `side`, of every piece that nothing holds
+ * yet: whole elements, because a node or two would be a hinge. */
 static lar_status mark_loose_pieces(choice *c, int side) {
     const lar_mesh *mesh = &c->meshing->mesh;
     size_t nodes = (size_t)mesh->node_count;
@@ -194,12 +195,16 @@ static lar_status mark_loose_pieces(choice *c, int side) {
                 .held = lar_calloc(nodes, sizeof *p.held)};
     bool ready = p.parent && p.range && p.held;
     if (ready) find_pieces(c, side / 2, &p);
-    for (int32_t n = 0; ready && n < mesh->node_count; n++) {
-        int32_t root = lar_union_root(p.parent, n);
-        double depth = side % 2 ? p.range[root][1] - mesh->position[n][side / 2]
-                                : mesh->position[n][side / 2] - p.range[root][0];
-        if (!p.held[root] && c->surface[n])
-            c->held[n] = depth <= TENTH * (p.range[root][1] - p.range[root][0]);
+    for (int32_t e = 0; ready && e < mesh->element_count; e++) {
+        int32_t root = lar_union_root(p.parent, mesh->element[e][0]);
+        const double *range = p.range[root];
+        double least = DBL_MAX;
+        for (int a = 0; a < 8; a++) {
+            double place = mesh->position[mesh->element[e][a]][side / 2];
+            least = fmin(least, side % 2 ? range[1] - place : place - range[0]);
+        }
+        bool reaches = !p.held[root] && least <= TENTH * (range[1] - range[0]);
+        for (int a = 0; reaches && a < 8; a++) c->held[mesh->element[e][a]] = true;
     }
     free(p.parent);
     free(p.range);
