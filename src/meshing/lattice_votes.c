@@ -14,6 +14,9 @@ static const double STEP_FIRST = 0.25, STEP_MOST = 0.5, GROW = 1.2, SHRINK = 0.5
 /* Near enough: this part of its cells, or half a cell. */
 static const double NEAR = 0.01;
 
+/* Rounding of a part: below it a region has nothing of the cell, from 1 less it on it has all. */
+static const double ROUNDING = 1e-9;
+
 /* A region is not made of cells that hold less than some hundredth of it. */
 static const double WEIGHT_MOST = 32;
 
@@ -35,21 +38,20 @@ void lar_votes_clear(lar_votes *votes) {
 
 bool lar_votes_add(lar_votes *votes, size_t cell, int region, double part) {
     votes->volume[region] += part;
-    if (part >= 1 - 1e-9) {
+    if (part >= 1 - ROUNDING) {
         votes->certain[region]++;
         return true;
     }
-    const uint16_t whole = (uint16_t)lround(LAR_VOTE_WHOLE * fmax(0, part));
-    if (whole == 0) return true;
+    if (!(part > ROUNDING)) return true;
     if (!LAR_GROW(votes->vote, votes->capacity, votes->count)) return false;
     votes->vote[votes->count++] =
-        (lar_vote){.cell = (int32_t)cell, .part = whole, .region = (uint8_t)region};
+        (lar_vote){.cell = (int32_t)cell, .part = (float)part, .region = (uint8_t)region};
     return true;
 }
 
 /* The votes of one cell, from `first` on; *next: those of the next one. */
 static choice choose(const lar_votes *votes, const double *weight, size_t first, size_t *next) {
-    double inside = 0, outside = LAR_VOTE_WHOLE, largest = 0;
+    double inside = 0, outside = 1, largest = 0;
     choice made = {0};
     size_t v = first;
     for (; v < votes->count && votes->vote[v].cell == votes->vote[first].cell; v++) {
@@ -60,7 +62,7 @@ static choice choose(const lar_votes *votes, const double *weight, size_t first,
     }
     const double share = inside / (inside + fmax(0, outside));
     /* A body's flat side may lie in the middle of cells: rounding must not decide. */
-    made.region = share >= 0.5 - 1e-4 ? made.inner : 0;
+    made.region = share >= 0.5 - 1e-6 ? made.inner : 0;
     made.share = (uint8_t)lround(255 * share);
     *next = v;
     return made;

@@ -14,11 +14,9 @@
  * have none. */
 typedef struct lar_vote {
     int32_t cell;
-    uint16_t part; /* 0 .. LAR_VOTE_WHOLE */
+    float part; /* 0..1; 16 bits would round near ties to one side */
     uint8_t region;
 } lar_vote;
-
-enum { LAR_VOTE_WHOLE = UINT16_MAX };
 
 typedef struct lar_votes {
     lar_vote *vote;

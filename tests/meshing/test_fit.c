@@ -178,7 +178,7 @@ static void test_touching_balls(void **state) {
     int nodes = 0;
     for (int32_t n = 0; n < body.draft.mesh.node_count; n++) {
         if (!node_meets(&body.draft, n, 1, 2)) continue;
-        assert_below(fabs(body.draft.mesh.position[n][0]) / body.draft.size, 0.3);
+        assert_below(fabs(body.draft.mesh.position[n][0]) / body.draft.size, 0.2);
         nodes++;
     }
     assert_in_range(nodes, 40, 140);
