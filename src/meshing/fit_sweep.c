@@ -88,12 +88,13 @@ static void boundary_newton(const lar_fit_work *work, int32_t n, lar_fit_newton 
 /* ---- a step --------------------------------------------------------------------------------- */
 
 /* step = -H^-1 g by Cholesky's decomposition, with as much added to the diagonal as it needs to be
- * positive definite. */
+ * positive definite: a few times what `scale` is does for every matrix of numbers, and one that
+ * holds no numbers (a node at NaN, an overflow) moves nothing. */
 static void newton_step(const lar_fit_newton *at, double step[3]) {
     const double *h = at->hessian, *g = at->gradient;
     const double scale =
         fabs(h[0]) + fabs(h[1]) + fabs(h[2]) + fabs(h[3]) + fabs(h[4]) + fabs(h[5]) + 1e-12;
-    for (double shift = 0;; shift = shift > 0 ? 4 * shift : 0.02 * scale) {
+    for (double shift = 0; shift<100 * scale; shift = shift> 0 ? 4 * shift : 0.02 * scale) {
         const double a = h[0] + shift;
         if (!(a > 1e-3 * scale)) continue;
         const double l1 = h[3] / a, l2 = h[5] / a;
@@ -108,6 +109,7 @@ static void newton_step(const lar_fit_newton *at, double step[3]) {
         step[0] = y0 / a - l1 * step[1] - l2 * step[2];
         return;
     }
+    for (int i = 0; i < 3; i++) step[i] = 0;
 }
 
 static double quadratic(const lar_fit_newton *at, const double step[3]) {

@@ -5,6 +5,7 @@
 #include "meshing/deviation.h"
 #include "meshing/fit.h"
 #include "meshing/fit_quality.h"
+#include "meshing/fit_work.h"
 
 /* ---- from a shape to a fitted mesh ---------------------------------------------------------- */
 
@@ -438,6 +439,33 @@ static void test_energy_and_its_derivatives(void **state) {
     assert_true(isinf(lar_fit_corner_energy(&law, turned)));
 }
 
+/* One cube, a node of which is at no place: the sweep ends, and nothing has moved. */
+static void test_a_node_at_nan_ends_the_sweep(void **state) {
+    (void)state;
+    int32_t element[1][8], start[9], around[8], none[9] = {0};
+    double x[8][3], before[8][3];
+    bool awake[8];
+    for (int a = 0; a < 8; a++) {
+        element[0][a] = around[a] = start[a] = a;
+        awake[a] = true;
+        for (int i = 0; i < 3; i++) x[a][i] = lar_node_sign[a][i] > 0;
+    }
+    start[8] = 8;
+    x[6][1] = NAN;
+    memcpy(before, x, sizeof x);
+    const lar_mesh mesh = {.node_count = 8, .element_count = 1, .element = element};
+    lar_fit_work work = {.mesh = &mesh,
+                         .x = x,
+                         .element_start = start,
+                         .element_around = around,
+                         .face_start = none,
+                         .point_start = none,
+                         .law = {.shape = 1, .steep = 1, .aim = 0.5, .floor = 0.1},
+                         .awake = awake};
+    assert_int_equal(lar_fit_sweep(&work), 0);
+    assert_memory_equal(before, x, sizeof x);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ellipsoid),
@@ -452,6 +480,7 @@ int main(void) {
         cmocka_unit_test(test_floor_and_aim_are_kept),
         cmocka_unit_test(test_inverted_element_is_refused),
         cmocka_unit_test(test_energy_and_its_derivatives),
+        cmocka_unit_test(test_a_node_at_nan_ends_the_sweep),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
