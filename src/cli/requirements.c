@@ -19,7 +19,7 @@ static int report_model(const char *path, lar_requirements_options *wanted, bool
     int status = cli_open_model(&cli_requirements, path, &model);
     if (status) return status;
     if (isatty(STDERR_FILENO)) wanted->watch = show_progress;
-    lar_requirements found;
+    lar_requirements found = {.elements_most = 0};
     lar_model_info info;
     lar_error error;
     bool failed = lar_model_inspect(model, &info, &error) ||
@@ -35,6 +35,7 @@ static int report_model(const char *path, lar_requirements_options *wanted, bool
         else
             requirements_print(&report);
     }
+    lar_requirements_clear(&found);
     lar_model_destroy(model);
     return status;
 }

@@ -124,6 +124,19 @@ static void write_kernels(json_writer *json) {
     json_close(json);
 }
 
+static void write_packets(json_writer *json, const lar_requirements_sent *sent) {
+    json_open(json, "list", '[');
+    for (int64_t i = 0; i < sent->packets; i++) {
+        const lar_requirements_packet *packet = &sent->packet[i];
+        json_open(json, NULL, '[');
+        json_integer(json, NULL, packet->from);
+        json_integer(json, NULL, packet->to);
+        json_integer(json, NULL, packet->bytes);
+        json_close(json);
+    }
+    json_close(json);
+}
+
 static void write_model(json_writer *json, const lar_requirements *r) {
     double step = r->quantities.step_ex;
     json_open(json, "shapes", '[');
@@ -146,6 +159,7 @@ static void write_model(json_writer *json, const lar_requirements *r) {
         json_integer(json, "bytes", s->bytes);
         json_integer(json, "bytes_max", s->bytes_most);
         json_number(json, "bytes_per_second", (double)s->bytes / step);
+        write_packets(json, s);
         json_close(json);
     }
     json_close(json);

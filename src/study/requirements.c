@@ -67,21 +67,28 @@ lar_status lar_requirements_count(const lar_model *model, lar_quantities *quanti
 
 /* ---- what is sent --------------------------------------------------------------------------- */
 
-static void count_transfers(const lar_schedule_set *set, lar_requirements_sent *sent) {
+static lar_status count_transfers(const lar_schedule_set *set, lar_requirements_sent *sent,
+                                  lar_error *error) {
+    size_t capacity = 0;
     for (int32_t p = 0; p < set->count; p++) {
         const lar_schedule *s = &set->of[p];
         int64_t bytes = 0;
         for (int32_t b = 0; b < s->batch_count; b++)
             for (int32_t i = 0; i < s->batch[b].sends.count; i++) {
                 const lar_transfer *t = &s->transfer[s->batch[b].sends.first + i];
+                const lar_requirements_packet packet = {
+                    p, t->peer, lar_packet_payload(t->vectors.count) + LAR_TAIL_BYTES};
+                if (!LAR_GROW(sent->packet, capacity, (size_t)sent->packets))
+                    return lar_fail_memory(error, 2 * capacity * sizeof packet, "the packets");
+                sent->packet[sent->packets++] = packet;
                 sent->vectors += t->vectors.count;
-                sent->packets++;
                 sent->empty += t->vectors.count == 0;
-                bytes += lar_packet_payload(t->vectors.count) + LAR_TAIL_BYTES;
+                bytes += packet.bytes;
             }
         sent->bytes += bytes;
         if (bytes > sent->bytes_most) sent->bytes_most = bytes;
     }
+    return LAR_OK;
 }
 
 static lar_status count_sent(const lar_mesh *mesh, const lar_incidence *incidence,
@@ -97,8 +104,9 @@ static lar_status count_sent(const lar_mesh *mesh, const lar_incidence *incidenc
             lar_schedule_build(mesh, incidence, distribution, &options, &set, error);
         if (status) return status;
         r->sent[i] = (lar_requirements_sent){.scheme = lar_scheme_name[i]};
-        count_transfers(&set, &r->sent[i]);
+        status = count_transfers(&set, &r->sent[i], error);
         lar_schedule_set_clear(&set);
+        if (status) return status;
     }
     return LAR_OK;
 }
@@ -285,6 +293,13 @@ static void measure(const lar_model *model, lar_requirements *r) {
     r->measured = true;
 }
 
+void lar_requirements_clear(lar_requirements *requirements) {
+    for (int i = 0; i < LAR_REQUIREMENTS_SCHEMES; i++) {
+        free(requirements->sent[i].packet);
+        requirements->sent[i].packet = NULL;
+    }
+}
+
 lar_status lar_requirements_of(const lar_model *model, const lar_requirements_options *options,
                                lar_requirements *out, lar_error *error) {
     lar_requirements made = {.quantities = lar_thesis_quantities()};
@@ -294,7 +309,10 @@ lar_status lar_requirements_of(const lar_model *model, const lar_requirements_op
     if (!status) status = count_division(model, options, &made, error);
     if (!status) tell(options, "kernels");
     if (!status) status = count_kernels(model, &made, error);
-    if (status) return status;
+    if (status) {
+        lar_requirements_clear(&made);
+        return status;
+    }
     if (options->iterations > 0) made.quantities.n_it = options->iterations;
     if (options->implicit_step > 0) made.quantities.step_im = options->implicit_step;
     made.quantities.step_ex = info.time_step;

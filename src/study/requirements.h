@@ -33,12 +33,18 @@ typedef struct lar_requirements_options {
 
 enum { LAR_REQUIREMENTS_SCHEMES = 4, LAR_REQUIREMENTS_SHAPES = 2 };
 
+typedef struct lar_requirements_packet {
+    int32_t from, to; /* processors */
+    int64_t bytes;    /* with its signal word and tail */
+} lar_requirements_packet;
+
 /* Per step, of all processors together unless it says otherwise. */
 typedef struct lar_requirements_sent {
     const char *scheme;
     int64_t vectors, packets, empty; /* empty packets among them: the signal word alone */
     int64_t bytes;                   /* of packets with signal words and tails */
     int64_t bytes_most;              /* of the processor that sends most */
+    lar_requirements_packet *packet; /* [packets] owned; by sender, in the order of sending */
 } lar_requirements_sent;
 
 /* Elements that our kernel recovers as such, and how full its blocks are. */
@@ -80,9 +86,10 @@ typedef struct lar_requirements {
 } lar_requirements;
 
 /* Everything about a model. Fails when the model cannot be divided or stepped in principle, or for
- * want of memory; a measurement that cannot be made is no failure. */
+ * want of memory; a measurement that cannot be made is no failure. Clear it after success. */
 lar_status lar_requirements_of(const lar_model *model, const lar_requirements_options *options,
                                lar_requirements *out, lar_error *error);
+void lar_requirements_clear(lar_requirements *requirements); /* idempotent */
 
 /* The part that only counts the mesh: n_el, n_k, n_eav, df_el, df_eav; other fields stay. */
 lar_status lar_requirements_count(const lar_model *model, lar_quantities *quantities,

@@ -204,10 +204,23 @@ static void schedules_send_the_examples(void **state) {
     assert_int_equal(r.sent[1].bytes_most, 216 * 24 + 6 * 16);
     for (int s = 0; s < LAR_REQUIREMENTS_SCHEMES; s++)
         assert_int_equal(r.sent[s].bytes, 24 * r.sent[s].vectors + 16 * r.sent[s].packets);
+    for (int s = 0; s < LAR_REQUIREMENTS_SCHEMES; s++) {
+        int64_t bytes = 0, of_middle = 0;
+        for (int64_t i = 0; i < r.sent[s].packets; i++) {
+            const lar_requirements_packet *packet = &r.sent[s].packet[i];
+            assert_in_range(packet->from, 0, 26);
+            assert_true(packet->to >= 0 && packet->to < 27 && packet->to != packet->from);
+            bytes += packet->bytes;
+            of_middle += packet->from == 13 ? packet->bytes : 0;
+        }
+        assert_int_equal(bytes, r.sent[s].bytes);
+        assert_int_equal(of_middle, r.sent[s].bytes_most);
+    }
     /* Eq. 4.8 is the scheme `one`: every processor but one sends a part and gets the sum. */
     double estimate = 8 * lar_formula_values(LAR_METHOD_HOURGLASS, &r.quantities);
     assert_true(fabs(estimate - 24.0 * (double)r.sent[2].vectors) < 1e-6 * estimate);
     assert_false(r.measured || r.demonstration || r.why_not.status);
+    lar_requirements_clear(&r);
     lar_model_destroy(model);
 }
 
@@ -236,6 +249,7 @@ static void steps_cost_their_elements_and_nodes(void **state) {
         assert_true(r.quantities.n_pav == 1);
         assert_true(lar_formula_values(LAR_METHOD_HOURGLASS, &r.quantities) == 0);
         for (int s = 0; s < LAR_REQUIREMENTS_SCHEMES; s++) assert_int_equal(r.sent[s].bytes, 0);
+        lar_requirements_clear(&r);
         lar_model_destroy(model);
     }
 }
@@ -250,6 +264,7 @@ static void measuring_fills_the_figures(void **state) {
     assert_true(r.quantities.n_p == 12); /* the thesis's, not asked for */
     assert_true(r.measured && r.peak_gflops > 0 && r.nanoseconds > 0 && r.isa);
     for (int k = 0; k < LAR_NEEDS; k++) assert_true(r.kernel[k].seconds > 0);
+    lar_requirements_clear(&r);
     lar_model_destroy(model);
 }
 
@@ -268,6 +283,7 @@ static void small_models_and_nonsense(void **state) {
     options.grid = NULL;
     options.distribution = "no such file";
     assert_int_equal(lar_requirements_of(model, &options, &r, &error), LAR_ERROR_IO);
+    lar_requirements_clear(&r);
     lar_model_destroy(model);
 }
 
