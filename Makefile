@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 
-.PHONY: all setup demo check check-long fuzz install format clean help
+.PHONY: all setup demo check check-long report fuzz install format clean help
 .NOTPARALLEL:
 
 all: setup
@@ -31,6 +31,12 @@ check-long: setup
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset long -j 1
 
+report:
+	@tools/setup.sh build web check report
+	cmake --preset release --log-level=NOTICE
+	cmake --build --preset release -j $(JOBS)
+	tools/report/run.sh
+
 fuzz:
 	@tools/setup.sh build fuzz
 	@JOBS=$(JOBS) FUZZ_SECONDS=$(FUZZ_SECONDS) tools/fuzz.sh
@@ -49,6 +55,7 @@ help:
 	@echo "make demo     build, simulate the demonstration organ in real time, show it in the browser"
 	@echo "make check    every test, then the fast ones again under the sanitizers"
 	@echo "make check-long  what takes longer: every combination, ten million packets"
+	@echo "make report   measure this machine, and make the thesis's tables and figures again: docs/report/"
 	@echo "make fuzz     fuzz every reader, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make install  library, header and command under PREFIX=$(PREFIX)"
 	@echo "make format   clang-format over all C files"

@@ -2,13 +2,14 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [web] [check] [fuzz]      default: build
+#   tools/setup.sh [build] [web] [check] [fuzz] [report]      default: build
 #
 #   build   what the library, the command and their tests need; an error when it cannot be had
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2,
 #           libnifti, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
+#   report  what writes and draws the figures of `make report`
 #
 # What belongs to `web`, `check` and `fuzz` is optional: without it the tests that need it are left
 # out, and a sentence says so.
@@ -46,6 +47,9 @@ NIFTI_PACKAGES="
 libnifti-dev      -"
 PETSC_PACKAGES="
 petsc-dev         m:PETSc"
+REPORT_PACKAGES="
+python3           c:python3
+gnuplot-nox       c:gnuplot"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
@@ -174,10 +178,15 @@ for group in "$@"; do
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true
+        want "$REPORT_PACKAGES" "the report is not tested" || true
         ;;
     fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;
+    report)
+        need "$REPORT_PACKAGES"
+        want_clang "the report has no second compiler"
+        ;;
     *)
-        say "unknown group '$group'; use build, web, check or fuzz"
+        say "unknown group '$group'; use build, web, check, fuzz or report"
         exit 2
         ;;
     esac

@@ -1,0 +1,62 @@
+"""Section 6.10 of the thesis: compilers, instruction sets, and the same bits from all of them."""
+import thesis
+from page import Page, median_of, number, percent
+
+BUILDS = ("default", "gcc-O3", "gcc-O1", "clang-O3", "clang-O1")
+INSTRUCTIONS = ("c", "neon", "avx2", "avx512")
+
+
+def builds(runs):
+    found = {name.split(".")[1] for name in runs.names("kernel.")}
+    return [name for name in BUILDS if name in found]
+
+
+def kernels(runs, build):
+    names = [f"kernel.{build}.{isa}" for isa in INSTRUCTIONS]
+    return [name for name in names if runs.has(name)]
+
+
+def compiler(runs, build):
+    made = runs[kernels(runs, build)[0]]["build"]
+    level = [flag for flag in made["flags"].split() if flag.startswith("-O")]
+    return " ".join([made["compiler"]] + level)
+
+
+def write(runs, path):
+    page = Page("Compilers and instruction sets (6.10)")
+    rows = [(f"thesis: {code}", "", number(round(1000 * time)), "", "") for code, time in
+            thesis.TABLE_6_1]
+    states = set()
+    for build in builds(runs):
+        if build == "default" and "gcc-O3" in builds(runs):
+            continue
+        name = compiler(runs, build)
+        needs = {need["element"]: need for need in runs[f"slow.{build}"]["needs"]}
+        for element in ("hex8-matrix", "hex8-full"):
+            nanoseconds = 1e9 * needs[element]["step_seconds"] / 1840
+            rows.append((f"`{element}`, the plain reference", name, number(nanoseconds), "", ""))
+        for run in kernels(runs, build):
+            kernel = runs[run]
+            state = runs[run.replace("kernel.", "same.")]["state_hash"]
+            states.add(state)
+            rows.append((f"`hex8`, {kernel['isa']}", name,
+                         median_of(kernel["ns_per_element_spread"]),
+                         percent(kernel["fraction_of_peak"]), f"`{state}`"))
+    box = runs["box"]
+    rows.append(("`hex8`, boxes only", compiler(runs, "default"),
+                 median_of(box["ns_per_element_spread"]), "", ""))
+    page.say("Time of a step per element, nodes included, on one core. The thesis's row is the "
+             "recovery of an element without its nodes, 816 operations.")
+    page.chapter("Table 6.1")
+    first = runs.names("kernel.")[0]
+    page.table(("code", "compiler", "ns per element: median (least to greatest)",
+                "of the core's peak", "state after 200 steps of the organ"), rows,
+               "Measured: a block of 1840 general elements, " + runs.command(first) +
+               " and so on; the peak is of fused multiply-adds with the same instructions, and "
+               "what counts against it are the thesis's 816 operations. The references: the organ's "
+               "step, " + runs.command("slow.default") + ", divided by 1840. State: "
+               + runs.command(first.replace("kernel.", "same.")))
+    page.say(f"{'All builds and instruction sets come to the same bits' if len(states) == 1 else '**The states differ: this is a bug**'}. "
+             "`c` is plain C without vector instructions, and without the processor's fused "
+             "multiply-add, so each one is a call of the C library.")
+    page.write(path)
