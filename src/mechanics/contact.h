@@ -15,6 +15,8 @@
 #ifndef LAR_MECHANICS_CONTACT_H
 #define LAR_MECHANICS_CONTACT_H
 
+#include <stdbool.h>
+
 typedef struct lar_contact_law {
     double stiffness; /* k per mass moved [1/s^2] */
     double lead;      /* [s] */
@@ -26,9 +28,10 @@ typedef struct lar_contact_law {
  * the node's share of a spring's end). */
 lar_contact_law lar_contact_law_for(double time_step, double stable_step);
 
-/* The law of tools: three times as stiff and less damped, which asks for half as much again of the
- * step. What a tool's spring gives back is work of whoever moves the tool. */
-lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
+/* The law of tools: stiffer and less damped, for a hand feels how soft it is, and what a tool's
+ * spring gives back is work of whoever moves the tool. Where no bodies meet, their part of the step
+ * is the tools' as well. */
+lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step, bool bodies_meet);
 
 /* The force [N], at least 0, on a point that moves so much mass [kg]. */
 static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,

@@ -62,12 +62,14 @@ static void there_is_no_tension_and_nothing_outside(void **unused) {
 static void the_step_has_room_for_all_of_them(void **unused) {
     (void)unused;
     for (double s = 0.1; s <= 0.9; s += 0.05) {
-        lar_contact_law body = lar_contact_law_for(DT, DT / s),
-                        tool = lar_contact_tool_law_for(DT, DT / s);
-        double sum = body.stiffness * (1 + 2 * body.lead / DT) * 1.5; /* and half of it for holds */
-        sum += tool.stiffness * (1 + 2 * tool.lead / DT);
-        assert_below(4 * s * s + sum * DT * DT, 4 * (1 + 1e-12));
-        assert_true(tool.stiffness > body.stiffness);
+        for (int bodies_meet = 0; bodies_meet < 2; bodies_meet++) {
+            lar_contact_law body = lar_contact_law_for(DT, DT / s),
+                            tool = lar_contact_tool_law_for(DT, DT / s, bodies_meet);
+            double sum = body.stiffness * (1 + 2 * body.lead / DT); /* half of it for holds */
+            sum = (bodies_meet ? 1.5 : 0.5) * sum + tool.stiffness * (1 + 2 * tool.lead / DT);
+            assert_below(4 * s * s + sum * DT * DT, 4 * (1 + 1e-12));
+            assert_true(tool.stiffness > (bodies_meet ? 2.9 : 4.6) * body.stiffness);
+        }
     }
 }
 
