@@ -90,8 +90,6 @@ lar_status lar_touch_create(const lar_model *model, const int32_t *local,
                             const lar_condition_share *share, const lar_tool_list *list,
                             const lar_tools *tools, lar_touch *touch, lar_error *error) {
     *touch = (lar_touch){.list = list, .tools = tools};
-    for (int i = 0; i < model->contact_count; i++)
-        if (model->contact[i].kind != LAR_CONTACT_PLANE) touch->bodies_meet = true;
     lar_status status = lar_planes_create(model, local, share, &touch->planes, error);
     if (!status && list && list->count > 0)
         status = create_faces(model, local, share, touch, error);
@@ -435,8 +433,7 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
     clear_acting(touch);
     if (touch->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->time_step, context->stable_step);
-    lar_contact_law tool_law =
-        lar_contact_tool_law_for(context->time_step, context->stable_step, touch->bodies_meet);
+    lar_contact_law tool_law = lar_contact_tool_law_for(context->time_step, context->stable_step);
     double travel = step_travel(touch, context, state);
     bool known = isfinite(travel);
     if (!known) lar_touch_forget(touch);

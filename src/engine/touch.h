@@ -80,7 +80,6 @@ typedef struct lar_touch {
     lar_tool_sum sum[LAR_TOOLS_MOST];
     lar_contact_info seen; /* counters since the start; `touching`, `deepest` of the last step */
     bool always;           /* search in every step */
-    bool bodies_meet;      /* the model has contact of bodies, which needs its part of the step */
     lar_planes planes;
     int32_t face_count, group_count, foreign_count, acting_count;
     lar_touch_face *face;   /* [face_count] group after group */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Where the stiffest springs of three kinds still leave a step of 0.8 of the stable one stable:
+/* Where three kinds of springs of this law still leave a step of 0.8 of the stable one stable:
  * elements take 4 s^2 of the 4 that central differences allow, and a spring whose damper looks at
  * the last half step counts three times (docs/theory.md). Above 0.25 the largest immersion hardly
  * falls any more. Close to the stable limit there is no room at all, and the softest springs are
@@ -20,15 +20,14 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
 }
 
-/* Of the 4 (1 - s^2) that elements leave, contact of bodies takes a third, holds a sixth, and tools
- * the rest: beta (1 + 2 lead). The damper is such that a hand does not feel that the spring is
- * stiffer. Times share: 3 times as stiff as bodies, or 4.7 times. */
-lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step, bool bodies_meet) {
-    double rest = bodies_meet ? 2 : 10.0 / 3, lead = bodies_meet ? 0.25 : 0.3;
-    double times = 2.25 * rest / (1 + 2 * lead);
+/* Of the 4 (1 - s^2) that elements leave, holds take a sixth, and tools all the rest: beta
+ * (1 + 2 lead). So much of it is the damper's that a hand does not feel the spring tremble. */
+lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
+    static const double REST = 10.0 / 3, LEAD = 0.3, SOFTEST_TOOL = 0.12;
+    double times = 2.25 * REST / (1 + 2 * LEAD); /* as stiff as bodies */
     double share = fmin(body_share(time_step, stable_step), STIFFEST);
-    double beta = fmax(times * share, 3 * SOFTEST);
-    return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = lead * time_step};
+    double beta = fmax(times * share, SOFTEST_TOOL);
+    return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = LEAD * time_step};
 }
 
 double lar_contact_face_mass(const double mass[4], const double weight[4]) {

@@ -15,8 +15,6 @@
 #ifndef LAR_MECHANICS_CONTACT_H
 #define LAR_MECHANICS_CONTACT_H
 
-#include <stdbool.h>
-
 typedef struct lar_contact_law {
     double stiffness; /* k per mass moved [1/s^2] */
     double lead;      /* [s] */
@@ -28,10 +26,10 @@ typedef struct lar_contact_law {
  * the node's share of a spring's end). */
 lar_contact_law lar_contact_law_for(double time_step, double stable_step);
 
-/* The law of tools: stiffer and less damped, for a hand feels how soft it is, and what a tool's
- * spring gives back is work of whoever moves the tool. Where no bodies meet, their part of the step
- * is the tools' as well. */
-lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step, bool bodies_meet);
+/* The law of tools: 4.7 times as stiff and less damped, for a hand feels how soft it is, and what a
+ * tool's spring gives back is work of whoever moves the tool. It takes the part of the step that
+ * bodies need as well: where a tool is, no other body is. */
+lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
 
 /* The force [N], at least 0, on a point that moves so much mass [kg]. */
 static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,
