@@ -280,6 +280,8 @@ typedef struct lar_meshing_info {
     int32_t added, removed; /* cells, so that none hang together by an edge or a corner only */
     int32_t cuts;           /* flat cuts, where the image ends in an organ */
     const char *fix;        /* the rule that holds the body, as in the options */
+    int32_t pads;           /* small places that hold it besides, because its weight asks for them;
+                               not when the options say what holds it */
     int32_t fixed_nodes;
     lar_mesh_quality quality;
 } lar_meshing_info;

@@ -1,7 +1,8 @@
 /* A meshing between its making and its files.
  *
  *     meshing.c     reads, meshes, measures ------------------------.
- *     support.c     node sets: what holds it, where it is pulled    +--> starter.c: files, scene
+ *     support.c     node sets: what holds it, where it is pulled    +--> starter.c: scene
+ *     pads.c        what carries it besides                         |    write.c: files
  *     quality.c     how good it is ---------------------------------'
  */
 #ifndef LAR_MESHING_MESHING_H
@@ -16,7 +17,9 @@
 typedef struct lar_support {
     const char *rule;    /* "left", ..., "cut", "none" */
     bool held;           /* there is a node set "support" */
-    int32_t fixed_nodes; /* of it and of rigid regions */
+    int32_t pads;        /* in the node set "pads"; 0: there is none */
+    bool carried;        /* it was seen to that all this bears the body's weight */
+    int32_t fixed_nodes; /* of both and of rigid regions */
     const char *handle;  /* the side of the node set "handle"; NULL: there is none */
     bool opposed;        /* "handle_opposite" is pulled the other way: nothing holds the body */
     double pull[3];      /* [N] at "handle" */
@@ -41,7 +44,7 @@ struct lar_meshing {
 /* Whether the rule is one, or NULL. */
 lar_status lar_support_check(const char *rule, lar_error *error);
 
-/* Adds the node sets "support" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
+/* Adds the node sets "support", "pads" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
  * regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
 

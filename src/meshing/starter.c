@@ -45,18 +45,21 @@ static void put(FILE *file, const char *text, bool quoted) {
 
 /* ---- the scene ----------------------------------------------------------------------------- */
 
-/* A motion that is damped by c while it swings at w decays with c/2, as long as c is below 2 w. The
- * guess at w is up to twice the truth, so c = w; far below it where a body is held at many places,
- * so c is 1/s at least. Two digits. */
-static double damping(const lar_meshing *m) {
-    static const double WITHOUT = 10, LEAST = 1;
-    double rate = fmax(LEAST, m->support.slowest);
-    if (!(m->support.slowest > 0)) return WITHOUT;
-    double digit = pow(10, floor(log10(rate)) - 1);
-    return round(rate / digit) * digit;
+static double two_digits(double x) {
+    double digit = pow(10, floor(log10(x)) - 1);
+    return round(x / digit) * digit;
 }
 
-/* Time in which the slowest motion has become a hundredth, with some room for the guess. */
+/* A motion that is damped by c while it swings at w decays with c/2, as long as c is below 2 w. The
+ * estimate of w is above the slowest, by a tenth or two, so c = 1.6 w is a little below 2 w and
+ * everything decays with 0.8 w at least. */
+static double damping(const lar_meshing *m) {
+    static const double WITHOUT = 10, LEAST = 0.3, PART = 1.6;
+    if (!(m->support.slowest > 0)) return WITHOUT;
+    return two_digits(fmax(LEAST, PART * m->support.slowest));
+}
+
+/* Time in which the slowest motion has become a hundredth, with some room. */
 static double settling(const lar_meshing *m) {
     return 2 * log(300) / damping(m);
 }
@@ -134,16 +137,18 @@ static void put_motion(const lar_meshing *m, FILE *f) {
     fprintf(
         f,
         "# No gravity: the scanner saw the organ sag already, and what was seen is its shape at\n"
-        "# rest here. For its full weight on top of that, %s, take these two\n"
-        "# lines instead; elements that it squeezes need shorter steps than at rest:\n"
-        "#     gravity: [0, %s]\n"
+        "# rest here. %s, %s:\n"
+        "#     gravity: [0, -9.81, 0]\n"
+        "# A body that its support does not carry folds up under it; elements that are squeezed\n"
+        "# need shorter steps than at rest:\n"
         "#     time_step: %.1e\n"
         "gravity: [0, 0, 0]\n"
         "time_step: auto\n"
         "damping: %g             # 1/s; let go, it comes to rest in about %.2g s\n"
         "duration: %g              # s; a run lasts so long unless --time says otherwise\n\n",
-        m->image ? "the patient lying on the back" : "along -z", m->image ? "-9.81, 0" : "0, -9.81",
-        squeezed_step(m), damping(m), settling(m), duration(m));
+        m->support.carried ? "What holds it bears its weight besides" : "For its weight besides",
+        m->image ? "the patient lying on the back" : "lying on its back", squeezed_step(m),
+        damping(m), settling(m), duration(m));
 }
 
 static void put_material(const lar_region_info *region, FILE *f) {
@@ -183,8 +188,16 @@ static void put_fix(const lar_meshing *m, FILE *f) {
         fputs(
             "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
             f);
-    if (support->held) {
-        fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
+    if (support->pads > 0)
+        fputs(
+            "# Pads: small places of its underside, without which it could not bear its weight. "
+            "In\n"
+            "# the patient its neighbours carry it; let it go there for a body that hangs free.\n",
+            f);
+    if (support->held) fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
+    any = support->held;
+    if (support->pads > 0) {
+        fprintf(f, "%s  - { nodes: pads, axes: xyz }\n", any ? "" : "fix:\n");
         any = true;
     }
     for (int32_t r = 0; r < m->info.regions; r++) {

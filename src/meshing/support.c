@@ -18,14 +18,14 @@
 
 #include "base/union_find.h"
 #include "meshing/meshing.h"
-#include "meshing/motion.h"
+#include "meshing/pads.h"
 
 static const double TENTH = 0.1;
 /* What the pull would stretch a bar of the handle's cross-section by. */
 static const double STRETCH = 0.3;
-/* What the pull would move the handle by at most, as part of its way to what is held: thin bodies
- * that are pulled across bend long before they stretch. */
-static const double BEND = 0.4;
+/* What the pull would move the handle by at most, as part of the body's length: thin bodies that
+ * are pulled across bend long before they stretch. */
+static const double BEND = 0.2;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };
@@ -212,11 +212,11 @@ static lar_status mark_loose_pieces(choice *c, int side) {
     return ready ? LAR_OK : lar_fail_memory(c->error, 24 * nodes, "the mesh's pieces");
 }
 
-/* Returns the side that is held, -1: none, in *side. */
+/* Marks what the rule holds; the side that is held, -1: none, in *side. */
 static lar_status hold(choice *c, const char *rule, int *side) {
     lar_support *support = &c->meshing->support;
     bool cut = c->meshing->info.cuts > 0;
-    if (!rule) rule = cut ? "cut" : "back";
+    if (!rule) rule = cut ? "cut" : side_name[BACK];
     *side = side_of(rule);
     if (strcmp(rule, "cut") == 0) {
         *side = cut ? mark_cuts(c) : -1;
@@ -239,7 +239,6 @@ static lar_status hold(choice *c, const char *rule, int *side) {
     if (!status) status = add_set(c, "support", c->held, &count);
     support->held = count > 0;
     mark_rigid(c);
-    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) support->fixed_nodes += c->held[n];
     return status;
 }
 
@@ -271,11 +270,26 @@ static double cross_section(const choice *c, int side) {
     return volume / reach;
 }
 
-static lar_status add_handle(choice *c, const char *name, int side, bool *in, int32_t *count) {
+/* The free nodes of the surface at a side; their number. */
+static int32_t mark_handle(const choice *c, int side, bool *in) {
     const lar_mesh *mesh = &c->meshing->mesh;
-    for (int32_t n = 0; n < mesh->node_count; n++)
+    int32_t count = 0;
+    for (int32_t n = 0; n < mesh->node_count; n++) {
         in[n] = c->surface[n] && !c->held[n] && at_side(c, side, tenth(c, side), mesh->position[n]);
-    return add_set(c, name, in, count);
+        count += in[n];
+    }
+    return count;
+}
+
+/* The handle is opposite of what is held, or, when nothing is free there, at the next side that has
+ * free nodes. -1: there is none. */
+static int choose_handle(const choice *c, int held_side, bool *handle) {
+    static const int next[SIDES] = {FRONT, TOP, BOTTOM, LEFT, RIGHT, BACK};
+    int side = held_side >= 0 ? opposite(held_side) : FRONT;
+    if (mark_handle(c, side, handle) > 0) return side;
+    for (int i = 0; i < SIDES; i++)
+        if (next[i] != held_side && mark_handle(c, next[i], handle) > 0) return next[i];
+    return -1;
 }
 
 /* Two digits: it is an example. */
@@ -284,50 +298,73 @@ static double rounded(double force) {
     return round(force / digit) * digit;
 }
 
-/* The handle is opposite of what is held, or, when nothing is free there, at the next side that has
- * free nodes. */
-static lar_status pull(choice *c, int held_side, bool *handle, bool *in) {
-    static const int next[SIDES] = {FRONT, TOP, BOTTOM, LEFT, RIGHT, BACK};
+static void choose_pull(choice *c, int side, const lar_motion *motion) {
     lar_support *support = &c->meshing->support;
-    double shear = mean_shear(c->meshing);
-    int32_t count = 0, opposed = 0;
-    int side = held_side >= 0 ? opposite(held_side) : FRONT;
-    lar_status status = LAR_OK;
-    if (shear <= 0) return LAR_OK;
-    status = add_handle(c, "handle", side, handle, &count);
-    for (int i = 0; !status && count == 0 && i < SIDES; i++) {
-        if (next[i] == held_side) continue;
-        side = next[i];
-        status = add_handle(c, "handle", side, handle, &count);
-    }
-    if (!status && count > 0 && support->fixed_nodes == 0)
-        status = add_handle(c, "handle_opposite", opposite(side), in, &opposed);
-    support->opposed = opposed > 0;
-    lar_motion motion = {0};
-    if (!status && count > 0)
-        status = lar_motion_estimate(c->meshing, support->opposed ? in : c->held, handle, side / 2,
-                                     &motion, c->error);
-    support->slowest = motion.slowest;
-    double force = 3 * shear * STRETCH * cross_section(c, side);
-    if (motion.compliance > 0) force = fmin(force, BEND * motion.reach / motion.compliance);
-    if (status || count == 0 || !(force > 0)) return status;
-    if (support->fixed_nodes == 0 && !support->opposed) return LAR_OK;
+    double length = 0, force = 3 * mean_shear(c->meshing) * STRETCH * cross_section(c, side);
+    for (int i = 0; i < 3; i++) length = fmax(length, c->upper[i] - c->lower[i]);
+    if (motion->compliance > 0) force = fmin(force, BEND * length / motion->compliance);
+    if (!(force > 0)) return;
     support->handle = side_name[side];
     support->pull[side / 2] = (side % 2 ? 1 : -1) * rounded(force);
-    return LAR_OK;
+}
+
+/* ---- together ------------------------------------------------------------------------------ */
+
+/* Marks per node that only exist while choosing. */
+typedef struct marks {
+    bool *handle, *opposed, *pad;
+} marks;
+
+/* How it will move: with pads, where nobody said what holds it and its weight asks for them. */
+static lar_status find_motion(choice *c, bool pads, int side, const marks *in, lar_motion *motion) {
+    lar_support *support = &c->meshing->support;
+    int axis = side >= 0 ? side / 2 : 0;
+    lar_status status;
+    if (pads) {
+        status = lar_pads_choose(c->meshing, c->held, BACK / 2, -1, in->handle, axis, in->pad,
+                                 &support->pads, &support->carried, motion, c->error);
+        int32_t count = 0;
+        if (!status) status = add_set(c, "pads", in->pad, &count);
+        for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->pad[n];
+        return status;
+    }
+    const bool *held = support->opposed ? in->opposed : c->held;
+    return lar_motion_estimate(c->meshing, held, in->handle, axis, motion, NULL, c->error);
+}
+
+static lar_status choose(choice *c, const char *rule, const marks *in) {
+    const lar_mesh *mesh = &c->meshing->mesh;
+    lar_support *support = &c->meshing->support;
+    lar_motion motion = {0};
+    int held_side = -1, side = -1;
+    int32_t count = 0, held = 0;
+    lar_status status = hold(c, rule, &held_side);
+    for (int32_t n = 0; n < mesh->node_count; n++) held += c->held[n];
+    if (!status && mean_shear(c->meshing) > 0) side = choose_handle(c, held_side, in->handle);
+    if (!status && side >= 0 && held == 0)
+        support->opposed = mark_handle(c, opposite(side), in->opposed) > 0;
+    if (!status) status = find_motion(c, !rule, side, in, &motion);
+    for (int32_t n = 0; n < mesh->node_count; n++) support->fixed_nodes += c->held[n];
+    support->slowest = motion.slowest;
+    if (status || side < 0 || (held == 0 && !support->opposed)) return status;
+    choose_pull(c, side, &motion);
+    if (!support->handle) support->opposed = false;
+    if (support->handle) status = add_set(c, "handle", in->handle, &count);
+    if (!status && support->opposed) status = add_set(c, "handle_opposite", in->opposed, &count);
+    return status;
 }
 
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error) {
     size_t nodes = (size_t)meshing->mesh.node_count;
-    bool *mark = lar_calloc(4 * nodes, sizeof *mark);
-    if (!mark) return lar_fail_memory(error, 4 * nodes, "marks of nodes");
+    bool *mark = lar_calloc(5 * nodes, sizeof *mark);
+    if (!mark) return lar_fail_memory(error, 5 * nodes, "marks of nodes");
     choice c = {.meshing = meshing, .surface = mark, .held = mark + nodes, .error = error};
-    int side = -1;
+    const marks in = {mark + 2 * nodes, mark + 3 * nodes, mark + 4 * nodes};
     lar_status status = mark_surface(&c);
-    if (!status) status = hold(&c, rule, &side);
-    if (!status) status = pull(&c, side, mark + 2 * nodes, mark + 3 * nodes);
+    if (!status) status = choose(&c, rule, &in);
     free(mark);
     meshing->info.fix = meshing->support.rule;
+    meshing->info.pads = meshing->support.pads;
     meshing->info.fixed_nodes = meshing->support.fixed_nodes;
     return status;
 }

@@ -50,7 +50,7 @@ expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title 
 [ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
 says '^Two organs: [56][0-9][0-9] elements of about 0.00[23]'
 says 'left kidney (7): [0-9]* elements'
-says '^held  *at the back: [0-9]* nodes'
+says '^held  *at the back, and on [1-9] pads* that bears* its weight: [0-9]* nodes'
 says '^deviation  *mean 0.000'
 says 'all of the elements are above 0.2'
 says '^lariat view Two_organs/Two_organs.yaml$'
@@ -107,7 +107,7 @@ has_keys scene title fix regions.0.name regions.0.tissue regions.0.source --numb
     size regions.0.tag regions.0.elements regions.0.volume regions.0.true_volume \
     regions.0.shear_modulus regions.0.bulk_modulus regions.0.density cleaning.islands \
     cleaning.island_cells cleaning.pinholes cleaning.pinhole_cells cleaning.added \
-    cleaning.removed cuts fixed_nodes scaled_jacobian.min scaled_jacobian.mean \
+    cleaning.removed cuts pads fixed_nodes scaled_jacobian.min scaled_jacobian.mean \
     quality.deviation_max shortest_edge stable_step time_step speed.real_time_factor seconds
 [ "$(value_of fix)$(value_of cuts)$(value_of size)" = '"cut"10.0040000000000000001' ] ||
     [ "$(value_of fix)$(value_of cuts)" = '"cut"1' ] || fail "a cut: $(value_of fix) $(value_of cuts)"

@@ -140,6 +140,31 @@ static void a_thin_body_is_at_rest_at_the_end(void **state) {
     lar_model_destroy(model);
 }
 
+/* What holds it without being told bears its weight for two seconds from wherever it comes: a thin
+ * ring gets pads for it. */
+static void a_thin_body_bears_its_weight(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    double moved;
+    lar_model *model = model_of(RING, (lar_meshing_options){0}, &info);
+    assert_string_equal(info.fix, "back");
+    assert_in_range(info.pads, 1, 12);
+    const lar_set *pads = lar_mesh_find_set(&model->mesh, "pads", LAR_SET_NODES);
+    assert_non_null(pads);
+    assert_int_equal(set_size(model, "support") + pads->count, info.fixed_nodes);
+    assert_true(info.fixed_nodes < info.nodes / 4);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) model->gravity[k] = k == i ? -9.81 : 0;
+        check_run(model, 2, &moved);
+        assert_true(moved > 1e-5 && moved < 0.04);
+    }
+    lar_model_destroy(model);
+    model = model_of(RING, (lar_meshing_options){.fix = "back"}, &info);
+    assert_int_equal(info.pads, 0); /* somebody said what holds it */
+    assert_int_equal(set_size(model, "pads"), 0);
+    lar_model_destroy(model);
+}
+
 /* Longer than a file's name may be. */
 static void a_long_title_is_cut_for_the_files(void **state) {
     (void)state;
@@ -290,6 +315,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
                                        cmocka_unit_test(a_thin_body_is_at_rest_at_the_end),
+                                       cmocka_unit_test(a_thin_body_bears_its_weight),
                                        cmocka_unit_test(a_long_title_is_cut_for_the_files),
                                        cmocka_unit_test(what_nothing_holds_is_stretched),
                                        cmocka_unit_test(sides_are_where_they_are_said_to_be),

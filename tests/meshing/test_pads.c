@@ -1,0 +1,63 @@
+/* Pads carry what would sag, and nothing else gets one. */
+#include "bars.h"
+
+#include "meshing/pads.h"
+
+static lar_error error;
+static bool held[BAR_NODES], handle[BAR_NODES], pad[BAR_NODES], all[BAR_NODES];
+static double sag[BAR_NODES];
+
+/* Held at the left end, the right one is the handle; pads under it, at the lower end of y. */
+static lar_motion with_pads(const lar_meshing *m, int32_t *pads) {
+    lar_motion motion;
+    bool carried;
+    memset(pad, 0, sizeof pad);
+    bar_mark(m, 0, held);
+    bar_mark(m, BAR_LENGTH, handle);
+    if (lar_pads_choose(m, held, 1, -1, handle, 0, pad, pads, &carried, &motion, &error))
+        fail_msg("%s", error.message);
+    assert_true(carried);
+    return motion;
+}
+
+static void a_soft_bar_is_carried(void **state) {
+    (void)state;
+    lar_meshing m = bar(BAR_SIDE);
+    lar_motion motion, again;
+    int32_t pads = 0, nodes = 0;
+    bar_mark(&m, 0, held);
+    assert_int_equal(lar_motion_estimate(&m, held, handle, 0, &motion, sag, &error), LAR_OK);
+    assert_true(sag[BAR_NODES - 1] > 0.25 * BAR_LENGTH);
+    double slowest = motion.slowest;
+    motion = with_pads(&m, &pads);
+    assert_in_range(pads, 1, 8);
+    assert_true(motion.slowest > 2 * slowest);
+    for (int n = 0; n < BAR_NODES; n++) {
+        if (pad[n]) assert_true(m.mesh.position[n][1] == 0 && !held[n] && !handle[n]);
+        nodes += pad[n];
+        all[n] = held[n] || pad[n];
+    }
+    assert_in_range(nodes, 4, BAR_NODES / 10);
+    assert_int_equal(lar_motion_estimate(&m, all, handle, 0, &again, sag, &error), LAR_OK);
+    assert_true(again.slowest == motion.slowest && again.compliance == motion.compliance);
+    for (int n = 0; n < BAR_NODES; n++) assert_true(sag[n] <= 0.25 * BAR_LENGTH);
+}
+
+static void a_stiff_bar_needs_none(void **state) {
+    (void)state;
+    lar_meshing m = bar(BAR_SIDE);
+    int32_t pads = 1;
+    m.region[0].shear_modulus *= 1000;
+    m.region[0].bulk_modulus *= 1000;
+    with_pads(&m, &pads);
+    assert_int_equal(pads, 0);
+    for (int n = 0; n < BAR_NODES; n++) assert_false(pad[n]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_soft_bar_is_carried),
+        cmocka_unit_test(a_stiff_bar_needs_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
