@@ -1,8 +1,9 @@
 /* A meshing between its making and its files.
  *
  *     meshing.c     reads, meshes, measures ------------------------.
- *     support.c     node sets: what holds it, where it is pulled    +--> starter.c: scene
- *     pads.c        what carries it besides                         |    write.c: files
+ *     support.c     node sets: what holds it, where it is pulled    +--> starter.c  the scene
+ *     pads.c        what carries it besides                         |    write.c    all files
+ *     motion.c      how slowly it moves                             |
  *     quality.c     how good it is ---------------------------------'
  */
 #ifndef LAR_MESHING_MESHING_H
@@ -47,6 +48,9 @@ lar_status lar_support_check(const char *rule, lar_error *error);
 /* Adds the node sets "support", "pads" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
  * regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
+
+/* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */
+lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error);
 
 /* Jacobians, edges, volume of a mesh and, with a surface (may be NULL), how far apart they are.
  * true_volume is left alone. */

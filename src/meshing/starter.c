@@ -1,16 +1,14 @@
-/* A meshing on disk: mesh, fine surface, and a scene that runs and says why it is as it is. */
+/* The scene of a meshing: it runs as it is, and says why it is so. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
 #include "base/text.h"
 #include "base/vector.h"
 #include "meshing/fit_quality.h"
 #include "meshing/meshing.h"
-#include "model/format/mesh_io.h"
 #include "model/format/vtk_xml_write.h"
 
 /* ---- words -------------------------------------------------------------------------------- */
@@ -253,50 +251,11 @@ static void put_scene(const lar_meshing *m, FILE *f) {
     put_end(m, f);
 }
 
-static lar_status write_scene(const lar_meshing *m, const char *path, lar_error *error) {
+lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error) {
     lar_part_file out;
     lar_status status = lar_part_open(&out, path, error);
     locale_t before = uselocale(lar_text_locale());
-    if (!status) put_scene(m, out.file);
+    if (!status) put_scene(meshing, out.file);
     uselocale(before);
     return lar_part_close(&out, status);
-}
-
-/* ---- files --------------------------------------------------------------------------------- */
-
-static char *file_beside(const lar_meshing *m, const char *folder, const char *ending) {
-    size_t size = strlen(m->stem) + strlen(ending) + 1;
-    char *name = lar_calloc(size, 1), *path = NULL;
-    if (name) {
-        snprintf(name, size, "%s%s", m->stem, ending);
-        path = lar_folder_join(folder, name);
-    }
-    free(name);
-    return path;
-}
-
-lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
-                             lar_error *error) {
-    if (!meshing || !folder || !*folder)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_meshing_write needs a meshing and the name of a folder, for example "
-                        "liver");
-    char *mesh = file_beside(meshing, folder, ".vtu");
-    char *surface = file_beside(meshing, folder, "_surface.vtp");
-    char *yaml = file_beside(meshing, folder, ".yaml");
-    lar_status status = mesh && surface && yaml ? lar_folder_make(folder, error)
-                                                : lar_fail_memory(error, strlen(folder), "a path");
-    if (!status) status = lar_vtu_write(mesh, &(lar_vtu_frame){.mesh = &meshing->mesh}, error);
-    if (!status) status = lar_vtp_write(surface, &meshing->outer, error);
-    if (!status) status = write_scene(meshing, yaml, error);
-    free(mesh);
-    free(surface);
-    if (status) {
-        free(yaml);
-        return status;
-    }
-    free(meshing->scene);
-    meshing->scene = yaml;
-    if (scene) *scene = yaml;
-    return LAR_OK;
 }

@@ -97,6 +97,19 @@ tail -n 1 Two_organs/Two_organs.yaml | grep -q mine || fail "the user's scene wa
 expect 0 "$LARIAT" mesh two.nrrd --label liver --elements 100 --title "Two organs" --force
 grep -q mine Two_organs/Two_organs.yaml && fail "--force replaced nothing"
 
+# A disk that is full for one of the files: what was there stays, and nothing half is left.
+if [ -c /dev/full ]; then
+    for file in liver.vtu liver_surface.vtp liver.yaml; do
+        rm -rf full
+        mkdir full
+        echo old >full/liver.vtu
+        ln -s /dev/full full/$file.new.part
+        expect 1 "$LARIAT" mesh two.nrrd --label liver --elements 100 --force --out full
+        complains 'No space left'
+        [ "$(ls full)$(cat full/liver.vtu)" = liver.vtuold ] || fail "full for $file: $(ls full)"
+    done
+fi
+
 # The same input, the same bytes; figures as JSON.
 for out in first second; do
     expect 0 "$LARIAT" mesh cut.nrrd --label liver --size 0.004 --out $out --json
