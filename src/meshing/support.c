@@ -44,19 +44,18 @@ static int side_of(const char *name) {
 /* What is known while choosing: marks per node. */
 typedef struct choice {
     lar_meshing *meshing;
-    bool *surface, *held; /* [nodes] */
+    bool *surface, *held;        /* [nodes] */
+    int32_t *outer, outer_count; /* faces of the surface, ascending */
     double lower[3], upper[3];
     lar_error *error;
 } choice;
 
 static lar_status mark_surface(choice *c) {
     const lar_mesh *mesh = &c->meshing->mesh;
-    int32_t *face = NULL, count = 0;
-    lar_status status = lar_mesh_boundary(mesh, &face, &count, c->error);
-    for (int32_t i = 0; !status && i < count; i++)
+    lar_status status = lar_mesh_boundary(mesh, &c->outer, &c->outer_count, c->error);
+    for (int32_t i = 0; !status && i < c->outer_count; i++)
         for (int k = 0; k < 4; k++)
-            c->surface[mesh->element[face[i] / 6][lar_face_node[face[i] % 6][k]]] = true;
-    free(face);
+            c->surface[mesh->element[c->outer[i] / 6][lar_face_node[c->outer[i] % 6][k]]] = true;
     for (int i = 0; i < 3; i++) {
         c->lower[i] = DBL_MAX;
         c->upper[i] = -DBL_MAX;
@@ -100,14 +99,22 @@ lar_status lar_support_check(const char *rule, lar_error *error) {
                     rule);
 }
 
+static int compare_faces(const void *a, const void *b) {
+    const int32_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
 /* Whether the set is that of a cut with this name: where two cuts of an oblique image have the same
- * one a number follows it. */
-static bool is_cut(const lar_set *set, const char *name) {
+ * one a number follows it. So it does where regions are called "cut" and "left" and touch, but then
+ * the faces are inside the body. */
+static bool is_cut(const choice *c, const lar_set *set, const char *name) {
     size_t length = strlen(name);
     if (set->kind != LAR_SET_FACES || strncmp(set->name, "cut_", 4) != 0) return false;
     if (strncmp(set->name + 4, name, length) != 0) return false;
     const char *rest = set->name + 4 + length;
-    return !*rest || (rest[0] == '_' && rest[1] && !rest[1 + strspn(rest + 1, "0123456789")]);
+    if (*rest && !(rest[0] == '_' && rest[1] && !rest[1 + strspn(rest + 1, "0123456789")]))
+        return false;
+    return bsearch(set->index, c->outer, (size_t)c->outer_count, sizeof *c->outer, compare_faces);
 }
 
 static void mark_faces(choice *c, const lar_set *faces) {
@@ -129,7 +136,7 @@ static int mark_cuts(choice *c) {
         const char *name = boundary->cut[i].name;
         for (int32_t s = 0; *name && s < mesh->set_count; s++) {
             const lar_set *faces = &mesh->set[s];
-            if (!is_cut(faces, name)) continue;
+            if (!is_cut(c, faces, name)) continue;
             mark_faces(c, faces);
             if (faces->count > most) {
                 most = faces->count;
@@ -362,6 +369,7 @@ lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error 
     const marks in = {mark + 2 * nodes, mark + 3 * nodes, mark + 4 * nodes};
     lar_status status = mark_surface(&c);
     if (!status) status = choose(&c, rule, &in);
+    free(c.outer);
     free(mark);
     meshing->info.fix = meshing->support.rule;
     meshing->info.pads = meshing->support.pads;

@@ -13,6 +13,7 @@
 #define TORUS  LAR_TEST_BUILD "/starter_torus.vtp"
 #define RING   LAR_TEST_BUILD "/starter_ring.vtp"
 #define PAIR   LAR_TEST_BUILD "/starter_pair.nrrd"
+#define CUT    LAR_TEST_BUILD "/starter_cut.nrrd"
 #define FOLDER LAR_TEST_BUILD "/starter/deep"
 
 static lar_error error;
@@ -21,6 +22,12 @@ static lar_error error;
 static int pair_label(const double x[3]) {
     double from_centre = fabs(x[0]) - 0.015;
     return from_centre * from_centre + x[1] * x[1] + x[2] * x[2] < 0.012 * 0.012;
+}
+
+/* A block that leaves the image at its low x, in two halves along x. */
+static int cut_label(const double x[3]) {
+    if (fabs(x[1]) > 0.01 || fabs(x[2]) > 0.01 || x[0] > 0.012) return 0;
+    return x[0] < -0.002 ? 1 : 2;
 }
 
 static int write_files(void **state) {
@@ -35,6 +42,11 @@ static int write_files(void **state) {
     shape_image_of(&image, pair_label, (const int32_t[]){32, 16, 16},
                    (const double[]){2e-3, 2e-3, 2e-3}, SHAPE_STRAIGHT);
     image_file(&image, PAIR, NULL, 0);
+    lar_image_clear(&image);
+    static const char *const misleading[] = {"cut", "left"};
+    shape_image_of(&image, cut_label, (const int32_t[]){16, 16, 16},
+                   (const double[]){2e-3, 2e-3, 2e-3}, SHAPE_STRAIGHT);
+    image_file(&image, CUT, misleading, 2);
     lar_image_clear(&image);
     const double centre[3] = {0, 0, 0};
     shape_torus_surface(&torus, 0.022, 0.008, centre, 16);
@@ -249,6 +261,20 @@ static void a_loose_piece_is_held_at_its_own_end(void **state) {
     lar_model_destroy(model);
 }
 
+/* Where regions "cut" and "left" touch their set of faces is called as the second cut at the left
+ * would be. */
+static void an_interface_is_no_cut(void **state) {
+    (void)state;
+    lar_meshing_info info;
+    lar_model *model = model_of(CUT, (lar_meshing_options){.fix = "cut"}, &info);
+    assert_non_null(lar_mesh_find_set(&model->mesh, "cut_left_2", LAR_SET_FACES));
+    const lar_set *support = lar_mesh_find_set(&model->mesh, "support", LAR_SET_NODES);
+    assert_non_null(support);
+    for (int32_t i = 0; i < support->count; i++)
+        assert_true(model->mesh.position[support->index[i]][0] < -0.012);
+    lar_model_destroy(model);
+}
+
 static void quality_of_a_model_is_that_of_its_meshing(void **state) {
     (void)state;
     lar_meshing_info info;
@@ -320,6 +346,7 @@ int main(void) {
                                        cmocka_unit_test(what_nothing_holds_is_stretched),
                                        cmocka_unit_test(sides_are_where_they_are_said_to_be),
                                        cmocka_unit_test(a_loose_piece_is_held_at_its_own_end),
+                                       cmocka_unit_test(an_interface_is_no_cut),
                                        cmocka_unit_test(quality_of_a_model_is_that_of_its_meshing),
                                        cmocka_unit_test(numbers_have_a_point_everywhere),
                                        cmocka_unit_test(a_folder_that_cannot_be_is_told)};
