@@ -68,7 +68,8 @@ double lar_triangles_area(const lar_triangles *triangles);
  * Triangles that are turned against their neighbours are turned back. Then each shell that lies in
  * no other one is turned, with all within it, when its volume is negative; the shells within keep
  * their direction against it (a hollow stays a hollow). *turned counts the triangles that are
- * turned in the end (may be NULL). */
+ * turned in the end (may be NULL). Inside is where the surface goes around at least once: a shell
+ * in another one that looks the same way bounds nothing, and its triangles are left out. */
 lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_error *error);
 
 /* Triangles that go through each other. The depth of a pair is how far one of the two must be moved

@@ -3,6 +3,7 @@
  *     triangles --edges of two--> patches, each turned one way by flooding
  *     patches that are not closed alone --edges of more--> shells, each closed
  *     shells --who lies in whom--> the outermost ones to the outside, the others along with them
+ *     shells with the body on both sides are left out
  *
  * Where just two triangles meet at an edge they must use it in opposite directions, so one tells
  * the other how to be turned; the smaller part of a patch is turned to the larger part's side.
@@ -44,6 +45,7 @@ typedef struct closing {
     double *volume;  /* [patches] of the shell, at its root */
     shell_box *box;  /* [patches] the same */
     int32_t *around; /* [patches] at a shell's root: the outermost shell around it, or itself */
+    int64_t *within; /* [patches] the same: how often the others go around it, as they are given */
 } closing;
 
 /* ---- edges -------------------------------------------------------------------------------- */
@@ -243,8 +245,8 @@ static bool cross(void *context, int32_t triangle) {
     return true;
 }
 
-/* The largest shell around a triangle: the outermost one, as shells do not cross. Bodies that only
- * touch do not lie in each other's boxes. */
+/* The largest shell around a triangle: the outermost one, as shells do not cross; and how often it
+ * is gone around. Bodies that only touch do not lie in each other's boxes. */
 static int32_t outermost(ray *r, const lar_triangle_tree *tree, int32_t triangle) {
     closing *c = r->closing;
     r->own = c->patch[triangle];
@@ -263,6 +265,7 @@ static int32_t outermost(ray *r, const lar_triangle_tree *tree, int32_t triangle
         for (int i = 0; i < 3; i++)
             inside = inside && c->box[shell].lower[i] < c->box[r->own].lower[i] &&
                      c->box[shell].upper[i] > c->box[r->own].upper[i];
+        if (inside) c->within[r->own] += c->sum[shell];
         if (inside && fabs(c->volume[shell]) > fabs(c->volume[around])) around = shell;
         c->sum[shell] = 0;
         r->seen[shell] = false;
@@ -316,8 +319,9 @@ static lar_status allocate_patches(closing *c) {
     c->volume = lar_calloc(n, sizeof *c->volume);
     c->box = lar_calloc(n, sizeof *c->box);
     c->around = lar_calloc(n, sizeof *c->around);
-    if (c->root && c->sum && c->volume && c->box && c->around) return LAR_OK;
-    return lar_fail_memory(c->error, n * 72, "the shells of a surface");
+    c->within = lar_calloc(n, sizeof *c->within);
+    if (c->root && c->sum && c->volume && c->box && c->around && c->within) return LAR_OK;
+    return lar_fail_memory(c->error, n * 80, "the shells of a surface");
 }
 
 static int32_t turn_triangles(closing *c) {
@@ -332,6 +336,28 @@ static int32_t turn_triangles(closing *c) {
         }
     }
     return turned;
+}
+
+/* Whether a shell parts inside from outside, once all are turned: inside is where the surface goes
+ * around at least once. One in another that looks the same way has the body on both of its sides.
+ */
+static bool is_boundary(const closing *c, int32_t shell) {
+    int sign = c->volume[c->around[shell]] >= 0 ? 1 : -1;
+    int64_t before = sign * c->within[shell];
+    int64_t behind = before + (sign * c->volume[shell] >= 0 ? 1 : -1);
+    return c->around[shell] == shell || (before > 0) != (behind > 0);
+}
+
+static void leave_out(closing *c) {
+    lar_triangles *all = c->triangles;
+    int32_t kept = 0;
+    for (int32_t t = 0; t < all->triangle_count; t++) {
+        if (!is_boundary(c, c->patch[t])) continue;
+        for (int a = 0; a < 3; a++) all->corner[kept][a] = all->corner[t][a];
+        if (all->tag) all->tag[kept] = all->tag[t];
+        kept++;
+    }
+    all->triangle_count = kept;
 }
 
 lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_error *error) {
@@ -354,6 +380,7 @@ lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_er
     if (!status) {
         int32_t count = turn_triangles(&c);
         if (turned) *turned = count;
+        leave_out(&c);
     }
     free(c.use);
     free(c.beside);
@@ -366,5 +393,6 @@ lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_er
     free(c.volume);
     free(c.box);
     free(c.around);
+    free(c.within);
     return status;
 }

@@ -104,15 +104,17 @@ static void test_shells(void **state) {
     (void)state;
     const double pi4 = 4 * SHAPE_PI / 3;
     /* What is given: outward (+) or inward (-) for: a ball of 1, a ball of 0.5 within it, one of
-     * 0.25 within that, and a ball of 1 beside. What comes out: signs again. */
+     * 0.25 within that, and a ball of 1 beside. What comes out: signs again, 0: left out. */
     static const struct {
         int given[4], wanted[4];
     } rows[] = {
         {{1, -1, 1, 1}, {1, -1, 1, 1}},   /* as it should be: a hollow with a stone in it */
         {{-1, 1, -1, 1}, {1, -1, 1, 1}},  /* the first body inside out */
         {{-1, 1, -1, -1}, {1, -1, 1, 1}}, /* all */
-        {{1, 1, 1, -1}, {1, 1, 1, 1}},    /* nested without hollows: stays so */
-        {{-1, -1, -1, 1}, {1, 1, 1, 1}},  /* the same inside out */
+        {{1, 1, 1, -1}, {1, 0, 0, 1}},    /* nested without hollows: the inner ones bound nothing */
+        {{-1, -1, -1, 1}, {1, 0, 0, 1}},  /* the same inside out */
+        {{1, 1, -1, 1}, {1, 0, 0, 1}},    /* a hollow in what is there twice */
+        {{1, -1, -1, 1}, {1, -1, 0, 1}},  /* a hollow in a hollow */
     };
     static const double radius[4] = {1, 0.5, 0.25, 1}, place[4] = {0, 0, 0, 3};
     enum { ROWS = sizeof rows / sizeof *rows };
@@ -127,10 +129,14 @@ static void test_shells(void **state) {
             if (torn && k == 1) turn(&one, 0);
             all = k == 0 ? one : shape_both(&all, &one);
         }
-        int32_t each = all.triangle_count / 4, wanted = 0;
-        for (int k = 0; k < 4; k++) wanted += rows[r].given[k] != rows[r].wanted[k] ? each : 0;
+        int32_t each = all.triangle_count / 4, wanted = 0, left = 0;
+        for (int k = 0; k < 4; k++) {
+            wanted += rows[r].given[k < 3 ? 0 : 3] < 0 ? each : 0; /* with the outermost */
+            left += rows[r].wanted[k] != 0 ? each : 0;
+        }
         int32_t turned = closed(&all);
         if (!torn) assert_int_equal(turned, wanted);
+        assert_int_equal(all.triangle_count, left);
         double volume = 0;
         for (int k = 0; k < 4; k++) volume += rows[r].wanted[k] * pi4 * pow(radius[k], 3);
         assert_below(fabs(lar_triangles_volume(&all) / volume - 1), 0.05);
