@@ -124,11 +124,14 @@ static void put_head(const lar_meshing *m, FILE *f) {
           f);
     fputs("lariat: 1\ntitle: ", f);
     put(f, m->title, true);
-    fprintf(
-        f,
-        "\nmesh: \"%s.vtu\"\n"
-        "surface: \"%s_surface.vtp\"   # the true surface rides on the mesh, to be looked at\n\n",
-        m->stem, m->stem);
+    fprintf(f,
+            "\nmesh: \"%s.vtu\"\n"
+            "surface: \"%s_surface.vtp\"   # the true surface rides on the mesh, to be looked at\n",
+            m->stem, m->stem);
+    fputs(m->image
+              ? "view: [0.15, 1, 0.35]   # looked at from the patient's front, the head is up\n\n"
+              : "\n",
+          f);
 }
 
 static void put_motion(const lar_meshing *m, FILE *f) {

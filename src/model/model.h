@@ -122,6 +122,7 @@ struct lar_model {
     int gravity_curve[3];
     double damping;   /* 1/s, mass-proportional */
     double time_step; /* seconds, 0: automatic */
+    double view[3];   /* where viewers look from at first, a unit vector; 0 0 0: they choose */
     double duration;  /* seconds that the description lasts, 0: open */
 
     int fix_count, move_count, load_count, pressure_count, initial_count;

@@ -109,6 +109,8 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     if (status) return status;
     lar_json_vector(json, "lower", info.lower, 3);
     lar_json_vector(json, "upper", info.upper, 3);
+    const double *view = server->model->view;
+    if (view[0] != 0 || view[1] != 0 || view[2] != 0) lar_json_vector(json, "view", view, 3);
     lar_json_number(json, "time_step", session->time_step);
     lar_json_number(json, "tick", (double)session->tick_steps * session->time_step);
     lar_json_text(json, "isa", lar_simulation_isa(simulation));

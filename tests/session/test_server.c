@@ -19,6 +19,7 @@ static void says_hello_and_shows_the_surface(void **unused) {
     assert_non_null(strstr(hello, "\"hands\":[2,3]"));
     assert_non_null(strstr(hello, "\"name\":\"grasper\",\"shape\":\"grasper\""));
     assert_non_null(strstr(hello, "\"saves\":false"));
+    assert_null(strstr(hello, "\"view\""));
     assert_true(number_of(hello, "tick") == 0.001);
 
     await_binary(&c, 1);

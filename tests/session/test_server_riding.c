@@ -16,6 +16,7 @@ static void let_ball_ride(lar_model *model, int n) {
 
 static served serve_ball(int n, const char *grid) {
     served s = {.b = {.model = served_model()}};
+    s.b.model->view[1] = 1;
     let_ball_ride(s.b.model, n);
     s.b.simulation = served_simulation(s.b.model, grid);
     DONE(lar_session_open(s.b.simulation, NULL, &s.b.session, &failure));
@@ -89,6 +90,7 @@ static void riding_surface_is_told(void **unused) {
     served s = serve_ball(12, "2x1x1");
     client c = open_client(s.port);
     const char *hello = await_text(&c, "hello");
+    assert_non_null(strstr(hello, "\"view\":[0,1,0]"));
     lar_embedded_info info;
     assert_int_equal(lar_model_embedded(s.b.model, &info), 1);
     const char *riding = strstr(hello, "\"riding\":{");

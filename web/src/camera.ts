@@ -8,24 +8,30 @@ const STEEPEST = 1.5; // rad above or below the horizon
 export class Endoscope {
     readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 10);
     private readonly still = matchMedia('(prefers-reduced-motion: reduce)');
-    private readonly home = { target: new THREE.Vector3(), size: 1 };
+    private readonly home = { target: new THREE.Vector3(), size: 1, azimuth: 0, height: 0 };
     private readonly wanted = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
     private readonly now = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
     private readonly ray = new THREE.Raycaster();
     private readonly screen = new THREE.Vector2();
 
-    /* Everything in sight, from the front and a little above. */
-    frame(center: readonly [number, number, number], size: number): void {
+    /* Everything in sight, from where the scene says, or from the front and a little above. */
+    frame(
+        center: readonly [number, number, number],
+        size: number,
+        [x, y, z]: readonly [number, number, number] = [-0.14, -0.925, 0.352],
+    ): void {
         // There is more to do above than below: one pulls upwards.
         this.home.target.set(center[0], center[1], center[2] + 0.05 * size);
         this.home.size = size;
+        this.home.azimuth = x === 0 && y === 0 ? 0 : Math.atan2(x, -y);
+        this.home.height = clamped(Math.atan2(z, Math.hypot(x, y)));
         this.reset(true);
     }
 
     reset(atOnce = false): void {
         this.wanted.target.copy(this.home.target);
-        this.wanted.azimuth = nearestTurn(-0.15, this.now.azimuth);
-        this.wanted.height = 0.36;
+        this.wanted.azimuth = nearestTurn(this.home.azimuth, this.now.azimuth);
+        this.wanted.height = this.home.height;
         this.wanted.distance = this.fitting();
         if (atOnce) this.jump();
     }
@@ -36,7 +42,7 @@ export class Endoscope {
 
     turn(dx: number, dy: number): void {
         this.wanted.azimuth -= dx;
-        this.wanted.height = Math.min(STEEPEST, Math.max(-STEEPEST, this.wanted.height + dy));
+        this.wanted.height = clamped(this.wanted.height + dy);
     }
 
     zoom(factor: number): void {
@@ -114,6 +120,10 @@ export class Endoscope {
         this.now.azimuth = this.wanted.azimuth;
         this.now.height = this.wanted.height;
     }
+}
+
+function clamped(height: number): number {
+    return Math.min(STEEPEST, Math.max(-STEEPEST, height));
 }
 
 /* The same angle, plus whole turns, next to another: the camera goes home the short way. */

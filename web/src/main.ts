@@ -50,7 +50,7 @@ function start(): void {
             trouble.hide();
         },
         surface(surface) {
-            view.setSurface(surface);
+            view.setSurface(surface, session.hello!.view);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
             hints.start();

@@ -30,6 +30,7 @@ export interface Hello {
     nodes: number;
     elements: number;
     riding?: { vertices: number; triangles: number; nodes: number };
+    view?: [number, number, number];
     time_step: number;
     tick: number;
     isa: string;

@@ -69,8 +69,8 @@ export class View {
         return (this.fineShown && this.fineOrgan) || this.organ;
     }
 
-    /* A new organ. */
-    setSurface(message: SurfaceMessage): void {
+    /* A new organ, seen at first from where the scene says. */
+    setSurface(message: SurfaceMessage, from?: [number, number, number]): void {
         this.dispose();
         const surface = new Surface(message.rest, message.faces, this.fine ? 24000 : 6000);
         const tints = {
@@ -84,7 +84,7 @@ export class View {
         this.edges = new Edges(surface.lines, this.organ.mesh.geometry);
         this.scene.add(this.organ.mesh, this.edges.lines);
         this.pull.setSize(surface.size);
-        this.endoscope.frame(surface.center, surface.size);
+        this.endoscope.frame(surface.center, surface.size, from);
         this.arrange();
     }
 

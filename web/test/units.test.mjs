@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel'];
+    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'camera'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -264,4 +264,25 @@ test('the badge says real time only where it is', () => {
     assert.deepEqual(at(0.1, 0.1), { text: '0.1 × real time, as asked for', slow: false });
     assert.deepEqual(at(0.1, 0.05), { text: '0.05 × real time', slow: true });
     assert.equal(at(0, 0.3).slow, false);
+});
+
+test('the first look is from where the scene says, or from low y', () => {
+    globalThis.matchMedia = () => ({ matches: false });
+    const endoscope = new parts.camera.Endoscope();
+    const look = (...view) => {
+        endoscope.frame([1, 2, 3], 1, ...view);
+        endoscope.update(0);
+        const { x, y, z } = endoscope.camera.position;
+        return [x - 1, y - 2, z - 3.05].map((v) => v / endoscope.distance);
+    };
+    const near = (got, wanted) => got.forEach((v, i) => assert.ok(Math.abs(v - wanted[i]) < 2e-3, `${got}`));
+    near(look(), [-0.14, -0.925, 0.352]);
+    near(look([0, 0.8, 0.6]), [0, 0.8, 0.6]);
+    near(look([-0.6, 0, -0.8]), [-0.6, 0, -0.8]);
+    near(look([0, 0, 1]), [0, -Math.cos(1.5), Math.sin(1.5)]);
+    endoscope.turn(1, 0.3);
+    endoscope.reset(true);
+    endoscope.update(0);
+    assert.ok(Math.abs(endoscope.camera.position.x - 1) < 1e-6);
+    delete globalThis.matchMedia;
 });

@@ -7,7 +7,7 @@ static lar_status check_root(const lar_scene *scene) {
     static const char *const keys[] = {"lariat",    "title",    "mesh",      "scale",   "gravity",
                                        "time_step", "damping",  "materials", "sets",    "fix",
                                        "move",      "load",     "initial",   "contact", "tools",
-                                       "output",    "duration", "surface",   NULL};
+                                       "output",    "duration", "surface",   "view",    NULL};
     const lar_yaml *version = NULL;
     int64_t number;
     if (scene->root->kind != LAR_YAML_MAPPING)
@@ -64,6 +64,8 @@ static lar_status read_plain_values(lar_scene *scene, double *scale) {
                                         &model->damping);
     if (!status && (value = lar_yaml_get(root, "duration")))
         status = lar_scene_positive(scene, value, LAR_IN_SECONDS, &model->duration);
+    if (!status && (value = lar_yaml_get(root, "view")))
+        status = lar_scene_direction(scene, value, model->view);
     return status;
 }
 
