@@ -255,7 +255,7 @@ typedef struct lar_meshing_options {
     const char *title;        /* NULL: the only region's name, or the first file's */
     const char *fix;          /* where the starter scene holds it: "left", "right", "back", "front",
                                  "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
-                                 it, else "back" */
+                                 it, else "back", and pads that bear its weight */
     lar_meshing_watch *watch; /* may be NULL */
     void *context;
 } lar_meshing_options;

@@ -232,7 +232,8 @@ static int mesh_main(int argc, char **argv) {
         CLI_CHOICE(
             "--fix", "SIDE",
             "where the scene holds it: left, right, back, front,\nbottom, top, cut (where the "
-            "image cuts it off), none;\nwithout: cut where there is one, else back",
+            "image cuts it off), none;\nwithout: cut where there is one, else back, and on\npads "
+            "where its weight asks for them",
             &s.fix, fix_names),
         CLI_TEXT("--title", "TEXT", "title, and the name of the files", &s.title),
         CLI_TEXT("--out", "DIR", "folder for the files; without: called as the title", &s.out),
