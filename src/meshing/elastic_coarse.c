@@ -246,17 +246,21 @@ void lar_coarse_clear(lar_coarse *coarse) {
 
 static void solve(lar_coarse *coarse) {
     int32_t rows = LAR_RIGID * coarse->group_count;
+    double(*load)[LAR_LOADS] = coarse->load;
     for (int32_t r = 0; r < rows; r++) {
-        double *x = coarse->load[r];
-        for (int32_t c = coarse->first[r]; c < r; c++)
-            LAR_EACH_LOAD x[l] -= *entry(coarse, r, c) * coarse->load[c][l];
-        LAR_EACH_LOAD x[l] *= *entry(coarse, r, r);
+        const int32_t first = coarse->first[r];
+        const double *row = entry(coarse, r, first);
+        double x[LAR_LOADS]; /* apart from `load`, so that it stays in registers */
+        memcpy(x, load[r], sizeof x);
+        for (int32_t c = first; c < r; c++) LAR_EACH_LOAD x[l] -= row[c - first] * load[c][l];
+        LAR_EACH_LOAD load[r][l] = row[r - first] * x[l];
     }
     for (int32_t r = rows - 1; r >= 0; r--) {
-        double *x = coarse->load[r];
-        LAR_EACH_LOAD x[l] *= *entry(coarse, r, r);
-        for (int32_t c = coarse->first[r]; c < r; c++)
-            LAR_EACH_LOAD coarse->load[c][l] -= *entry(coarse, r, c) * x[l];
+        const int32_t first = coarse->first[r];
+        const double *row = entry(coarse, r, first);
+        double x[LAR_LOADS];
+        LAR_EACH_LOAD x[l] = load[r][l] *= row[r - first];
+        for (int32_t c = first; c < r; c++) LAR_EACH_LOAD load[c][l] -= row[c - first] * x[l];
     }
 }
 
