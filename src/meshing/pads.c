@@ -9,7 +9,7 @@
 
 /* Of a piece's length: how far its weight may move it; how far pads are apart, at first; of that,
  * how large they are. */
-static const double SAG_MOST = 0.25, APART = 0.5, RADIUS = 0.2;
+static const double SAG_MOST = 0.15, APART = 0.5, RADIUS = 0.3;
 /* Pads this part of the limit do not need. */
 static const double WORTH_IT = 0.5;
 enum { ROUNDS = 4 };

@@ -6,7 +6,7 @@
  *       support    pad           pad              its underside looks to the supported side
  *
  * In a body an organ lies on its neighbours, which a mesh of it alone does not have. Where its own
- * weight would move a piece of the body by more than a quarter of the piece's length (linearly, in
+ * weight would move a piece of the body by more than 0.15 of the piece's length (linearly, in
  * the worst of three directions), small patches of its underside are held: first half of its
  * length apart, in the order of how far they would sag, then closer, until it is carried. */
 #ifndef LAR_MESHING_PADS_H
