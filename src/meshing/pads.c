@@ -19,8 +19,11 @@ typedef struct search {
     int32_t *face, faces; /* that look down */
     double *sag;          /* [nodes] */
     double *length;       /* [nodes] of the piece that the node belongs to */
+    int32_t *piece;       /* [nodes] its least node */
+    bool *sags;           /* [nodes] at that: the piece is not carried */
     bool *all;            /* [nodes] held, by whatever */
-    const bool *handle;   /* [nodes] where no pad may be */
+    bool *handle;         /* [nodes] where no pad may be */
+    bool all_else_done;   /* but now it may */
 } search;
 
 /* ---- what there is -------------------------------------------------------------------------- */
@@ -46,9 +49,9 @@ static void find_underside(search *s, int axis, int sign) {
 static lar_status find_lengths(search *s, lar_error *error) {
     const lar_mesh *mesh = &s->meshing->mesh;
     size_t nodes = (size_t)mesh->node_count;
-    int32_t *parent = lar_calloc(nodes, sizeof *parent);
+    int32_t *parent = s->piece;
     double(*box)[2][3] = lar_calloc(nodes, sizeof *box);
-    bool ready = parent && box;
+    bool ready = box != NULL;
     if (ready) lar_union_start(parent, mesh->node_count);
     for (int32_t e = 0; ready && e < mesh->element_count; e++)
         for (int a = 1; a < 8; a++)
@@ -62,24 +65,26 @@ static lar_status find_lengths(search *s, lar_error *error) {
         }
     }
     for (int32_t n = 0; ready && n < mesh->node_count; n++) {
-        int32_t root = lar_union_root(parent, n);
+        int32_t root = s->piece[n] = lar_union_root(parent, n);
         for (int i = 0; i < 3; i++)
             s->length[n] = fmax(s->length[n], box[root][1][i] - box[root][0][i]);
     }
-    free(parent);
     free(box);
-    return ready ? LAR_OK : lar_fail_memory(error, 52 * nodes, "the body's pieces");
+    return ready ? LAR_OK : lar_fail_memory(error, 48 * nodes, "the body's pieces");
 }
 
-static lar_status begin(search *s, const lar_meshing *meshing, const bool *held, const bool *handle,
+static lar_status begin(search *s, const lar_meshing *meshing, const bool *held, bool *handle,
                         int axis, int sign, lar_error *error) {
     size_t nodes = (size_t)meshing->mesh.node_count;
     *s = (search){.meshing = meshing,
                   .handle = handle,
                   .sag = lar_calloc(nodes, sizeof *s->sag),
                   .length = lar_calloc(nodes, sizeof *s->length),
+                  .piece = lar_calloc(nodes, sizeof *s->piece),
+                  .sags = lar_calloc(nodes, sizeof *s->sags),
                   .all = lar_calloc(nodes, sizeof *s->all)};
-    if (!s->sag || !s->length || !s->all) return lar_fail_memory(error, 21 * nodes, "pads");
+    if (!s->sag || !s->length || !s->piece || !s->sags || !s->all)
+        return lar_fail_memory(error, 22 * nodes, "pads");
     memcpy(s->all, held, nodes * sizeof *held);
     lar_status status = lar_mesh_boundary(&meshing->mesh, &s->face, &s->faces, error);
     if (status) return status;
@@ -91,21 +96,34 @@ static void end(search *s) {
     free(s->face);
     free(s->sag);
     free(s->length);
+    free(s->piece);
+    free(s->sags);
     free(s->all);
 }
 
 /* ---- a round -------------------------------------------------------------------------------- */
 
-static bool is_carried(const search *s) {
-    for (int32_t n = 0; n < s->meshing->mesh.node_count; n++)
-        if (s->sag[n] > SAG_MOST * s->length[n]) return false;
-    return true;
+static bool is_carried(search *s) {
+    const int32_t nodes = s->meshing->mesh.node_count;
+    bool carried = true;
+    memset(s->sags, 0, (size_t)nodes * sizeof *s->sags);
+    for (int32_t n = 0; n < nodes; n++) {
+        if (!(s->sag[n] > SAG_MOST * s->length[n])) continue;
+        s->sags[s->piece[n]] = true;
+        carried = false;
+    }
+    return carried;
 }
 
 static double distance(const search *s, int32_t m, int32_t n) {
     double way[3];
     lar_minus(s->meshing->mesh.position[m], s->meshing->mesh.position[n], way);
     return lar_length(way);
+}
+
+/* An island may be all handle, which then gives way. */
+static bool is_spared(const search *s, int32_t n) {
+    return s->handle[n] && !s->all_else_done;
 }
 
 /* The node of the underside that would sag most, as a part of what it may; -1: none is worth it. */
@@ -116,7 +134,8 @@ static int32_t lowest(const search *s) {
     for (int32_t k = 0; k < s->faces; k++)
         for (int a = 0; a < 4; a++) {
             int32_t n = mesh->element[s->face[k] / 6][lar_face_node[s->face[k] % 6][a]];
-            if (s->handle[n] || !(s->sag[n] > most * s->length[n])) continue;
+            if (is_spared(s, n) || !s->sags[s->piece[n]]) continue;
+            if (!(s->sag[n] > most * s->length[n])) continue;
             most = s->sag[n] / s->length[n];
             best = n;
         }
@@ -135,7 +154,8 @@ static void put_pad(search *s, int32_t middle, double reach, bool *pad) {
             inside &= distance(s, node[a], middle) <= reach;
         }
         for (int a = 0; a < 4 && (near || inside); a++) {
-            if (s->handle[node[a]]) continue;
+            if (is_spared(s, node[a])) continue;
+            s->handle[node[a]] = false;
             pad[node[a]] |= !s->all[node[a]];
             s->all[node[a]] = true;
         }
@@ -155,20 +175,24 @@ static int32_t put_pads(search *s, double apart, bool *pad) {
 }
 
 lar_status lar_pads_choose(const lar_meshing *meshing, const bool *held, int axis, int sign,
-                           const bool *handle, int pulled, bool *pad, int32_t *count, bool *carried,
+                           bool *handle, int pulled, bool *pad, int32_t *count, bool *carried,
                            lar_motion *motion, lar_error *error) {
     search s;
     double apart = APART;
+    int round = 0;
     *count = 0;
     *carried = false;
     lar_status status = begin(&s, meshing, held, handle, axis, sign, error);
-    for (int round = 0; !status && round <= ROUNDS; round++, apart /= 2) {
+    for (int32_t put = 1; !status && put > 0; *count += put) {
         status = lar_motion_estimate(meshing, s.all, handle, pulled, motion, s.sag, error);
         *carried = !status && is_carried(&s);
-        if (status || round == ROUNDS || *carried) break;
-        int32_t put = put_pads(&s, apart, pad);
-        if (put == 0) break;
-        *count += put;
+        put = 0;
+        for (; !status && !*carried && put == 0 && round < ROUNDS; round++, apart /= 2) {
+            put = put_pads(&s, apart, pad);
+            s.all_else_done = put == 0;
+            if (put == 0) put = put_pads(&s, apart, pad);
+            s.all_else_done = false;
+        }
     }
     end(&s);
     return status;

@@ -16,10 +16,11 @@
 
 /* held: [nodes], by other rules; the pads' nodes are added to pad: [nodes], false before. The
  * underside is where the surface looks towards the lower (sign -1) or upper (1) end of an axis
- * within 60 degrees. handle and pulled: as in lar_motion_estimate; no pad is on the handle. Returns
- * the number of pads, whether the body is carried then, and its motion with them. */
+ * within 60 degrees. handle and pulled: as in lar_motion_estimate; pads take nodes from the handle
+ * where all else is carried. Returns the number of pads, whether the body is carried then,
+ * and its motion with them. */
 lar_status lar_pads_choose(const lar_meshing *meshing, const bool *held, int axis, int sign,
-                           const bool *handle, int pulled, bool *pad, int32_t *count, bool *carried,
+                           bool *handle, int pulled, bool *pad, int32_t *count, bool *carried,
                            lar_motion *motion, lar_error *error);
 
 #endif

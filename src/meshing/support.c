@@ -322,21 +322,16 @@ typedef struct marks {
     bool *handle, *opposed, *pad;
 } marks;
 
-/* How it will move: with pads, where nobody said what holds it and its weight asks for them. */
-static lar_status find_motion(choice *c, bool pads, int side, const marks *in, lar_motion *motion) {
+/* Pads, where nobody said what holds it and its weight asks for them. */
+static lar_status add_pads(choice *c, int side, const marks *in, lar_motion *motion) {
     lar_support *support = &c->meshing->support;
-    int axis = side >= 0 ? side / 2 : 0;
-    lar_status status;
-    if (pads) {
-        status = lar_pads_choose(c->meshing, c->held, BACK / 2, -1, in->handle, axis, in->pad,
-                                 &support->pads, &support->carried, motion, c->error);
-        int32_t count = 0;
-        if (!status) status = add_set(c, "pads", in->pad, &count);
-        for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->pad[n];
-        return status;
-    }
-    const bool *held = support->opposed ? in->opposed : c->held;
-    return lar_motion_estimate(c->meshing, held, in->handle, axis, motion, NULL, c->error);
+    int32_t count = 0;
+    lar_status status =
+        lar_pads_choose(c->meshing, c->held, BACK / 2, -1, in->handle, side >= 0 ? side / 2 : 0,
+                        in->pad, &support->pads, &support->carried, motion, c->error);
+    if (!status) status = add_set(c, "pads", in->pad, &count);
+    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->pad[n];
+    return status;
 }
 
 static lar_status choose(choice *c, const char *rule, const marks *in) {
@@ -350,13 +345,17 @@ static lar_status choose(choice *c, const char *rule, const marks *in) {
     if (!status && mean_shear(c->meshing) > 0) side = choose_handle(c, held_side, in->handle);
     if (!status && side >= 0 && held == 0)
         support->opposed = mark_handle(c, opposite(side), in->opposed) > 0;
-    if (!status) status = find_motion(c, !rule, side, in, &motion);
+    if (!status && !rule) status = add_pads(c, side, in, &motion);
+    if (!status && rule)
+        status = lar_motion_estimate(c->meshing, support->opposed ? in->opposed : c->held,
+                                     in->handle, side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
     for (int32_t n = 0; n < mesh->node_count; n++) support->fixed_nodes += c->held[n];
     support->slowest = motion.slowest;
     if (status || side < 0 || (held == 0 && !support->opposed)) return status;
     choose_pull(c, side, &motion);
     if (!support->handle) support->opposed = false;
     if (support->handle) status = add_set(c, "handle", in->handle, &count);
+    if (count == 0) support->handle = NULL; /* pads took it */
     if (!status && support->opposed) status = add_set(c, "handle_opposite", in->opposed, &count);
     return status;
 }

@@ -43,6 +43,26 @@ static void a_soft_bar_is_carried(void **state) {
     for (int n = 0; n < BAR_NODES; n++) assert_true(sag[n] <= 0.15 * BAR_LENGTH);
 }
 
+/* A piece may lie in the handle as a whole: then pads are there, and the rest is pulled. */
+static void the_handle_gives_way_where_it_must(void **state) {
+    (void)state;
+    lar_meshing m = bar(BAR_SIDE);
+    lar_motion motion;
+    int32_t pads = 0, left = 0;
+    bool carried = false;
+    memset(pad, 0, sizeof pad);
+    bar_mark(&m, 0, held);
+    for (int n = 0; n < BAR_NODES; n++) handle[n] = !held[n];
+    assert_int_equal(
+        lar_pads_choose(&m, held, 1, -1, handle, 0, pad, &pads, &carried, &motion, &error), LAR_OK);
+    assert_true(carried && pads > 0);
+    for (int n = 0; n < BAR_NODES; n++) {
+        assert_false(pad[n] && handle[n]);
+        left += handle[n];
+    }
+    assert_true(left > BAR_NODES / 2);
+}
+
 static void a_stiff_bar_needs_none(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
@@ -57,6 +77,7 @@ static void a_stiff_bar_needs_none(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_soft_bar_is_carried),
+        cmocka_unit_test(the_handle_gives_way_where_it_must),
         cmocka_unit_test(a_stiff_bar_needs_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
