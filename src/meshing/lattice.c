@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "meshing/lattice_thin.h"
 
 void lar_lattice_clear(lar_lattice *lattice) {
     free(lattice->region);
@@ -40,6 +41,27 @@ static void propose(search *state, int32_t inside, int32_t wanted) {
     state->size = next;
 }
 
+/* What is thin is looked for once for all sizes that are tried: that takes longer than a lattice.
+ */
+static lar_status try_size(const lar_boundary *boundary, double size, lar_thin *thin,
+                           lar_lattice *lattice, lar_error *error) {
+    const double ROOM = 1.15;
+    lar_status status = LAR_OK;
+    if (size > thin->size || size < LAR_THIN_SMALLEST * thin->size)
+        status = lar_thin_find(boundary, ROOM * size, thin, error);
+    return status ? status : lar_lattice_fill_thin(boundary, thin, size, lattice, error);
+}
+
+lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
+                            lar_error *error) {
+    lar_thin thin = {0};
+    lar_status status = LAR_OK;
+    if (size > 0 && isfinite(size)) status = lar_thin_find(boundary, size, &thin, error);
+    if (!status) status = lar_lattice_fill_thin(boundary, &thin, size, lattice, error);
+    lar_thin_clear(&thin);
+    return status;
+}
+
 lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements,
                                   lar_lattice *lattice, lar_error *error) {
     enum { TRIES = 10 };
@@ -53,11 +75,12 @@ lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements
                         "the body encloses no volume; look at its surface's orientation and unit");
     search state = {.size = cbrt(volume / elements)};
     lar_lattice best = {0};
+    lar_thin thin = {0};
     int32_t off = INT32_MAX;
     lar_status status = LAR_OK;
     for (int i = 0; i < TRIES && off > elements / 100; i++) {
         lar_lattice tried = {0};
-        status = lar_lattice_fill(boundary, state.size, &tried, error);
+        status = try_size(boundary, state.size, &thin, &tried, error);
         if (status && status != LAR_ERROR_MODEL) break;
         int32_t inside = status ? 0 : count_inside(&tried);
         if (!status && abs(inside - elements) < off) {
@@ -69,6 +92,7 @@ lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements
         lar_lattice_clear(&tried);
         propose(&state, inside, elements);
     }
+    lar_thin_clear(&thin);
     if (off == INT32_MAX) return status;
     *lattice = best;
     return LAR_OK;

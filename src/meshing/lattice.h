@@ -21,9 +21,10 @@ typedef struct lar_lattice {
                           is inside, else the region with the largest part. Of several regions parts
                           are weighted, lattice_votes.h */
     uint8_t *inner;    /* [cells] the region with the largest part, whatever is outside; 0: none */
-    uint8_t *share;    /* [cells] part of the cell that is inside any region, by weight, 0..255 */
-    double wanted[LAR_REGIONS_MOST + 1]; /* cells that each region's volume fills, where there are
-                                            several; 0: unknown */
+    uint8_t *share; /* [cells] part of the cell that is inside any region, by weight, 0..255, with
+                       slots and thin parts widened (lattice_thin.h) */
+    double wanted[LAR_REGIONS_MOST + 1]; /* cells that each region shall have, where there are
+                                            several: those that it fills, see share; 0: unknown */
     int32_t repaired; /* lines that did not come out of the body again and took no part */
 } lar_lattice;
 
@@ -36,7 +37,7 @@ static inline size_t lar_lattice_cell(const lar_lattice *lattice, int i, int j, 
  * lines per cell by counting crossings (exact along the line). Flat cuts across an axis lie between
  * cells; where both ends are cut, the size is changed by up to 1 % for it, or the larger cut is
  * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_LATTICE_CELLS_MOST cells,
- * LAR_ERROR_MODEL when no cell is half full. */
+ * LAR_ERROR_MODEL when no cell is half full, with slots and thin parts widened. */
 lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
                             lar_error *error);
 

@@ -1,6 +1,7 @@
 /* Which region has how much of every cell. A line that does not come out of the body again takes no
  * part: the others of its row stand for it. */
 #include "meshing/lattice_lines.h"
+#include "meshing/lattice_thin.h"
 #include "meshing/lattice_votes.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@ typedef struct work {
     double *length; /* [regions + 1][cells along] parts of the cells of one row */
     bool met[COUNTERS];
     uint8_t *row_lines; /* [rows] lines that count */
-    lar_votes votes;    /* of several regions */
+    lar_thin_changes changes;
+    lar_votes votes; /* of several regions */
 } work;
 
 /* ---- where the lattice lies ----------------------------------------------------------------- */
@@ -131,6 +133,24 @@ static void add_length(void *context, int region, double from, double to) {
     for (int32_t i = first; i < cells && i < to; i++) length[i] += fmin(to, i + 1) - fmax(from, i);
 }
 
+/* Widens slots and thin parts: of what is emptied all regions lose the same part. */
+static void change_cell(work *w, size_t cell, int32_t i, int lines) {
+    const int32_t index = w->changes.of ? w->changes.of[cell] : -1;
+    if (index < 0) return;
+    const lar_thin_change *change = &w->changes.one[index];
+    const size_t cells = (size_t)w->lattice->cells[0];
+    double inside = 0;
+    for (int r = 1; r <= w->boundary->region_count; r++)
+        inside += w->length[(size_t)r * cells + (size_t)i];
+    const double then = fmin(fmax(inside + change->part * lines, 0), fmax(inside, lines));
+    if (change->part > 0) {
+        w->length[change->region * cells + (size_t)i] += then - inside;
+        w->met[change->region] = true;
+    }
+    for (int r = 1; change->part < 0 && inside > 0 && r <= w->boundary->region_count; r++)
+        w->length[(size_t)r * cells + (size_t)i] *= then / inside;
+}
+
 static bool write_row(work *w, int32_t j, int32_t k, int lines) {
     lar_lattice *lattice = w->lattice;
     int32_t cells = lattice->cells[0];
@@ -139,6 +159,7 @@ static bool write_row(work *w, int32_t j, int32_t k, int lines) {
     for (int32_t i = 0; i < cells && lines > 0; i++) {
         double inside = 0, largest = 0;
         int inner = 0;
+        change_cell(w, row + (size_t)i, i, lines);
         for (int r = 1; r <= w->boundary->region_count; r++) {
             if (!w->met[r]) continue;
             double part = w->length[(size_t)r * (size_t)cells + (size_t)i];
@@ -177,6 +198,17 @@ static void copy_rows(work *w) {
     }
 }
 
+/* A region shall have the cells that it has when it is widened, but not many more or less than its
+ * volume fills: fitting can stretch them only so far. */
+static void limit_votes(work *w) {
+    const double MOST_OFF = 0.25;
+    for (int r = 1; r <= w->boundary->region_count; r++) {
+        const double volume = w->boundary->region[r].volume / pow(w->lattice->size, 3);
+        w->votes.volume[r] =
+            fmin(fmax(w->votes.volume[r], (1 - MOST_OFF) * volume), (1 + MOST_OFF) * volume);
+    }
+}
+
 static lar_status follow_lines(work *w, lar_error *error) {
     lar_lattice *lattice = w->lattice;
     size_t lengths = (size_t)(w->boundary->region_count + 1) * (size_t)lattice->cells[0];
@@ -200,15 +232,17 @@ static lar_status follow_lines(work *w, lar_error *error) {
                 return lar_fail_memory(error, 2 * w->votes.capacity * sizeof *w->votes.vote,
                                        "the regions' parts of cells");
         }
-    if (w->boundary->region_count > 1)
+    if (w->boundary->region_count > 1) {
+        limit_votes(w);
         lar_votes_count(&w->votes, w->boundary->region_count, lattice);
+    }
     if (lattice->repaired) copy_rows(w);
     return LAR_OK;
 }
 
 /* ---- all of it ------------------------------------------------------------------------------ */
 
-static lar_status fill(work *w, lar_error *error) {
+static lar_status fill(work *w, const lar_thin *thin, lar_error *error) {
     lar_lattice *lattice = w->lattice;
     size_t cells =
         (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
@@ -218,6 +252,7 @@ static lar_status fill(work *w, lar_error *error) {
     if (!lattice->region || !lattice->inner || !lattice->share)
         return lar_fail_memory(error, 3 * cells, "the grid of cells");
     lar_status status = lar_lines_create(w->boundary, lattice, &w->lines, error);
+    if (!status) status = lar_thin_widen(thin, w->boundary, lattice, &w->changes, error);
     if (!status) status = follow_lines(w, error);
     if (status) return status;
     for (size_t c = 0; c < cells; c++)
@@ -228,8 +263,8 @@ static lar_status fill(work *w, lar_error *error) {
                     1e3 * lattice->size);
 }
 
-lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
-                            lar_error *error) {
+lar_status lar_lattice_fill_thin(const lar_boundary *boundary, const lar_thin *thin, double size,
+                                 lar_lattice *lattice, lar_error *error) {
     if (!(size > 0 && isfinite(size)))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a size of %g m is none; choose the edge of an element", size);
@@ -237,8 +272,9 @@ lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_latti
     lar_status status = place_lattice(boundary, size, &made, error);
     if (!status) {
         work w = {.boundary = boundary, .lattice = &made};
-        status = fill(&w, error);
+        status = fill(&w, thin, error);
         lar_lines_clear(&w.lines);
+        lar_thin_changes_clear(&w.changes);
         free(w.length);
         free(w.row_lines);
         lar_votes_clear(&w.votes);

@@ -2,7 +2,7 @@
 #include "shapes.h"
 
 #include "base/vector.h"
-#include "meshing/lattice.h"
+#include "meshing/lattice_thin.h"
 
 static void boundary_of(const shape *body, shape_frame frame, lar_image *image,
                         lar_boundary *boundary) {
@@ -341,13 +341,71 @@ static void test_from_image(void **state) {
     }
 }
 
+/* Two boxes 0.3 cells apart, with the gap in the middle of a layer of cells: by majority the layer
+ * were full. */
+static void test_slot(void **state) {
+    (void)state;
+    lar_triangles surface[2];
+    lar_boundary boundary;
+    lar_lattice lattice = {0};
+    shape_box_surface(&surface[0], (double[3]){0, 0, 0}, (double[3]){6.35, 8, 8});
+    shape_box_surface(&surface[1], (double[3]){6.65, 0, 0}, (double[3]){12, 8, 8});
+    surface_boundary(surface, 2, &boundary);
+    assert_int_equal(lar_lattice_fill(&boundary, 1, &lattice, NULL), LAR_OK);
+    assert_int_equal(lattice.cells[0], 14);
+    for (int k = 1; k <= 8; k++)
+        for (int j = 1; j <= 8; j++)
+            for (int i = 1; i <= 12; i++)
+                assert_int_equal(region_at(&lattice, i, j, k), i < 7 ? 1 : i == 7 ? 0 : 2);
+    lar_lattice_clear(&lattice);
+    lar_boundary_clear(&boundary);
+}
+
+/* A sheet of a third of a cell is a layer of cells, and no thicker. */
+static void test_thin_part(void **state) {
+    (void)state;
+    lar_triangles surface;
+    lar_boundary boundary;
+    lar_lattice lattice = {0};
+    shape_box_surface(&surface, (double[3]){0, 0, 0}, (double[3]){9, 7, 0.33});
+    surface_boundary(&surface, 1, &boundary);
+    assert_int_equal(lar_lattice_fill(&boundary, 1, &lattice, NULL), LAR_OK);
+    int layer[64] = {0};
+    assert_below(lattice.cells[2], 64);
+    for (int k = 0; k < lattice.cells[2]; k++)
+        for (int j = 0; j < lattice.cells[1]; j++)
+            for (int i = 0; i < lattice.cells[0]; i++)
+                layer[k] += region_at(&lattice, i, j, k) != 0;
+    assert_int_equal(layer[1], 63);
+    assert_int_equal(inside_count(&lattice), 63);
+    lar_lattice_clear(&lattice);
+    lar_boundary_clear(&boundary);
+}
+
+/* Nothing of an ellipsoid is thin, and neither are the edges of a box. */
+static void test_nothing_thin(void **state) {
+    (void)state;
+    lar_triangles surface[2];
+    shape_ellipsoid_surface(&surface[0], shape_ellipsoid.half, (double[3]){0}, 24);
+    shape_box_surface(&surface[1], (double[3]){0, 0, 0}, (double[3]){0.03, 0.02, 0.01});
+    for (int s = 0; s < 2; s++) {
+        lar_boundary boundary;
+        lar_thin thin = {0};
+        surface_boundary(&surface[s], 1, &boundary);
+        assert_int_equal(lar_thin_find(&boundary, 0.003, &thin, NULL), LAR_OK);
+        assert_int_equal(thin.count, 0);
+        lar_thin_clear(&thin);
+        lar_boundary_clear(&boundary);
+    }
+}
+
 static void test_refused(void **state) {
     (void)state;
     lar_triangles surface;
     lar_boundary boundary;
     lar_lattice lattice = {0};
     lar_error error = {0};
-    shape_box_surface(&surface, (double[3]){0, 0, 0}, (double[3]){0.1, 0.1, 0.001});
+    shape_box_surface(&surface, (double[3]){0, 0, 0}, (double[3]){0.1, 0.1, 0.0003});
     surface_boundary(&surface, 1, &boundary);
     assert_int_equal(lar_lattice_fill(&boundary, 0.003, &lattice, &error), LAR_ERROR_MODEL);
     assert_non_null(strstr(error.message, "thinner"));
@@ -369,7 +427,9 @@ int main(void) {
         cmocka_unit_test(test_exact_box),       cmocka_unit_test(test_counts),
         cmocka_unit_test(test_regions),         cmocka_unit_test(test_nested),
         cmocka_unit_test(test_hole_in_surface), cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_from_image),      cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_from_image),      cmocka_unit_test(test_slot),
+        cmocka_unit_test(test_thin_part),       cmocka_unit_test(test_nothing_thin),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
