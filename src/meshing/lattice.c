@@ -41,23 +41,10 @@ static void propose(search *state, int32_t inside, int32_t wanted) {
     state->size = next;
 }
 
-/* What is thin is looked for once for all sizes that are tried: that takes longer than a lattice.
- */
-static lar_status try_size(const lar_boundary *boundary, double size, lar_thin *thin,
-                           lar_lattice *lattice, lar_error *error) {
-    const double ROOM = 1.15;
-    lar_status status = LAR_OK;
-    if (size > thin->size || size < LAR_THIN_SMALLEST * thin->size)
-        status = lar_thin_find(boundary, ROOM * size, thin, error);
-    return status ? status : lar_lattice_fill_thin(boundary, thin, size, lattice, error);
-}
-
 lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
                             lar_error *error) {
     lar_thin thin = {0};
-    lar_status status = LAR_OK;
-    if (size > 0 && isfinite(size)) status = lar_thin_find(boundary, size, &thin, error);
-    if (!status) status = lar_lattice_fill_thin(boundary, &thin, size, lattice, error);
+    lar_status status = lar_lattice_fill_thin(boundary, &thin, size, lattice, error);
     lar_thin_clear(&thin);
     return status;
 }
@@ -80,7 +67,7 @@ lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements
     lar_status status = LAR_OK;
     for (int i = 0; i < TRIES && off > elements / 100; i++) {
         lar_lattice tried = {0};
-        status = try_size(boundary, state.size, &thin, &tried, error);
+        status = lar_lattice_fill_thin(boundary, &thin, state.size, &tried, error);
         if (status && status != LAR_ERROR_MODEL) break;
         int32_t inside = status ? 0 : count_inside(&tried);
         if (!status && abs(inside - elements) < off) {

@@ -263,7 +263,7 @@ static lar_status fill(work *w, const lar_thin *thin, lar_error *error) {
                     1e3 * lattice->size);
 }
 
-lar_status lar_lattice_fill_thin(const lar_boundary *boundary, const lar_thin *thin, double size,
+lar_status lar_lattice_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
                                  lar_lattice *lattice, lar_error *error) {
     if (!(size > 0 && isfinite(size)))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
@@ -272,7 +272,10 @@ lar_status lar_lattice_fill_thin(const lar_boundary *boundary, const lar_thin *t
     lar_status status = place_lattice(boundary, size, &made, error);
     if (!status) {
         work w = {.boundary = boundary, .lattice = &made};
-        status = fill(&w, thin, error);
+        const double room = 1.15; /* for other sizes that are tried */
+        if (made.size > thin->size || made.size < LAR_THIN_SMALLEST * thin->size)
+            status = lar_thin_find(boundary, room * made.size, thin, error);
+        if (!status) status = fill(&w, thin, error);
         lar_lines_clear(&w.lines);
         lar_thin_changes_clear(&w.changes);
         free(w.length);

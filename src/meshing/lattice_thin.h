@@ -32,13 +32,12 @@ typedef struct lar_thin_place {
 typedef struct lar_thin {
     lar_thin_place *place;
     size_t count, capacity;
-    double size; /* cells that it was made for, 0: none yet. It serves for those from
-                    LAR_THIN_SMALLEST times as large on. */
+    double size; /* the largest cells that it serves for, 0: none */
 } lar_thin;
 
+/* Fills a zeroed one, or one that serves for other cells. It serves for cells down to
+ * LAR_THIN_SMALLEST times the size too, with less places for each. */
 #define LAR_THIN_SMALLEST 0.6
-
-/* Fills a zeroed one, or one that was made for cells of another size. */
 lar_status lar_thin_find(const lar_boundary *boundary, double size, lar_thin *thin,
                          lar_error *error);
 void lar_thin_clear(lar_thin *thin);
@@ -61,8 +60,9 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
                           const lar_lattice *lattice, lar_thin_changes *changes, lar_error *error);
 void lar_thin_changes_clear(lar_thin_changes *changes);
 
-/* lar_lattice_fill with what is thin known already; NULL: nothing is widened. */
-lar_status lar_lattice_fill_thin(const lar_boundary *boundary, const lar_thin *thin, double size,
+/* lar_lattice_fill; what is thin is looked for where `thin`, zeroed at first, does not serve: once
+ * for all sizes that are tried, as it takes longer than the lattice. */
+lar_status lar_lattice_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
                                  lar_lattice *lattice, lar_error *error);
 
 #endif
