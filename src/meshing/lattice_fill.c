@@ -201,7 +201,7 @@ static void copy_rows(work *w) {
 /* A region shall have the cells that it has when it is widened, but not many more or less than its
  * volume fills: fitting can stretch them only so far. */
 static void limit_votes(work *w) {
-    const double MOST_OFF = 0.25;
+    const double MOST_OFF = 0.15;
     for (int r = 1; r <= w->boundary->region_count; r++) {
         const double volume = w->boundary->region[r].volume / pow(w->lattice->size, 3);
         w->votes.volume[r] =
