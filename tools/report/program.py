@@ -19,7 +19,7 @@ def kernels(runs, build):
 def compiler(runs, build):
     made = runs[kernels(runs, build)[0]]["build"]
     level = [flag for flag in made["flags"].split() if flag.startswith("-O")]
-    return " ".join([made["compiler"]] + level)
+    return " ".join(made["compiler"].split() + level)
 
 
 def write(runs, path):
