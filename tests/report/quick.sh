@@ -21,7 +21,7 @@ export PYTHONDONTWRITEBYTECODE=1
     echo "FAILED: run.sh"
     exit 1
 }
-python3 "$source/tests/report/pages.py" "$scratch/pages" || exit 1
+python3 -B "$source/tests/report/pages.py" "$scratch/pages" || exit 1
 
 # A run that fails is named, and no page is written from half of them.
 printf '#!/bin/sh\ncase "$*" in *--thesis*) echo no clock >&2; exit 1 ;; esac\nexec %s "$@"\n' \

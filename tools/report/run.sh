@@ -190,5 +190,5 @@ record implicit.buckle "$lariat" bench implicit --case buckle --static --step 0.
 record implicit.loose "$lariat" bench implicit --case loose --static --json
 record implicit.organ "$lariat" bench implicit "$organ" --time $pulled --step 0.005 --json
 
-python3 "$here/report.py" --data "$data" --pages "$pages" --quick $quick
+python3 -B "$here/report.py" --data "$data" --pages "$pages" --quick $quick
 echo "report: $pages/README.md" >&2
