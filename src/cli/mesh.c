@@ -130,7 +130,7 @@ static int inspect(mesh_report *report) {
 
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
 static void doubt(const mesh_report *report) {
-    static const double LARGE = 10, LOST = 0.1;
+    static const double LARGE = 10, LOST = 0.1, FAR = 0.3;
     const lar_mesh_quality *quality = &report->info.quality;
     double size = 0, lost = 1 - quality->volume / quality->true_volume;
     for (int i = 0; i < 3; i++) size = fmax(size, report->model.upper[i] - report->model.lower[i]);
@@ -144,6 +144,12 @@ static void doubt(const mesh_report *report) {
                      "note: the mesh holds %.0f %% %s than the true surface, of which parts are "
                      "thinner than an element of %.3g m: take more elements or a smaller size",
                      100 * fabs(lost), lost > 0 ? "less" : "more", report->info.size);
+    else if (quality->deviation_mean > FAR * quality->mean_edge)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the mesh is %.0f %% of an edge off the true surface in the mean: parts "
+                     "of it are thinner than an element of %.3g m and are lost; take more elements "
+                     "or a smaller size",
+                     100 * quality->deviation_mean / quality->mean_edge, report->info.size);
 }
 
 static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double seconds) {

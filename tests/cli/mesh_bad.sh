@@ -103,9 +103,15 @@ expect 0 "$LARIAT" mesh closed.obj --scale 0.05 --elements 100
 # Another unit, and what is too thin for the grid, are meshed and doubted.
 expect 0 "$LARIAT" mesh closed.obj --scale 50 --elements 100 --out large
 complains 'm long; if the file is in millimetres, say --scale 0.001'
-sed 's/^v 0 0 \(-*\)1$/v 0 0 \10.02/' closed.obj >leaf_thin.obj
+leaf() { sed "s/^v 0 0 \(-*\)1\$/v 0 0 \1$1/" closed.obj; }
+leaf 0.02 >leaf_thin.obj
 expect 0 "$LARIAT" mesh leaf_thin.obj --scale 0.05 --size 0.0015 --out thin
-complains 'less than the true surface, of which parts are thinner than an element'
+[ ! -s "$SCRATCH/err" ] || fail "doubts about a leaf that is meshed"
+leaf 0.005 >leaf_thinner.obj
+expect 0 "$LARIAT" mesh leaf_thinner.obj --scale 0.05 --size 0.0015 --out thinner
+complains 'off the true surface in the mean: parts of it are thinner than an element'
+leaf 0.002 >leaf_thinnest.obj
+refused 'smaller or thinner than that' leaf_thinnest.obj --scale 0.05 --size 0.0015
 { # the same twice, a little apart
     octahedron
     echo 'f 1 4 6'
