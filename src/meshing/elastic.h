@@ -1,7 +1,8 @@
 /* Small displacements of a meshed body under a few loads at once: what it will do to a pull or to
  * its weight, before anything is simulated.
  *
- *     K u_l = f_l        conjugate gradients, preconditioned by the diagonal
+ *     K u_l = f_l        conjugate gradients, preconditioned by the diagonal and
+ *                        by rigid groups of nodes (elastic_coarse.h)
  *
  * The element is the production element (mechanics/hex8.h) at rest: the mean strain, and springs
  * of the hourglass modes, here with the stiffness that they have in a cube of the same volume. The
