@@ -18,13 +18,20 @@ typedef struct sample {
 typedef struct samples {
     sample *one;
     size_t count, capacity;
+    double last[3]; /* the nearest point of the sample before */
     lar_error *error;
 } samples;
 
+/* What was nearest to the sample before, mostly a neighbour, says how far to look, at first. */
 static lar_status measure(samples *all, const lar_triangle_tree *tree, const double point[3],
                           double weight) {
+    double away[3];
     lar_nearest nearest;
-    if (!lar_triangle_tree_nearest(tree, point, INFINITY, &nearest)) return LAR_OK;
+    lar_minus(point, all->last, away);
+    if (!lar_triangle_tree_nearest(tree, point, lar_length(away), &nearest) &&
+        !lar_triangle_tree_nearest(tree, point, INFINITY, &nearest))
+        return LAR_OK;
+    memcpy(all->last, nearest.point, sizeof all->last);
     if (!LAR_GROW(all->one, all->capacity, all->count))
         return lar_fail_memory(all->error, 2 * all->capacity * sizeof *all->one,
                                "the distances between two surfaces");

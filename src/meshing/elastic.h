@@ -19,8 +19,11 @@
 enum { LAR_LOADS = 4 };
 #define LAR_EACH_LOAD for (int l = 0; l < LAR_LOADS; l++)
 
+/* A number for each of the loads; [l] is one of them. */
+typedef double lar_loads __attribute__((vector_size(8 * LAR_LOADS), aligned(8)));
+
 /* A vector of a node for each of the loads. */
-typedef double lar_load_vectors[3][LAR_LOADS];
+typedef lar_loads lar_load_vectors[3];
 
 /* What an element is made of; shear 0: rigid, or left out. */
 typedef struct lar_elastic_material {

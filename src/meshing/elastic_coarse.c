@@ -244,23 +244,57 @@ void lar_coarse_clear(lar_coarse *coarse) {
 
 /* ---- in use --------------------------------------------------------------------------------- */
 
-static void solve(lar_coarse *coarse) {
-    int32_t rows = LAR_RIGID * coarse->group_count;
-    double(*load)[LAR_LOADS] = coarse->load;
-    for (int32_t r = 0; r < rows; r++) {
-        const int32_t first = coarse->first[r];
-        const double *row = entry(coarse, r, first);
-        double x[LAR_LOADS]; /* apart from `load`, so that it stays in registers */
-        memcpy(x, load[r], sizeof x);
-        for (int32_t c = first; c < r; c++) LAR_EACH_LOAD x[l] -= row[c - first] * load[c][l];
-        LAR_EACH_LOAD load[r][l] = row[r - first] * x[l];
+/* A group's rows begin in the same column; they are taken at once, so that what is loaded serves
+ * for all of them and none waits for the sum before it. */
+typedef struct rows {
+    int32_t from, diagonal; /* columns: the first one, and that of the group's first motion */
+    const double *entry[LAR_RIGID]; /* from the first column on */
+} rows;
+
+static rows rows_of(lar_coarse *coarse, int32_t group) {
+    const int32_t at = LAR_RIGID * group;
+    rows these = {coarse->first[at], at, {NULL}};
+    for (int d = 0; d < LAR_RIGID; d++) these.entry[d] = entry(coarse, at + d, these.from);
+    return these;
+}
+
+static void substitute_forward(const rows *these, lar_loads *load) {
+    const int32_t before = these->diagonal - these->from;
+    lar_loads *own = load + before, x[LAR_RIGID];
+    memcpy(x, own, sizeof x); /* apart from `load`, so that it stays in registers */
+    for (int32_t c = 0; c < before; c++)
+        for (int d = 0; d < LAR_RIGID; d++) x[d] -= these->entry[d][c] * load[c];
+    for (int d = 0; d < LAR_RIGID; d++) {
+        const double *entry = these->entry[d] + before;
+        for (int c = 0; c < d; c++) x[d] -= entry[c] * own[c];
+        own[d] = entry[d] * x[d];
     }
-    for (int32_t r = rows - 1; r >= 0; r--) {
-        const int32_t first = coarse->first[r];
-        const double *row = entry(coarse, r, first);
-        double x[LAR_LOADS];
-        LAR_EACH_LOAD x[l] = load[r][l] *= row[r - first];
-        for (int32_t c = first; c < r; c++) LAR_EACH_LOAD load[c][l] -= row[c - first] * x[l];
+}
+
+static void substitute_back(const rows *these, lar_loads *load) {
+    const int32_t before = these->diagonal - these->from;
+    lar_loads *own = load + before, x[LAR_RIGID];
+    for (int d = LAR_RIGID - 1; d >= 0; d--) {
+        const double *entry = these->entry[d] + before;
+        own[d] *= entry[d];
+        for (int c = 0; c < d; c++) own[c] -= entry[c] * own[d];
+    }
+    memcpy(x, own, sizeof x);
+    for (int32_t c = 0; c < before; c++) {
+        lar_loads less = load[c];
+        for (int d = LAR_RIGID - 1; d >= 0; d--) less -= these->entry[d][c] * x[d];
+        load[c] = less;
+    }
+}
+
+static void solve(lar_coarse *coarse) {
+    for (int32_t g = 0; g < coarse->group_count; g++) {
+        const rows these = rows_of(coarse, g);
+        substitute_forward(&these, coarse->load + these.from);
+    }
+    for (int32_t g = coarse->group_count - 1; g >= 0; g--) {
+        const rows these = rows_of(coarse, g);
+        substitute_back(&these, coarse->load + these.from);
     }
 }
 
@@ -270,9 +304,8 @@ void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vect
         if (coarse->group[n] < 0) continue;
         for (int d = 0; d < LAR_RIGID; d++)
             for (int i = 0; i < 3; i++) {
-                double part = share(coarse->arm[n], i, d), *to;
-                to = coarse->load[LAR_RIGID * coarse->group[n] + d];
-                if (part != 0) LAR_EACH_LOAD to[l] += part * r[n][i][l];
+                const double part = share(coarse->arm[n], i, d);
+                if (part != 0) coarse->load[LAR_RIGID * coarse->group[n] + d] += part * r[n][i];
             }
     }
     solve(coarse);
@@ -280,9 +313,8 @@ void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vect
         if (coarse->group[n] < 0) continue;
         for (int d = 0; d < LAR_RIGID; d++)
             for (int i = 0; i < 3; i++) {
-                double part = share(coarse->arm[n], i, d), *from;
-                from = coarse->load[LAR_RIGID * coarse->group[n] + d];
-                if (part != 0) LAR_EACH_LOAD z[n][i][l] += part * from[l];
+                const double part = share(coarse->arm[n], i, d);
+                if (part != 0) z[n][i] += part * coarse->load[LAR_RIGID * coarse->group[n] + d];
             }
     }
 }

@@ -21,13 +21,20 @@ typedef struct box {
 
 typedef struct tree_node {
     box box;
-    int32_t next;  /* leaf: its first triangle in `order`; otherwise the second child */
+    int32_t next;  /* leaf: the first of its triangles; otherwise the second child */
     int32_t count; /* leaf: triangles; otherwise 0 */
 } tree_node;
 
+/* A triangle with its corners in the order of their numbers: triangles with a common edge find the
+ * same bits on it, and are equally near. */
+typedef struct leaf_triangle {
+    double at[3][3];
+    int32_t triangle;
+    uint8_t corner[3]; /* which of the triangle's it is */
+} leaf_triangle;
+
 struct lar_triangle_tree {
-    const lar_triangles *surface;
-    int32_t *order; /* triangles, those of a leaf side by side, ascending */
+    leaf_triangle *leaf; /* those of a leaf side by side, ascending */
     tree_node *node;
     int32_t node_count; /* 0: no triangles */
 };
@@ -52,16 +59,19 @@ static void widen(box *around, const box *more) {
     }
 }
 
-static box box_of(const lar_triangles *surface, int32_t triangle) {
-    box around = nothing;
-    for (int a = 0; a < 3; a++) {
-        const double *at = surface->vertex[surface->corner[triangle][a]];
-        for (int i = 0; i < 3; i++) {
-            around.lower[i] = smaller(around.lower[i], at[i]);
-            around.upper[i] = larger(around.upper[i], at[i]);
-        }
+static box box_around(const double a[3], const double b[3], const double c[3]) {
+    box around;
+    for (int i = 0; i < 3; i++) {
+        around.lower[i] = smaller(smaller(a[i], b[i]), c[i]);
+        around.upper[i] = larger(larger(a[i], b[i]), c[i]);
     }
     return around;
+}
+
+static box box_of(const lar_triangles *surface, int32_t triangle) {
+    const int32_t *corner = surface->corner[triangle];
+    return box_around(surface->vertex[corner[0]], surface->vertex[corner[1]],
+                      surface->vertex[corner[2]]);
 }
 
 static double centre(const box *around, int axis) {
@@ -77,8 +87,8 @@ static double half_area(const box *around) {
 
 typedef struct builder {
     lar_triangle_tree *tree;
-    const box *box; /* by position in the list that was asked for */
-    int32_t *item;  /* such positions, being sorted */
+    box *box;      /* by position in the list that was asked for */
+    int32_t *item; /* such positions, being sorted; then triangles */
 } builder;
 
 typedef struct bin {
@@ -175,49 +185,70 @@ static void build(builder *b, int32_t first, int32_t count, int depth) {
 }
 
 /* Items become triangles. */
-static void name_triangles(lar_triangle_tree *tree, const int32_t *index, int32_t count) {
+static void name_triangles(builder *b, const int32_t *index, int32_t count) {
+    const lar_triangle_tree *tree = b->tree;
     if (index)
-        for (int32_t k = 0; k < count; k++) tree->order[k] = index[tree->order[k]];
+        for (int32_t k = 0; k < count; k++) b->item[k] = index[b->item[k]];
     for (int32_t n = 0; n < tree->node_count; n++)
         if (tree->node[n].count > 0)
-            qsort(tree->order + tree->node[n].next, (size_t)tree->node[n].count,
-                  sizeof *tree->order, ascending);
+            qsort(b->item + tree->node[n].next, (size_t)tree->node[n].count, sizeof *b->item,
+                  ascending);
+}
+
+static leaf_triangle leaf_of(const lar_triangles *surface, int32_t triangle) {
+    const int32_t *corner = surface->corner[triangle];
+    leaf_triangle leaf = {.triangle = triangle, .corner = {0, 1, 2}};
+    for (int i = 0; i < 2; i++)
+        for (int k = i + 1; k < 3; k++)
+            if (corner[leaf.corner[k]] < corner[leaf.corner[i]]) {
+                uint8_t swapped = leaf.corner[i];
+                leaf.corner[i] = leaf.corner[k];
+                leaf.corner[k] = swapped;
+            }
+    for (int a = 0; a < 3; a++)
+        memcpy(leaf.at[a], surface->vertex[corner[leaf.corner[a]]], sizeof leaf.at[a]);
+    return leaf;
+}
+
+static bool allocate(builder *b, size_t triangles) {
+    lar_triangle_tree *tree = b->tree = lar_calloc(1, sizeof *tree);
+    if (!tree) return false;
+    tree->leaf = lar_calloc(triangles, sizeof *tree->leaf);
+    tree->node = lar_calloc(2 * triangles, sizeof *tree->node);
+    b->box = lar_calloc(triangles, sizeof *b->box);
+    b->item = lar_calloc(triangles, sizeof *b->item);
+    return tree->leaf && tree->node && b->box && b->item;
 }
 
 lar_status lar_triangle_tree_create(const lar_triangles *triangles, const int32_t *index,
                                     int32_t count, lar_triangle_tree **tree, lar_error *error) {
     if (!index) count = triangles->triangle_count;
-    size_t n = (size_t)count;
-    lar_triangle_tree *made = lar_calloc(1, sizeof *made);
-    box *boxes = lar_calloc(n, sizeof *boxes);
-    if (made) {
-        made->surface = triangles;
-        made->order = lar_calloc(n, sizeof *made->order);
-        made->node = lar_calloc(2 * n, sizeof *made->node);
+    builder b = {0};
+    const bool ready = allocate(&b, (size_t)count);
+    for (int32_t k = 0; ready && k < count; k++) {
+        b.box[k] = box_of(triangles, index ? index[k] : k);
+        b.item[k] = k;
     }
-    if (!made || !boxes || !made->order || !made->node) {
-        lar_triangle_tree_destroy(made);
-        free(boxes);
-        return lar_fail_memory(error, n * (sizeof *boxes + 2 * sizeof *made->node),
+    if (ready && count > 0) build(&b, 0, count, 0);
+    if (ready) name_triangles(&b, index, count);
+    for (int32_t k = 0; ready && k < count; k++) b.tree->leaf[k] = leaf_of(triangles, b.item[k]);
+    free(b.box);
+    free(b.item);
+    if (!ready) {
+        lar_triangle_tree_destroy(b.tree);
+        return lar_fail_memory(error, (size_t)count * (sizeof *b.box + 2 * sizeof *b.tree->node),
                                "the tree of triangles");
     }
-    for (int32_t k = 0; k < count; k++) {
-        boxes[k] = box_of(triangles, index ? index[k] : k);
-        made->order[k] = k;
-    }
-    builder b = {made, boxes, made->order};
-    if (count > 0) build(&b, 0, count, 0);
-    free(boxes);
-    name_triangles(made, index, count);
-    tree_node *fitted = realloc(made->node, ((size_t)made->node_count + 1) * sizeof *fitted);
-    if (fitted) made->node = fitted;
-    *tree = made;
+    const size_t nodes = (size_t)b.tree->node_count;
+    tree_node *fitted = realloc(b.tree->node, (nodes + 1) * sizeof *fitted);
+    if (fitted) b.tree->node = fitted;
+    *tree = b.tree;
     return LAR_OK;
 }
 
 void lar_triangle_tree_destroy(lar_triangle_tree *tree) {
     if (!tree) return;
-    free(tree->order);
+    free(tree->leaf);
     free(tree->node);
     free(tree);
 }
@@ -244,8 +275,7 @@ static double nearest_on_edge(const double p[3], const double from[3], const dou
 
 /* The foot of the perpendicular, when it lies inside the triangle and that has an area. The areas
  * of the parts are taken from cross products: they stay good in slivers. */
-static bool perpendicular(const double p[3], const double *const c[3], double weight[3],
-                          double at[3]) {
+static bool perpendicular(const double p[3], const double c[3][3], double weight[3], double at[3]) {
     const double flat = 1e-24; /* of the squared product of two edges */
     double e[3], f[3], away[3], normal[3], turned[3];
     lar_minus(c[1], c[0], e);
@@ -264,24 +294,13 @@ static bool perpendicular(const double p[3], const double *const c[3], double we
     return true;
 }
 
-/* Fills `nearest` (distance: its square) for one triangle. The corners are taken in the order of
- * their numbers: triangles with a common edge find the same bits on it, and are equally near. */
-static void nearest_on_triangle(const lar_triangles *surface, int32_t triangle, const double p[3],
+/* Fills `nearest` (distance: its square) for one triangle. */
+static void nearest_on_triangle(const leaf_triangle *leaf, const double p[3],
                                 lar_nearest *nearest) {
-    const int32_t *corner = surface->corner[triangle];
-    int rank[3] = {0, 1, 2};
-    for (int i = 0; i < 2; i++)
-        for (int k = i + 1; k < 3; k++)
-            if (corner[rank[k]] < corner[rank[i]]) {
-                int swapped = rank[i];
-                rank[i] = rank[k];
-                rank[k] = swapped;
-            }
-    const double *c[3];
-    for (int a = 0; a < 3; a++) c[a] = surface->vertex[corner[rank[a]]];
-    nearest->triangle = triangle;
+    const uint8_t *rank = leaf->corner;
+    nearest->triangle = leaf->triangle;
     double weight[3], away[3];
-    if (perpendicular(p, c, weight, nearest->point)) {
+    if (perpendicular(p, leaf->at, weight, nearest->point)) {
         for (int a = 0; a < 3; a++) nearest->weight[rank[a]] = weight[a];
         lar_minus(p, nearest->point, away);
         nearest->distance = square(away);
@@ -291,7 +310,7 @@ static void nearest_on_triangle(const lar_triangles *surface, int32_t triangle, 
     for (int edge = 0; edge < 3; edge++) {
         int from = edge == 2 ? 1 : 0, to = edge == 0 ? 1 : 2; /* 01, 02, 12 */
         double along, at[3];
-        double distance = nearest_on_edge(p, c[from], c[to], &along, at);
+        double distance = nearest_on_edge(p, leaf->at[from], leaf->at[to], &along, at);
         if (!(distance < nearest->distance)) continue;
         nearest->distance = distance;
         memcpy(nearest->point, at, sizeof at);
@@ -317,7 +336,7 @@ static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf,
                            lar_nearest *best) {
     for (int32_t k = 0; k < leaf->count; k++) {
         lar_nearest candidate;
-        nearest_on_triangle(tree->surface, tree->order[leaf->next + k], p, &candidate);
+        nearest_on_triangle(&tree->leaf[leaf->next + k], p, &candidate);
         if (candidate.distance < best->distance ||
             (candidate.distance == best->distance &&
              (best->triangle < 0 || candidate.triangle < best->triangle)))
@@ -388,9 +407,9 @@ void lar_triangle_tree_boxes(const lar_triangle_tree *tree, const double lower[3
             continue;
         }
         for (int32_t k = 0; k < node->count; k++) {
-            int32_t triangle = tree->order[node->next + k];
-            box around = box_of(tree->surface, triangle);
-            if (boxes_meet(&around, from, to) && !visit(context, triangle)) return;
+            const leaf_triangle *leaf = &tree->leaf[node->next + k];
+            box around = box_around(leaf->at[0], leaf->at[1], leaf->at[2]);
+            if (boxes_meet(&around, from, to) && !visit(context, leaf->triangle)) return;
         }
     }
 }
