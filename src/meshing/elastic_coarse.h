@@ -11,18 +11,16 @@
 #ifndef LAR_MESHING_ELASTIC_COARSE_H
 #define LAR_MESHING_ELASTIC_COARSE_H
 
-#include "meshing/elastic.h"
+#include "meshing/elastic_factor.h"
 
-enum { LAR_RIGID = 6 };
+enum { LAR_RIGID = LAR_BLOCK }; /* motions of a group */
 
 typedef struct lar_coarse {
     int32_t node_count, group_count;
-    int32_t *group;   /* [nodes] -1: still */
-    double (*arm)[3]; /* [nodes] from the group's centre, in boxes */
-    int32_t *first;   /* [rows] a row's first column that is not zero */
-    size_t *start;    /* [rows + 1] where it stands in `factor` */
-    double *factor;   /* Cholesky's, row by row from `first` to the diagonal */
-    lar_loads *load;  /* [rows] on the way */
+    int32_t *group;    /* [nodes] -1: still */
+    double (*arm)[3];  /* [nodes] from the group's centre, in boxes */
+    lar_factor factor; /* of P^T K P */
+    lar_loads *load;   /* [6 groups] on the way */
 } lar_coarse;
 
 lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar_error *error);
