@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "base/vector.h"
 #include "model/triangle_tree.h"
 
@@ -12,40 +13,59 @@
 enum { SAMPLES_MOST = 200000, CUTS_MOST = 16, CUTS_PER_EDGE = 8 };
 
 typedef struct sample {
-    double distance, weight;
+    double point[3], distance, weight;
 } sample;
 
 typedef struct samples {
     sample *one;
     size_t count, capacity;
-    double last[3]; /* the nearest point of the sample before */
+    size_t first;                  /* of those that are asked for now */
+    const lar_triangle_tree *tree; /* of what they are asked for */
     lar_error *error;
 } samples;
 
-/* What was nearest to the sample before, mostly a neighbour, says how far to look, at first. */
-static lar_status measure(samples *all, const lar_triangle_tree *tree, const double point[3],
-                          double weight) {
-    double away[3];
-    lar_nearest nearest;
-    lar_minus(point, all->last, away);
-    if (!lar_triangle_tree_nearest(tree, point, lar_length(away), &nearest) &&
-        !lar_triangle_tree_nearest(tree, point, INFINITY, &nearest))
-        return LAR_OK;
-    memcpy(all->last, nearest.point, sizeof all->last);
+static lar_status add(samples *all, const double point[3], double weight) {
     if (!LAR_GROW(all->one, all->capacity, all->count))
         return lar_fail_memory(all->error, 2 * all->capacity * sizeof *all->one,
                                "the distances between two surfaces");
-    all->one[all->count++] = (sample){nearest.distance, weight};
+    all->one[all->count++] = (sample){{point[0], point[1], point[2]}, 0, weight};
     return LAR_OK;
 }
 
-/* Makes the weights of samples first .. end sum up to a half, so that both directions count the
- * same. */
-static void halve_weights(samples *all, size_t first) {
+/* What was nearest to the sample before, mostly a neighbour, says how far to look, at first. */
+static void measure_some(void *context, int32_t first, int32_t end) {
+    const samples *all = context;
+    lar_nearest nearest = {0};
+    double reach = INFINITY;
+    for (int32_t i = first; i < end; i++) {
+        sample *one = &all->one[all->first + (size_t)i];
+        if (i > first) {
+            double away[3];
+            lar_minus(one->point, nearest.point, away);
+            reach = lar_length(away);
+        }
+        if (!lar_triangle_tree_nearest(all->tree, one->point, reach, &nearest))
+            lar_triangle_tree_nearest(all->tree, one->point, INFINITY, &nearest);
+        one->distance = nearest.distance;
+    }
+}
+
+/* Makes the weights of this direction sum up to a half, so that both count the same. */
+static void halve_weights(samples *all) {
+    const size_t first = all->first;
     double sum = 0;
     for (size_t s = first; s < all->count; s++) sum += all->one[s].weight;
     for (size_t s = first; s < all->count; s++)
         all->one[s].weight = sum > 0 ? 0.5 * all->one[s].weight / sum : 0;
+}
+
+/* One direction: the distances of the samples that have come since the last call. */
+static void measure(samples *all, const lar_triangle_tree *tree) {
+    enum { PORTION = 1024 };
+    all->tree = tree;
+    halve_weights(all);
+    lar_share((int32_t)(all->count - all->first), PORTION, measure_some, all);
+    all->first = all->count;
 }
 
 static void face_corners(const lar_mesh *mesh, int32_t face, double corner[4][3]) {
@@ -116,8 +136,7 @@ static lar_status build_fans(const lar_mesh *mesh, const int32_t *face, int32_t 
 
 /* From the mesh to the surface. A face has at least 2 x 2 samples, so that a bent one is seen. */
 static lar_status sample_faces(const lar_mesh *mesh, const int32_t *face, int32_t count,
-                               double area, double finest, const lar_triangle_tree *tree,
-                               samples *all) {
+                               double area, double finest, samples *all) {
     lar_status status = LAR_OK;
     for (int32_t f = 0; !status && f < count; f += stride_for(count)) {
         double corner[4][3], point[3];
@@ -128,7 +147,7 @@ static lar_status sample_faces(const lar_mesh *mesh, const int32_t *face, int32_
         for (int s = 0; !status && s < cuts * cuts; s++) {
             const double u = (s % cuts + 0.5) / cuts, v = (s / cuts + 0.5) / cuts;
             const double weight = place_on_face((const double(*)[3])corner, u, v, point);
-            status = measure(all, tree, point, weight / (cuts * cuts));
+            status = add(all, point, weight / (cuts * cuts));
         }
     }
     return status;
@@ -146,7 +165,7 @@ static double triangle_corners(const lar_triangles *surface, int32_t t, double c
 /* From the surface to the mesh: at the middles of the small triangles, cuts x cuts of them, into
  * which lines parallel to its sides cut a triangle. */
 static lar_status sample_triangles(const lar_triangles *surface, double area, double finest,
-                                   const lar_triangle_tree *tree, samples *all) {
+                                   samples *all) {
     lar_status status = LAR_OK;
     const int32_t count = surface->triangle_count;
     for (int32_t t = 0; !status && t < count; t += stride_for(count)) {
@@ -164,18 +183,17 @@ static lar_status sample_triangles(const lar_triangles *surface, double area, do
                 point[d] =
                     corner[0][d] +
                     (a * (corner[1][d] - corner[0][d]) + b * (corner[2][d] - corner[0][d])) / cuts;
-            status = measure(all, tree, point, own / (cuts * cuts));
+            status = add(all, point, own / (cuts * cuts));
         }
     }
     return status;
 }
 
 /* Corners have no area, but the largest distance is often there. */
-static lar_status sample_vertices(const lar_triangles *from, const lar_triangle_tree *tree,
-                                  samples *all) {
+static lar_status sample_vertices(const lar_triangles *from, samples *all) {
     lar_status status = LAR_OK;
     for (int32_t v = 0; !status && v < from->vertex_count; v += stride_for(from->vertex_count))
-        status = measure(all, tree, from->vertex[v], 0);
+        status = add(all, from->vertex[v], 0);
     return status;
 }
 
@@ -221,15 +239,12 @@ lar_status lar_deviation_measure(const lar_mesh *mesh, const int32_t *face, int3
         status = lar_triangle_tree_create(&fans, NULL, fans.triangle_count, &mesh_tree, error);
     const double face_spacing = sqrt(face_area / count) / CUTS_PER_EDGE;
     const double spacing = fmin(face_spacing, sqrt(area / surface->triangle_count) / 2);
-    if (!status) status = sample_faces(mesh, face, count, face_area, spacing, surface_tree, &all);
-    if (!status) status = sample_vertices(&fans, surface_tree, &all);
-    if (!status) {
-        halve_weights(&all, 0);
-        const size_t first = all.count;
-        status = sample_triangles(surface, area, face_spacing, mesh_tree, &all);
-        if (!status) status = sample_vertices(surface, mesh_tree, &all);
-        halve_weights(&all, first);
-    }
+    if (!status) status = sample_faces(mesh, face, count, face_area, spacing, &all);
+    if (!status) status = sample_vertices(&fans, &all);
+    if (!status) measure(&all, surface_tree);
+    if (!status) status = sample_triangles(surface, area, face_spacing, &all);
+    if (!status) status = sample_vertices(surface, &all);
+    if (!status) measure(&all, mesh_tree);
     if (!status) summarise(&all, deviation);
     lar_triangle_tree_destroy(surface_tree);
     lar_triangle_tree_destroy(mesh_tree);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "base/union_find.h"
 #include "model/mesh_skin.h"
 
@@ -12,6 +13,8 @@ static const double NEAR = 0.5, FAR = 1;
 /* The mesh has nothing of a shell with less than this part of its corners near. */
 static const double HAS = 0.1;
 
+enum { PORTION = 1024 };
+
 /* ---- shells ------------------------------------------------------------------------------- */
 
 typedef struct shells {
@@ -19,9 +22,25 @@ typedef struct shells {
     int32_t *near;           /* [vertices] of these near the mesh */
 } shells;
 
-static void find_shells(const lar_triangles *surface, const lar_mesh_skin *skin, double size,
-                        shells *found) {
+/* Asking where the mesh is, for every vertex. */
+typedef struct question {
+    lar_triangles *surface;
+    lar_mesh_skin skin;
+    double size;
+    bool *is_near; /* [vertices] */
+} question;
+
+static void find_near(void *context, int32_t first, int32_t end) {
+    const question *q = context;
     lar_nearest nearest;
+    for (int32_t v = first; v < end; v++)
+        q->is_near[v] = lar_triangle_tree_nearest(q->skin.tree, q->surface->vertex[v],
+                                                  NEAR * q->size, &nearest);
+}
+
+static void find_shells(question *q, shells *found) {
+    const lar_triangles *surface = q->surface;
+    lar_share(surface->vertex_count, PORTION, find_near, q);
     lar_union_start(found->parent, surface->vertex_count);
     for (int32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 1; k < 3; k++)
@@ -29,8 +48,7 @@ static void find_shells(const lar_triangles *surface, const lar_mesh_skin *skin,
     for (int32_t v = 0; v < surface->vertex_count; v++) {
         int32_t root = lar_union_root(found->parent, v);
         found->count[root]++;
-        if (lar_triangle_tree_nearest(skin->tree, surface->vertex[v], NEAR * size, &nearest))
-            found->near[root]++;
+        found->near[root] += q->is_near[v];
     }
 }
 
@@ -50,21 +68,23 @@ static void drop_shells(lar_triangles *surface, const shells *found) {
 
 lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, lar_triangles *surface,
                                  lar_error *error) {
-    lar_mesh_skin skin = {0};
     size_t vertices = (size_t)surface->vertex_count;
     int32_t before = surface->triangle_count;
+    question q = {
+        .surface = surface, .size = size, .is_near = lar_calloc(vertices, sizeof *q.is_near)};
     shells found = {.parent = lar_calloc(vertices, sizeof *found.parent),
                     .count = lar_calloc(vertices, sizeof *found.count),
                     .near = lar_calloc(vertices, sizeof *found.near)};
-    bool good = found.parent && found.count && found.near;
-    lar_status status = good ? lar_mesh_skin_create(mesh, &skin, error)
+    bool good = q.is_near && found.parent && found.count && found.near;
+    lar_status status = good ? lar_mesh_skin_create(mesh, &q.skin, error)
                              : lar_fail_memory(error, 3 * vertices * sizeof(int32_t), "shells");
     if (!status) {
-        find_shells(surface, &skin, size, &found);
+        find_shells(&q, &found);
         drop_shells(surface, &found);
     }
     if (!status && surface->triangle_count < before) status = lar_triangles_join(surface, error);
-    lar_mesh_skin_clear(&skin);
+    lar_mesh_skin_clear(&q.skin);
+    free(q.is_near);
     free(found.parent);
     free(found.count);
     free(found.near);
@@ -73,16 +93,21 @@ lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, lar_triangle
 
 /* ---- tongues ------------------------------------------------------------------------------ */
 
+static void draw_some(void *context, int32_t first, int32_t end) {
+    const question *q = context;
+    for (int32_t v = first; v < end; v++) {
+        double *vertex = q->surface->vertex[v];
+        lar_nearest nearest;
+        if (!lar_triangle_tree_nearest(q->skin.tree, vertex, INFINITY, &nearest)) continue;
+        if (nearest.distance > FAR * q->size) memcpy(vertex, nearest.point, sizeof nearest.point);
+    }
+}
+
 lar_status lar_fine_surface_draw(const lar_mesh *mesh, double size, lar_triangles *surface,
                                  lar_error *error) {
-    lar_mesh_skin skin = {0};
-    lar_nearest nearest;
-    lar_status status = lar_mesh_skin_create(mesh, &skin, error);
-    for (int32_t v = 0; !status && v < surface->vertex_count; v++) {
-        if (!lar_triangle_tree_nearest(skin.tree, surface->vertex[v], INFINITY, &nearest)) continue;
-        if (nearest.distance > FAR * size)
-            memcpy(surface->vertex[v], nearest.point, sizeof nearest.point);
-    }
-    lar_mesh_skin_clear(&skin);
+    question q = {.surface = surface, .size = size};
+    lar_status status = lar_mesh_skin_create(mesh, &q.skin, error);
+    if (!status) lar_share(surface->vertex_count, PORTION, draw_some, &q);
+    lar_mesh_skin_clear(&q.skin);
     return status;
 }

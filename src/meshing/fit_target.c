@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "base/vector.h"
 #include "meshing/fit_work.h"
 
@@ -39,19 +40,33 @@ static int32_t choose_triangles(const lar_fit_work *work, const uint16_t region[
     return count;
 }
 
-lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
-    const lar_triangles *triangles = &work->boundary->triangles;
-    const size_t bytes = (size_t)triangles->triangle_count * sizeof(int32_t);
+typedef struct planting {
+    lar_fit_work *work;
+    bool failed; /* atomic */
+} planting;
+
+static void plant_trees(void *context, int32_t first, int32_t end) {
+    planting *all = context;
+    const lar_triangles *triangles = &all->work->boundary->triangles;
     int32_t *chosen = lar_calloc((size_t)triangles->triangle_count, sizeof *chosen);
-    if (!chosen) return lar_fail_memory(error, bytes, "the triangles between two regions");
-    lar_status status = LAR_OK;
-    for (int32_t p = 0; status == LAR_OK && p < work->pair_count; p++) {
-        const int32_t count = choose_triangles(work, work->pair[p].region, chosen);
-        if (count > 0)
-            status = lar_triangle_tree_create(triangles, chosen, count, &work->pair[p].tree, error);
+    bool ready = chosen != NULL;
+    for (int32_t p = first; ready && p < end; p++) {
+        lar_fit_pair *pair = &all->work->pair[p];
+        const int32_t count = choose_triangles(all->work, pair->region, chosen);
+        ready =
+            count == 0 || !lar_triangle_tree_create(triangles, chosen, count, &pair->tree, NULL);
     }
+    if (!ready) __atomic_store_n(&all->failed, true, __ATOMIC_RELAXED);
     free(chosen);
-    return status;
+}
+
+lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
+    enum { PORTION = 4 };
+    const size_t bytes = (size_t)work->boundary->triangles.triangle_count * sizeof(int32_t);
+    planting all = {.work = work};
+    lar_share(work->pair_count, PORTION, plant_trees, &all);
+    if (!all.failed) return LAR_OK;
+    return lar_fail_memory(error, bytes, "the triangles between two regions");
 }
 
 /* ---- planes --------------------------------------------------------------------------------- */
@@ -176,7 +191,18 @@ static void renew_point(lar_fit_work *work, lar_fit_point *point) {
                 work->node_weight * point->faces / 4, &point->plane);
 }
 
+static void renew_faces(void *context, int32_t first, int32_t end) {
+    lar_fit_work *work = context;
+    for (int32_t f = first; f < end; f++) renew_face(work, &work->face[f]);
+}
+
+static void renew_points(void *context, int32_t first, int32_t end) {
+    lar_fit_work *work = context;
+    for (int32_t i = first; i < end; i++) renew_point(work, &work->point[i]);
+}
+
 void lar_fit_targets_renew(lar_fit_work *work) {
-    for (int32_t f = 0; f < work->face_count; f++) renew_face(work, &work->face[f]);
-    for (int32_t i = 0; i < work->point_count; i++) renew_point(work, &work->point[i]);
+    enum { PORTION = 512 };
+    lar_share(work->face_count, PORTION, renew_faces, work);
+    lar_share(work->point_count, PORTION, renew_points, work);
 }

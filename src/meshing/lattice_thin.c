@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "base/vector.h"
 #include "model/triangle_tree.h"
 
@@ -27,7 +28,7 @@ static const double PLACES_PER_FACE = 20, PLACE_LEAST = 0.7;
 
 /* What was measured at a place serves for some that follow, so near, with normals so alike: that
  * saves most of the time. */
-enum { SERVES = 7 };
+enum { SERVES = 7, PORTION = 1024 };
 static const double NEAR = 0.6, ALIKE = 0.7;
 
 void lar_thin_clear(lar_thin *thin) {
@@ -42,9 +43,9 @@ typedef struct search {
     lar_triangles outer;
     lar_triangle_tree *tree;
     lar_thin *thin;
-    double due;          /* area since the last place */
-    lar_thin_place last; /* that was measured */
-    int served;          /* for so many others; SERVES at the start */
+    double due;     /* area since the last place */
+    int32_t last;   /* place that is to be measured; -1: none yet */
+    int32_t served; /* by it */
 } search;
 
 /* The largest ball's diameter on the side of `normal`; INFINITY: more than `most`, or the second
@@ -115,28 +116,23 @@ static void measure_place(const search *s, lar_thin_place *place) {
 
 static bool last_serves(const search *s, const double point[3], const double normal[3]) {
     double away[3];
-    lar_minus(point, s->last.point, away);
-    return s->served < SERVES && lar_length(away) < NEAR * s->thin->size &&
-           lar_dot(normal, s->last.normal) > ALIKE;
+    if (s->last < 0 || s->served == SERVES) return false;
+    const lar_thin_place *last = &s->thin->place[s->last];
+    lar_minus(point, last->point, away);
+    return lar_length(away) < NEAR * s->thin->size && lar_dot(normal, last->normal) > ALIKE;
 }
 
 static bool add_place(search *s, const double point[3], const double normal[3], int32_t triangle) {
     lar_thin *thin = s->thin;
-    lar_thin_place place = s->last;
-    memcpy(place.point, point, sizeof place.point);
-    memcpy(place.normal, normal, sizeof place.normal);
-    place.region = region_of_tag(s->boundary, s->outer.tag[triangle]);
-    if (last_serves(s, point, normal)) {
-        s->served++;
-    } else {
-        measure_place(s, &place);
-        s->last = place;
-        s->served = 0;
-    }
-    if (isinf(place.slot) && isinf(place.part)) return true;
-    if (on_cut(s->boundary, point, normal, thin->size)) return true;
     if (!LAR_GROW(thin->place, thin->capacity, thin->count)) return false;
-    thin->place[thin->count++] = place;
+    lar_thin_place *place = &thin->place[thin->count];
+    *place = (lar_thin_place){.region = region_of_tag(s->boundary, s->outer.tag[triangle])};
+    memcpy(place->point, point, sizeof place->point);
+    memcpy(place->normal, normal, sizeof place->normal);
+    place->measured = !last_serves(s, point, normal);
+    s->served = place->measured ? 0 : s->served + 1;
+    if (place->measured) s->last = (int32_t)thin->count;
+    thin->count++;
     return true;
 }
 
@@ -169,9 +165,32 @@ static bool add_places(search *s, int32_t t) {
     return true;
 }
 
+static void measure_places(void *context, int32_t first, int32_t end) {
+    const search *s = context;
+    for (int32_t p = first; p < end; p++)
+        if (s->thin->place[p].measured) measure_place(s, &s->thin->place[p]);
+}
+
+/* Places that are thin on neither side are left out. */
+static void keep_thin(const search *s) {
+    lar_thin *thin = s->thin;
+    float slot = INFINITY, part = INFINITY;
+    size_t kept = 0;
+    for (size_t p = 0; p < thin->count; p++) {
+        lar_thin_place place = thin->place[p];
+        if (place.measured) slot = place.slot, part = place.part;
+        place.slot = slot;
+        place.part = part;
+        if (isinf(slot) && isinf(part)) continue;
+        if (on_cut(s->boundary, place.point, place.normal, thin->size)) continue;
+        thin->place[kept++] = place;
+    }
+    thin->count = kept;
+}
+
 lar_status lar_thin_find(const lar_boundary *boundary, double size, lar_thin *thin,
                          lar_error *error) {
-    search s = {.boundary = boundary, .thin = thin, .served = SERVES};
+    search s = {.boundary = boundary, .thin = thin, .last = -1};
     thin->count = 0;
     thin->size = size;
     lar_status status = lar_boundary_outer(boundary, &s.outer, error);
@@ -181,6 +200,10 @@ lar_status lar_thin_find(const lar_boundary *boundary, double size, lar_thin *th
         if (!add_places(&s, t))
             status = lar_fail_memory(error, 2 * thin->capacity * sizeof *thin->place,
                                      "what is thin of the body");
+    if (!status) {
+        lar_share((int32_t)thin->count, PORTION, measure_places, &s);
+        keep_thin(&s);
+    }
     lar_triangle_tree_destroy(s.tree);
     lar_triangles_clear(&s.outer);
     return status;

@@ -27,6 +27,7 @@ typedef struct lar_thin_place {
     float slot, part;           /* width of the outside in front, thickness of the body behind [m];
                                    INFINITY: not thin */
     uint8_t region;             /* of the body behind */
+    bool measured;              /* otherwise as thin as the last one before that was */
 } lar_thin_place;
 
 typedef struct lar_thin {

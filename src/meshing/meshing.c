@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit.h"
 #include "meshing/meshing.h"
@@ -295,6 +296,29 @@ static void count_regions(lar_meshing *m) {
     }
 }
 
+static lar_status measure(const work *w, lar_error *error) {
+    lar_meshing *m = w->meshing;
+    const double size = m->info.size;
+    lar_status status = lar_fine_surface_drop(&m->mesh, size, &m->outer, error);
+    if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
+    return status ? status : lar_fine_surface_draw(&m->mesh, size, &m->outer, error);
+}
+
+/* Two that need nothing from each other and take about as long. */
+typedef struct judging {
+    const work *work;
+    lar_status status[2];
+    lar_error error[2];
+} judging;
+
+static void judge(void *context, int32_t first, int32_t end) {
+    judging *both = context;
+    const work *w = both->work;
+    for (int32_t i = first; i < end; i++)
+        both->status[i] = i == 0 ? lar_support_choose(w->meshing, w->options.fix, &both->error[i])
+                                 : measure(w, &both->error[i]);
+}
+
 static lar_status describe(work *w) {
     lar_meshing *m = w->meshing;
     const lar_cleaning *did = &w->cleaning;
@@ -310,10 +334,13 @@ static lar_status describe(work *w) {
     if (!m->region) return lar_fail_memory(w->error, sizeof *m->region, "regions");
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
-    if (!status) status = lar_fine_surface_drop(&m->mesh, info->size, &m->outer, w->error);
-    if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &info->quality, w->error);
-    if (!status) status = lar_fine_surface_draw(&m->mesh, info->size, &m->outer, w->error);
-    return status ? status : lar_support_choose(m, w->options.fix, w->error);
+    judging both = {.work = w};
+    if (!status) lar_share(2, 1, judge, &both);
+    for (int i = 0; !status && i < 2; i++) {
+        status = both.status[i];
+        if (status) *w->error = both.error[i];
+    }
+    return status;
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,

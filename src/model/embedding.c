@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/share.h"
 #include "model/mesh_skin.h"
 
 /* Vertices farther from the body than so many mean edges are another body's. */
@@ -126,12 +127,15 @@ typedef struct binder {
     lar_triangles boxes;
     lar_triangle_tree *box_tree;
     lar_mesh_skin skin;
+    lar_embedding *embedding; /* that is made */
+    double *outside;          /* [vertices] distance from the body; 0 in it */
 } binder;
 
 static void binder_clear(binder *b) {
     lar_triangle_tree_destroy(b->box_tree);
     lar_triangles_clear(&b->boxes);
     lar_mesh_skin_clear(&b->skin);
+    free(b->outside);
 }
 
 /* A triangle with the same box as the element: from its lower corner to its upper one and back by
@@ -203,14 +207,22 @@ static lar_status refuse_far(const binder *b, const lar_triangles *surface, int3
                     b->mean_edge);
 }
 
-/* The element of one vertex and its weights. */
-static lar_status bind_vertex(const binder *b, lar_embedding *embedding, int32_t vertex,
-                              lar_error *error) {
+static lar_status refuse(const binder *b, const lar_triangles *surface, int32_t vertex,
+                         lar_error *error) {
+    const double *p = surface->vertex[vertex];
+    if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+        return refuse_far(b, surface, vertex, error);
+    return lar_fail(error, LAR_ERROR_MODEL, "%s: vertex %ld is not finite",
+                    surface->source ? surface->source : "the surface", (long)vertex);
+}
+
+/* The element of one vertex and its weights; -1: none is near. Returns how far it lies outside. */
+static double bind_vertex(const binder *b, int32_t vertex) {
+    lar_embedding *embedding = b->embedding;
     const double *point = embedding->surface.vertex[vertex];
-    if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2]))
-        return lar_fail(error, LAR_ERROR_MODEL, "%s: vertex %ld is not finite",
-                        embedding->surface.source ? embedding->surface.source : "the surface",
-                        (long)vertex);
+    double outside = 0;
+    embedding->element[vertex] = -1;
+    if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2])) return 0;
     search s = {.binder = b, .point = point, .element = -1};
     lar_triangle_tree_boxes(b->box_tree, point, point, SKIN * b->mean_edge, try_element, &s);
     lar_nearest nearest;
@@ -225,15 +237,36 @@ static lar_status bind_vertex(const binder *b, lar_embedding *embedding, int32_t
             for (int i = 0; i < 3; i++) s.xi[i] += nearest.weight[c] * sign[i];
         }
         s.out = 1;
-        embedding->farthest = fmax(embedding->farthest, nearest.distance);
+        outside = nearest.distance;
     }
-    if (s.element < 0 || s.out > ASIDE) return refuse_far(b, &embedding->surface, vertex, error);
+    if (s.element < 0 || s.out > ASIDE) return 0;
     for (int i = 0; i < 3; i++) s.xi[i] = fmax(-1, fmin(1, s.xi[i]));
     double corner[8][3], weight[8];
     lar_mesh_corners(b->mesh, s.element, corner);
     weigh((const double(*)[3])corner, s.xi, point, weight);
     embedding->element[vertex] = s.element;
     for (int a = 0; a < 8; a++) embedding->weight[vertex][a] = (float)weight[a];
+    return outside;
+}
+
+static void bind_some(void *context, int32_t first, int32_t end) {
+    const binder *b = context;
+    for (int32_t v = first; v < end; v++) b->outside[v] = bind_vertex(b, v);
+}
+
+/* The first vertex that nothing is near is the one that is told. */
+static lar_status bind_all(binder *b, lar_error *error) {
+    enum { PORTION = 1024 };
+    lar_embedding *embedding = b->embedding;
+    const int32_t vertices = embedding->surface.vertex_count;
+    b->outside = lar_calloc((size_t)vertices, sizeof *b->outside);
+    if (!b->outside)
+        return lar_fail_memory(error, 8 * (size_t)vertices, "a surface that rides on the mesh");
+    lar_share(vertices, PORTION, bind_some, b);
+    for (int32_t v = 0; v < vertices; v++) {
+        if (embedding->element[v] < 0) return refuse(b, &embedding->surface, v, error);
+        embedding->farthest = fmax(embedding->farthest, b->outside[v]);
+    }
     return LAR_OK;
 }
 
@@ -242,7 +275,7 @@ lar_status lar_embedding_bind(const lar_mesh *mesh, lar_triangles *surface,
     *embedding = (lar_embedding){.surface = *surface};
     *surface = (lar_triangles){0};
     size_t vertices = (size_t)embedding->surface.vertex_count;
-    binder b = {.mesh = mesh, .mean_edge = lar_mesh_mean_edge(mesh)};
+    binder b = {.mesh = mesh, .mean_edge = lar_mesh_mean_edge(mesh), .embedding = embedding};
     embedding->element = lar_calloc(vertices, sizeof *embedding->element);
     embedding->weight = lar_calloc(vertices, sizeof *embedding->weight);
     lar_status status = LAR_OK;
@@ -250,8 +283,7 @@ lar_status lar_embedding_bind(const lar_mesh *mesh, lar_triangles *surface,
         status = lar_fail_memory(error, 36 * vertices, "a surface that rides on the mesh");
     if (!status) status = make_boxes(&b, error);
     if (!status) status = lar_mesh_skin_create(mesh, &b.skin, error);
-    for (int32_t v = 0; !status && v < embedding->surface.vertex_count; v++)
-        status = bind_vertex(&b, embedding, v, error);
+    if (!status) status = bind_all(&b, error);
     binder_clear(&b);
     if (status) lar_embedding_clear(embedding);
     return status;

@@ -59,6 +59,15 @@ for file in .vtu .yaml _surface.vtp; do
 done
 find . -name '*.part' | grep -q . && fail "a part file is left"
 
+# One core or many: the same files.
+if taskset -c 0 true 2>/dev/null; then
+    expect 0 taskset -c 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 \
+        --title "Two organs" --out alone
+    for file in Two_organs/*; do
+        cmp "$file" "alone/${file#*/}" || fail "$file depends on the number of cores"
+    done
+fi
+
 # What is written does what is said of it.
 expect 0 "$LARIAT" info Two_organs/Two_organs.yaml
 says '^title  *Two organs'

@@ -1,0 +1,42 @@
+#include "base/share.h"
+
+#include "base/pin.h"
+#include "base/thread.h"
+
+enum { THREADS_MOST = 16 };
+
+typedef struct task {
+    lar_share_work *work;
+    void *context;
+    int32_t count, portion;
+    int64_t next; /* atomic: the first item that nobody has taken */
+} task;
+
+static void take_portions(task *shared) {
+    for (;;) {
+        const int64_t first = __atomic_fetch_add(&shared->next, shared->portion, __ATOMIC_RELAXED);
+        if (first >= shared->count) return;
+        const int64_t end = first + shared->portion;
+        shared->work(shared->context, (int32_t)first,
+                     end < shared->count ? (int32_t)end : shared->count);
+    }
+}
+
+static void *help(void *argument) {
+    lar_pin_nowhere();
+    take_portions(argument);
+    return NULL;
+}
+
+void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context) {
+    task shared = {work, context, count, portion, 0};
+    pthread_t thread[THREADS_MOST];
+    const int64_t portions = ((int64_t)count + portion - 1) / portion;
+    const int32_t cores = portions > 1 ? lar_pin_cores() : 1;
+    int started = 0;
+    while (started + 1 < cores && started + 1 < portions && started < THREADS_MOST &&
+           !lar_thread_start(&thread[started], help, &shared))
+        started++;
+    take_portions(&shared);
+    for (int i = 0; i < started; i++) pthread_join(thread[i], NULL);
+}

@@ -1,0 +1,22 @@
+/* Independent items of work, divided among the cores that this process may use.
+ *
+ *     items      0 . . . | . . . . | . . . . | . . .        in portions
+ *     caller     #########           ########## ...         each takes the next one that is left
+ *     thread 1            ##########           ...
+ *
+ * For set-up, where a call lasts milliseconds at least: threads live as long as the call. What
+ * comes out may not depend on who did what: an item writes only what is its own. (A job that comes
+ * again and again is for a crew, base/crew.h.) */
+#ifndef LAR_BASE_SHARE_H
+#define LAR_BASE_SHARE_H
+
+#include <stdint.h>
+
+/* Does the items first..end - 1. */
+typedef void lar_share_work(void *context, int32_t first, int32_t end);
+
+/* Does `count` items, `portion` of them at a time, and returns when all are done. Where the system
+ * gives no thread the caller does it alone. Calls may be nested. */
+void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context);
+
+#endif

@@ -1,0 +1,69 @@
+/* Every item is done once, whoever does it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/share.h"
+
+enum { MOST = 1000 };
+
+typedef struct work {
+    int done[MOST]; /* written by whoever has the item */
+    int32_t count, portion;
+    int bad; /* atomic: portions that are none */
+    int calls;
+} work;
+
+static void count_up(void *context, int32_t first, int32_t end) {
+    work *w = context;
+    if (first % w->portion != 0 || end <= first || end - first > w->portion || end > w->count)
+        __atomic_fetch_add(&w->bad, 1, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&w->calls, 1, __ATOMIC_RELAXED);
+    for (int32_t i = first; i < end; i++) w->done[i]++;
+}
+
+static void every_item_is_done_once(void **state) {
+    (void)state;
+    const int32_t counts[] = {0, 1, 2, 7, 999, 1000}, portions[] = {1, 3, 64, 1000, INT32_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        for (size_t k = 0; k < sizeof portions / sizeof *portions; k++) {
+            work w = {.count = counts[i], .portion = portions[k]};
+            lar_share(w.count, w.portion, count_up, &w);
+            assert_int_equal(w.bad, 0);
+            assert_int_equal(w.calls, ((int64_t)w.count + w.portion - 1) / w.portion);
+            for (int32_t n = 0; n < MOST; n++) assert_int_equal(w.done[n], n < w.count);
+        }
+}
+
+typedef struct nest {
+    work row[8];
+} nest;
+
+static void share_rows(void *context, int32_t first, int32_t end) {
+    nest *all = context;
+    for (int32_t r = first; r < end; r++) {
+        all->row[r] = (work){.count = MOST, .portion = 10};
+        lar_share(MOST, 10, count_up, &all->row[r]);
+    }
+}
+
+static void calls_can_be_nested(void **state) {
+    (void)state;
+    static nest all;
+    memset(&all, 0, sizeof all);
+    lar_share(8, 1, share_rows, &all);
+    for (int r = 0; r < 8; r++)
+        for (int32_t n = 0; n < MOST; n++) assert_int_equal(all.row[r].done[n], 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_item_is_done_once),
+        cmocka_unit_test(calls_can_be_nested),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
