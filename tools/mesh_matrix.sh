@@ -5,9 +5,9 @@
 #     tools/mesh_matrix.sh DATA [LARIAT [ELEMENTS...]]
 #
 # DATA holds labels/totalseg_abdomen_pelvis_3mm.nii.gz with labels/totalseg_total_labels.csv
-# (TotalSegmentator's test files) and the closed surfaces surfaces/*.{obj,stl} named below; what is
-# not there is left out. LARIAT is build/lariat without it, ELEMENTS 1000 5000 20000. Takes half
-# an hour, on one core. Exit status 1: something failed, or did not come to rest.
+# (TotalSegmentator's test files), other label images and the closed surfaces surfaces/*.{obj,stl}
+# named below; what is not there is left out. LARIAT is build/lariat without it, ELEMENTS 1000 5000
+# 20000. Takes half an hour, on one core. Exit status 1: something failed, or did not come to rest.
 #
 # Columns: processor time and memory of `lariat mesh`; mean deviation in edges; least scaled
 # Jacobian; error of the volume; pads; damping and duration that the scene chose; how far the pull
@@ -92,5 +92,8 @@ for n in $sizes; do
     one "liver (surface)" "$n" "$DATA/surfaces/liver_female.stl"
     one "uterus, back wall (surface)" "$n" "$DATA/surfaces/uterus_posterior_wall.obj"
     one "liver, coarse (surface)" "$n" "$DATA/surfaces/coarse_liver.obj" --scale 0.05
+    one "chest, 7 labels" "$n" "$DATA/labels/slicerio_chest.seg.nrrd"
+    one "cortex, 41 labels" "$n" "$DATA/labels/mricron_brodmann.nii.gz"
+    one "abdomen, 61 labels" "$n" "$IMAGE" --names "$NAMES"
 done
 exit $failed

@@ -171,7 +171,8 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mes
     memcpy(work->origin, mesh->position[0], sizeof work->origin);
     work->x = lar_calloc(nodes, sizeof *work->x);
     work->awake = lar_calloc(nodes, sizeof *work->awake);
-    if (!work->x || !work->awake)
+    work->region = lar_calloc((size_t)boundary->region_count + 1, sizeof *work->region);
+    if (!work->x || !work->awake || !work->region)
         return lar_fail_memory(error, nodes * sizeof *work->x, "the nodes' places");
     for (size_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++)
@@ -188,7 +189,7 @@ void lar_fit_work_clear(lar_fit_work *work) {
     void *const owned[] = {
         work->x,          work->awake,       work->element_start, work->element_around,
         work->face_start, work->face_around, work->point_start,   work->face,
-        work->point,      work->pair};
+        work->point,      work->pair,        work->region};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     memset(work, 0, sizeof *work);
 }

@@ -15,7 +15,7 @@
 enum { SWEEPS = 200 };
 
 /* Beyond this many cells the mesh cannot follow: a region that misses so much lacks cells. */
-static const double FARTHEST = 0.4;
+static const double FARTHEST = 0.8;
 
 static void measure_areas(lar_fit_work *work) {
     for (int32_t p = 0; p < work->pair_count; p++) work->pair[p].area = 0;
@@ -61,6 +61,18 @@ static void solve_pressures(const lar_fit_work *work, const double *missing, dou
     }
 }
 
+/* Where the elements' shape holds against an offset, volumes follow only by a part of it: what goes
+ * on missing is asked for with more and more weight. */
+static void weigh_missing(lar_fit_region *region, double *missing, size_t regions) {
+    static const double FOLLOWS = 0.6, MORE = 1.5, MOST = 4;
+    for (size_t r = 1; r < regions; r++) {
+        const double part = region[r].missing != 0 ? missing[r] / region[r].missing : 0;
+        region[r].missing = missing[r];
+        region[r].weight = part > FOLLOWS ? fmin(MORE * region[r].weight, MOST) : 1;
+        missing[r] *= region[r].weight;
+    }
+}
+
 lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *error) {
     const size_t regions = (size_t)work->boundary->region_count + 1;
     double *table = lar_calloc(4 * regions, sizeof *table);
@@ -68,6 +80,7 @@ lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *e
     double *missing = table, *pressure = table + regions;
     measure_areas(work);
     measure_missing(work, missing);
+    weigh_missing(work->region, missing, regions);
     solve_pressures(work, missing, pressure, table + 2 * regions, table + 3 * regions);
     for (int32_t p = 0; p < work->pair_count; p++) {
         lar_fit_pair *pair = &work->pair[p];

@@ -51,6 +51,11 @@ typedef struct lar_fit_pair {
     double offset;           /* how far towards the first region faces shall lie [cells] */
 } lar_fit_pair;
 
+/* Of a region's volume: what was missing last time [cells], and how much that counts. */
+typedef struct lar_fit_region {
+    double missing, weight;
+} lar_fit_region;
+
 typedef struct lar_fit_work {
     const lar_boundary *boundary;
     const lar_mesh *mesh; /* its elements; positions are in `x` */
@@ -64,6 +69,7 @@ typedef struct lar_fit_work {
     lar_fit_face *face;
     lar_fit_point *point;
     lar_fit_pair *pair;
+    lar_fit_region *region; /* [regions + 1] */
 
     lar_fit_law law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */

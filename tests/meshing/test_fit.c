@@ -250,8 +250,9 @@ static int shell_in_ball(const double x[3]) {
     return radius > 0.014 - 1e-3 * THICK ? 2 : 3;
 }
 
-/* By majority the plate's volume is 3.6 % off. The shell stays 9 % off, and what is inside it 12 %:
- * half a cell thick and curved, it is no manifold of cells everywhere. */
+/* By majority the plate's volume is 3.6 % off. The shell, half a cell thick and curved, is no
+ * manifold of cells everywhere: with planes no farther than 0.4 of a cell from the true boundary it
+ * stays 9 % off, and what is inside it 12 %. */
 static void test_thin_region(void **state) {
     (void)state;
     int (*const label[])(const double x[3]) = {plate_in_block, shell_in_ball};
@@ -271,7 +272,7 @@ static void test_thin_region(void **state) {
         lar_jacobians_count(&body.draft.mesh, &jacobians);
         assert_below(0.25, jacobians.least);
         assert_below(0.9, jacobians.above_05);
-        assert_region_volumes(&body, s == 0 ? 0.02 : 0.15);
+        assert_region_volumes(&body, 0.005);
         assert_below(deviation_of(&body), 0.15);
         end(&body);
     }
