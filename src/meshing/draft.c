@@ -3,6 +3,7 @@
 
 #include "meshing/draft_cuts.h"
 #include "meshing/fit.h"
+#include "meshing/fit_quality.h"
 
 /* Lattice points along an axis are one more than cells. */
 typedef struct point_grid {
@@ -130,6 +131,13 @@ static lar_status allocate(lar_draft_mesh *draft, lar_error *error) {
     return LAR_OK;
 }
 
+static void corners_of(const point_grid *grid, const int at[3], int32_t node[8]) {
+    for (int a = 0; a < 8; a++)
+        node[a] = grid->node[point_index(grid, at[0] + (lar_node_sign[a][0] > 0),
+                                         at[1] + (lar_node_sign[a][1] > 0),
+                                         at[2] + (lar_node_sign[a][2] > 0))];
+}
+
 static void fill_elements(const point_grid *grid, lar_mesh *mesh) {
     const lar_lattice *lattice = grid->lattice;
     size_t c = 0;
@@ -138,14 +146,62 @@ static void fill_elements(const point_grid *grid, lar_mesh *mesh) {
         for (int j = 0; j < lattice->cells[1]; j++)
             for (int i = 0; i < lattice->cells[0]; i++, c++) {
                 if (lattice->region[c] == 0) continue;
-                for (int a = 0; a < 8; a++)
-                    mesh->element[e][a] = grid->node[point_index(
-                        grid, i + (lar_node_sign[a][0] > 0), j + (lar_node_sign[a][1] > 0),
-                        k + (lar_node_sign[a][2] > 0))];
+                corners_of(grid, (const int[]){i, j, k}, mesh->element[e]);
                 mesh->element_tag[e] = lattice->region[c];
                 mesh->element_id[e] = e + 1;
                 e++;
             }
+}
+
+/* Whether the way along `axis` from a point to the next one is an edge of an element. */
+static bool is_edge(const lar_lattice *lattice, const int from[3], int axis) {
+    for (int c = 0; c < 4; c++) {
+        int cell[3] = {from[0], from[1], from[2]};
+        cell[(axis + 1) % 3] -= c & 1;
+        cell[(axis + 2) % 3] -= c >> 1;
+        if (region_of(lattice, cell) != 0) return true;
+    }
+    return false;
+}
+
+/* Whether an edge of a cell's corner goes over to another side of the body. */
+static bool goes_across(const lar_lattice *lattice, const int at[3], int a) {
+    for (int axis = 0; axis < 3; axis++) {
+        int from[3];
+        for (int d = 0; d < 3; d++) from[d] = at[d] + (d != axis && lar_node_sign[a][d] > 0);
+        if (!is_edge(lattice, from, axis)) return true;
+    }
+    return false;
+}
+
+/* The corners of a cell outside. */
+static bool add_slots(const point_grid *grid, const int at[3], lar_draft_mesh *draft,
+                      size_t *capacity) {
+    int32_t node[8];
+    corners_of(grid, at, node);
+    for (int a = 0; a < 8; a++) {
+        const uint8_t *end = lar_fit_edge[a];
+        if (node[a] < 0 || node[end[0]] < 0 || node[end[1]] < 0 || node[end[2]] < 0) continue;
+        if (!goes_across(grid->lattice, at, a)) continue;
+        if (draft->slot_count == INT32_MAX / 4) return true;
+        if (!LAR_GROW(draft->slot, *capacity, draft->slot_count)) return false;
+        int32_t *slot = draft->slot[draft->slot_count++];
+        for (int e = 0; e < 3; e++) slot[e] = node[end[e]];
+        slot[LAR_FIT_MOVES_CORNER] = node[a];
+    }
+    return true;
+}
+
+static lar_status fill_slots(const point_grid *grid, lar_draft_mesh *draft, lar_error *error) {
+    const lar_lattice *lattice = grid->lattice;
+    size_t capacity = 0, c = 0;
+    for (int k = 0; k < lattice->cells[2]; k++)
+        for (int j = 0; j < lattice->cells[1]; j++)
+            for (int i = 0; i < lattice->cells[0]; i++, c++)
+                if (lattice->region[c] == 0 &&
+                    !add_slots(grid, (const int[]){i, j, k}, draft, &capacity))
+                    return lar_fail_memory(error, 2 * capacity * sizeof *draft->slot, "slots");
+    return LAR_OK;
 }
 
 /* Positions, ids, and what meets at the nodes. */
@@ -176,6 +232,7 @@ void lar_draft_clear(lar_draft_mesh *draft) {
     lar_mesh_clear(&draft->mesh);
     free(draft->meet_start);
     free(draft->meet);
+    free(draft->slot);
     *draft = (lar_draft_mesh){0};
 }
 
@@ -191,6 +248,7 @@ lar_status lar_draft_create(const lar_lattice *lattice, const lar_boundary *boun
         fill_elements(&grid, &draft->mesh);
         status = fill_nodes(&grid, &cuts, draft, error);
     }
+    if (!status) status = fill_slots(&grid, draft, error);
     free(grid.node);
     lar_draft_cuts_clear(&cuts);
     if (status) lar_draft_clear(draft);

@@ -16,6 +16,8 @@
 
 /* Against 1 for a face that is one cell off the boundary. */
 static const lar_fit_law usual = {.shape = 0.001, .steep = 1, .aim = 0.55, .floor = 0.25};
+/* Of a slot: it may become thin and lean, but not turn inside out, where its walls would cross. */
+static const lar_fit_law lenient = {.shape = 1e-4, .steep = 0.1, .aim = 0.2, .floor = 0.02};
 static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 
 /* Rounds of some sweeps each. From BALANCE on volumes are balanced; from STAND on the planes stand,
@@ -53,7 +55,8 @@ static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_er
 
 lar_status lar_fit(const lar_boundary *boundary, lar_draft_mesh *draft,
                    const lar_fit_options *options, lar_error *error) {
-    lar_fit_work work = {.law = usual, .face_weight = FACE_WEIGHT, .node_weight = NODE_WEIGHT};
+    lar_fit_work work = {
+        .law = usual, .slot_law = lenient, .face_weight = FACE_WEIGHT, .node_weight = NODE_WEIGHT};
     if (options && options->floor > 0) work.law.floor = options->floor;
     if (options && options->aim > 0) work.law.aim = options->aim;
     lar_status status = lar_fit_work_create(boundary, draft, &work, error);

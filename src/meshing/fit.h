@@ -17,6 +17,9 @@ typedef struct lar_draft_mesh {
     uint16_t (*meet)[2]; /* pairs (a, b), a < b, of regions (0 outside, cuts by number) between
                             which a face of the mesh lies that has this node; none: the node is
                             inside a region */
+    int32_t (*slot)[4];  /* corners of cells outside of which an edge goes over to another side of
+                            the body: the ends of three edges, right-handed, and the corner */
+    int32_t slot_count;
 } lar_draft_mesh;
 
 lar_status lar_draft_create(const lar_lattice *lattice, const lar_boundary *boundary,

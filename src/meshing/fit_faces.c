@@ -152,13 +152,15 @@ static lar_status list_faces(lar_fit_work *work, lar_error *error) {
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static bool list_neighbours(lar_fit_work *work) {
+static bool list_neighbours(lar_fit_work *work, size_t slots) {
     const lar_mesh *mesh = work->mesh;
     const size_t stride = sizeof *work->face / sizeof(int32_t);
     return list_around(mesh->element[0], 8, (size_t)mesh->element_count, 8, mesh->node_count,
                        &work->element_start, &work->element_around) &&
            list_around(work->face[0].node, stride, (size_t)work->face_count, 4, mesh->node_count,
-                       &work->face_start, &work->face_around);
+                       &work->face_start, &work->face_around) &&
+           list_around(slots > 0 ? work->slot[0] : NULL, 4, slots, 4, mesh->node_count,
+                       &work->slot_start, &work->slot_around);
 }
 
 lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
@@ -168,6 +170,7 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mes
     work->boundary = boundary;
     work->mesh = mesh;
     work->size = draft->size;
+    work->slot = (const int32_t(*)[4])draft->slot;
     memcpy(work->origin, mesh->position[0], sizeof work->origin);
     work->x = lar_calloc(nodes, sizeof *work->x);
     work->awake = lar_calloc(nodes, sizeof *work->awake);
@@ -179,7 +182,7 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mes
             work->x[n][i] = (mesh->position[n][i] - work->origin[i]) / work->size;
     lar_status status = list_points(work, draft, error);
     if (status == LAR_OK) status = list_faces(work, error);
-    if (status == LAR_OK && !list_neighbours(work))
+    if (status == LAR_OK && !list_neighbours(work, (size_t)draft->slot_count))
         status = lar_fail_memory(error, nodes * 12 * sizeof(int32_t), "the elements around nodes");
     return status;
 }
@@ -189,7 +192,8 @@ void lar_fit_work_clear(lar_fit_work *work) {
     void *const owned[] = {
         work->x,          work->awake,       work->element_start, work->element_around,
         work->face_start, work->face_around, work->point_start,   work->face,
-        work->point,      work->pair,        work->region};
+        work->slot_start, work->slot_around, work->point,         work->pair,
+        work->region};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     memset(work, 0, sizeof *work);
 }

@@ -50,6 +50,31 @@ static void elements_newton(const lar_fit_work *work, int32_t n, lar_fit_newton 
     }
 }
 
+/* The corners of slots around a node. */
+static double slots_value(const lar_fit_work *work, int32_t n, const double x[3]) {
+    double sum = 0;
+    for (int32_t i = work->slot_start[n]; i < work->slot_start[n + 1]; i++) {
+        const int32_t *node = work->slot[work->slot_around[i] / 4];
+        const double *at[4];
+        double edge[3][3];
+        for (int b = 0; b < 4; b++) at[b] = work->x[node[b]];
+        at[work->slot_around[i] & 3] = x;
+        for (int j = 0; j < 3; j++) lar_minus(at[j], at[LAR_FIT_MOVES_CORNER], edge[j]);
+        sum += lar_fit_corner_energy(&work->slot_law, edge);
+    }
+    return sum;
+}
+
+static void slots_newton(const lar_fit_work *work, int32_t n, lar_fit_newton *sum) {
+    for (int32_t i = work->slot_start[n]; i < work->slot_start[n + 1]; i++) {
+        const int32_t *node = work->slot[work->slot_around[i] / 4];
+        double edge[3][3];
+        for (int j = 0; j < 3; j++)
+            lar_minus(work->x[node[j]], work->x[node[LAR_FIT_MOVES_CORNER]], edge[j]);
+        lar_fit_corner_newton(&work->slot_law, edge, work->slot_around[i] & 3, sum);
+    }
+}
+
 static void add_plane(const lar_fit_plane *plane, double offset, const double x[3], double share,
                       lar_fit_newton *sum) {
     const double *normal = plane->normal;
@@ -125,6 +150,7 @@ static double move(lar_fit_work *work, int32_t n) {
     boundary_newton(work, n, &boundary);
     all = boundary;
     elements_newton(work, n, &all);
+    slots_newton(work, n, &all);
     double step[3];
     newton_step(&all, step);
     double length = lar_length(step);
@@ -136,7 +162,8 @@ static double move(lar_fit_work *work, int32_t n) {
             tried[i] = part * step[i];
             x[i] = work->x[n][i] + tried[i];
         }
-        const double value = quadratic(&boundary, tried) + elements_value(work, n, x);
+        const double value =
+            quadratic(&boundary, tried) + elements_value(work, n, x) + slots_value(work, n, x);
         if (!(value <= all.value + 1e-3 * lar_dot(all.gradient, tried))) continue;
         for (int i = 0; i < 3; i++) work->x[n][i] = x[i];
         return part * length;
@@ -149,6 +176,8 @@ static void wake_around(lar_fit_work *work, int32_t n) {
         const int32_t *node = work->mesh->element[work->element_around[i] / 8];
         for (int a = 0; a < 8; a++) work->awake[node[a]] = true;
     }
+    for (int32_t i = work->slot_start[n]; i < work->slot_start[n + 1]; i++)
+        for (int a = 0; a < 4; a++) work->awake[work->slot[work->slot_around[i] / 4][a]] = true;
 }
 
 void lar_fit_wake_boundary(lar_fit_work *work) {

@@ -64,6 +64,7 @@ typedef struct lar_fit_work {
 
     int32_t *element_start, *element_around; /* per node: element * 8 + local node */
     int32_t *face_start, *face_around;       /* per node: face * 4 + corner */
+    int32_t *slot_start, *slot_around;       /* per node: slot * 4 + its place there */
     int32_t *point_start;                    /* per node, into `point` */
     int32_t face_count, point_count, pair_count;
     lar_fit_face *face;
@@ -71,7 +72,8 @@ typedef struct lar_fit_work {
     lar_fit_pair *pair;
     lar_fit_region *region; /* [regions + 1] */
 
-    lar_fit_law law;
+    const int32_t (*slot)[4]; /* the draft's */
+    lar_fit_law law, slot_law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
     bool *awake;                     /* per node: worth moving */
 } lar_fit_work;

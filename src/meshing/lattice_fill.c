@@ -82,6 +82,15 @@ static double fitting_size(double size, const ends end[3], const double low[3],
     return best;
 }
 
+/* In the middle of the body cells are as many that those at its ends are filled by a quarter of
+ * their length at most, and left out, or by three at least: where two flat sides met that cut cells
+ * in half, those along the edge would be left out alone, and no fitting draws an edge from there.
+ */
+static double cells_along(double extent, bool cut) {
+    const double cells = fmax(1, ceil(extent - 1e-6)), filled = (extent - cells) / 2 + 1;
+    return cut || filled >= 0.75 || cells < 3 ? cells : cells + 1;
+}
+
 static lar_status place_lattice(const lar_boundary *boundary, double size, lar_lattice *lattice,
                                 lar_error *error) {
     ends end[3];
@@ -97,7 +106,7 @@ static lar_status place_lattice(const lar_boundary *boundary, double size, lar_l
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: the body has no finite extent; look at its coordinates",
                             boundary->triangles.source ? boundary->triangles.source : "surface");
-        double cells = fmax(1, ceil(extent - 1e-6));
+        double cells = cells_along(extent, end[a].cut[0] || end[a].cut[1]);
         bool at_low = end[a].cut[0] && (!end[a].cut[1] || end[a].area[0] >= end[a].area[1]);
         if (at_low)
             corner[a] = low[a];

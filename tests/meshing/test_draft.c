@@ -2,6 +2,8 @@
 
 #include "shapes.h"
 
+#include "base/vector.h"
+
 /* A lattice of which only the regions matter. */
 static lar_lattice lattice_of(int ni, int nj, int nk, const uint8_t *inside) {
     lar_lattice lattice = {
@@ -73,6 +75,40 @@ static void cubes_of_two_regions(void **state) {
     assert_int_equal(meeting(&draft, node_at(mesh, 3, 2, 3)), 1);
     lar_draft_clear(&draft);
     lar_lattice_clear(&lattice);
+}
+
+/* Corners across of cells i k, a 1 for each that is inside, one deep along j. */
+static int32_t slots_of(int ni, int nk, const uint8_t *inside) {
+    lar_lattice lattice = lattice_of(ni, 1, nk, inside);
+    lar_boundary boundary = {0};
+    lar_draft_mesh draft;
+    lar_error error;
+    assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_OK);
+    for (int32_t s = 0; s < draft.slot_count; s++) {
+        double edge[3][3], across[3];
+        for (int e = 0; e < 3; e++)
+            lar_minus(draft.mesh.position[draft.slot[s][e]], draft.mesh.position[draft.slot[s][3]],
+                      edge[e]);
+        lar_cross(edge[0], edge[1], across);
+        assert_true(fabs(lar_dot(across, edge[2]) - 1) < 1e-9); /* right-handed, of a cell */
+    }
+    const int32_t slots = draft.slot_count;
+    lar_draft_clear(&draft);
+    lar_lattice_clear(&lattice);
+    return slots;
+}
+
+static void corners_across_slots(void **state) {
+    (void)state;
+    /* The rows are k = 0, 1, ... A slot that is open above: its upper corners, not those at its
+     * end. */
+    assert_int_equal(slots_of(3, 2, (const uint8_t[]){1, 1, 1, 1, 0, 1}), 4);
+    assert_int_equal(slots_of(3, 3, (const uint8_t[]){1, 1, 1, 1, 0, 1, 1, 0, 1}), 12);
+    /* A hole has ends all around, a step none. */
+    assert_int_equal(slots_of(3, 3, (const uint8_t[]){1, 1, 1, 1, 0, 1, 1, 1, 1}), 0);
+    assert_int_equal(slots_of(3, 2, (const uint8_t[]){1, 1, 1, 1, 0, 0}), 0);
+    /* Nothing goes across what is two cells wide. */
+    assert_int_equal(slots_of(4, 2, (const uint8_t[]){1, 1, 1, 1, 1, 0, 0, 1}), 0);
 }
 
 static int32_t set_count(const lar_mesh *mesh, const char *name, lar_set_kind kind) {
@@ -186,6 +222,7 @@ static void an_empty_lattice_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cubes_of_two_regions),
+        cmocka_unit_test(corners_across_slots),
         cmocka_unit_test(sets_of_the_mesh),
         cmocka_unit_test(the_cut_has_its_number),
         cmocka_unit_test(an_empty_lattice_is_refused),

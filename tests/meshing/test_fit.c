@@ -6,6 +6,7 @@
 #include "meshing/fit.h"
 #include "meshing/fit_quality.h"
 #include "meshing/fit_work.h"
+#include "model/mesh_skin.h"
 
 /* ---- from a shape to a fitted mesh ---------------------------------------------------------- */
 
@@ -75,6 +76,18 @@ static double deviation_of(const fitted *body) {
     free(face);
     lar_triangles_clear(&outer);
     return deviation.mean / body->draft.size;
+}
+
+/* Pairs of triangles of the mesh's surface that go through each other. */
+static int32_t crossings_of(const fitted *body) {
+    lar_error error = {0};
+    lar_mesh_skin skin = {0};
+    lar_crossings found;
+    if (lar_mesh_skin_create(&body->draft.mesh, &skin, &error) ||
+        lar_triangles_find_crossings(&skin.triangles, &found, &error))
+        fail_msg("%s", error.message);
+    lar_mesh_skin_clear(&skin);
+    return found.deep;
 }
 
 static double shortest_edge(const fitted *body) {
@@ -278,6 +291,70 @@ static void test_thin_region(void **state) {
     }
 }
 
+/* ---- boxes ---------------------------------------------------------------------------------- */
+
+static int block(const double x[3]) {
+    return fabs(x[0]) < 0.024 && fabs(x[1]) < 0.016 && fabs(x[2]) < 0.016;
+}
+
+/* However large the cells are, those along the edges are there, or no others of their side. */
+static void test_a_block_has_its_edges(void **state) {
+    (void)state;
+    const int32_t size[3] = {54, 38, 38};
+    const double spacing[3] = {1e-3, 1e-3, 1e-3};
+    for (double edge = 2.5e-3; edge < 6e-3; edge += 0.5e-3) {
+        fitted body = {0};
+        lar_error error = {0};
+        lar_image image;
+        shape_image_of(&image, block, size, spacing, SHAPE_STRAIGHT);
+        if (lar_boundary_from_image(&image, NULL, &body.boundary, &error))
+            fail_msg("%s", error.message);
+        lar_image_clear(&image);
+        make_draft(&body, edge);
+        fit(&body);
+        lar_jacobians jacobians;
+        lar_jacobians_count(&body.draft.mesh, &jacobians);
+        assert_below(0.75, jacobians.least);
+        assert_int_equal(crossings_of(&body), 0);
+        end(&body);
+    }
+}
+
+/* ---- slots ---------------------------------------------------------------------------------- */
+
+/* A block with a slot of 1.2 mm that leans along all axes and ends within it; a cell has 4 mm. */
+static int slotted_block(const double x[3]) {
+    if (fabs(x[0]) > 0.024 || fabs(x[1]) > 0.016 || fabs(x[2]) > 0.016) return 0;
+    return fabs(0.8 * x[0] + 0.5 * x[1] + 0.332 * x[2]) > 0.6e-3 || x[2] < -0.008 ? 1 : 0;
+}
+
+/* The walls of a slot of 0.3 cells are fitted each for itself; only its cells keep them apart. */
+static void test_walls_of_a_slot_stay_apart(void **state) {
+    (void)state;
+    const int32_t size[3] = {84, 58, 58};
+    const double spacing[3] = {0.6e-3, 0.6e-3, 0.6e-3};
+    int32_t crossings[2];
+    for (int without = 0; without < 2; without++) {
+        fitted body = {0};
+        lar_error error = {0};
+        lar_image image;
+        shape_image_of(&image, slotted_block, size, spacing, SHAPE_STRAIGHT);
+        if (lar_boundary_from_image(&image, NULL, &body.boundary, &error))
+            fail_msg("%s", error.message);
+        lar_image_clear(&image);
+        make_draft(&body, 4e-3);
+        if (without) body.draft.slot_count = 0;
+        fit(&body);
+        assert_good_elements(&body);
+        assert_region_volumes(&body, 0.005);
+        crossings[without] = crossings_of(&body);
+        assert_below(deviation_of(&body), 0.03);
+        end(&body);
+    }
+    assert_int_equal(crossings[0], 0);
+    assert_in_range(crossings[1], 20, 100);
+}
+
 /* ---- how it runs ---------------------------------------------------------------------------- */
 
 static void begin_small(fitted *body) {
@@ -460,6 +537,7 @@ static void test_a_node_at_nan_ends_the_sweep(void **state) {
                          .element_start = start,
                          .element_around = around,
                          .face_start = none,
+                         .slot_start = none,
                          .point_start = none,
                          .law = {.shape = 1, .steep = 1, .aim = 0.5, .floor = 0.1},
                          .awake = awake};
@@ -476,6 +554,8 @@ int main(void) {
         cmocka_unit_test(test_touching_balls),
         cmocka_unit_test(test_flat_cut_stays_sharp),
         cmocka_unit_test(test_thin_region),
+        cmocka_unit_test(test_a_block_has_its_edges),
+        cmocka_unit_test(test_walls_of_a_slot_stay_apart),
         cmocka_unit_test(test_same_bits_twice),
         cmocka_unit_test(test_watch_is_told_and_stops),
         cmocka_unit_test(test_floor_and_aim_are_kept),
