@@ -82,13 +82,32 @@ static double fitting_size(double size, const ends end[3], const double low[3],
     return best;
 }
 
-/* In the middle of the body cells are as many that those at its ends are filled by a quarter of
- * their length at most, and left out, or by three at least: where two flat sides met that cut cells
- * in half, those along the edge would be left out alone, and no fitting draws an edge from there.
- */
-static double cells_along(double extent, bool cut) {
+/* Whether the body ends in flat sides across an axis, as a box does: by at least a quarter of what
+ * goes around it there. */
+static bool has_flat_ends(const lar_boundary *boundary, double size, int axis, const double low[3],
+                          const double high[3]) {
+    const double FLAT = 0.99, NEAR = 0.1, PART = 0.25;
+    const lar_triangles *triangles = &boundary->triangles;
+    double area = 0;
+    for (int32_t t = 0; t < triangles->triangle_count; t++) {
+        double normal[3];
+        lar_triangles_normal(triangles, t, normal);
+        const double across = fabs(lar_dot(normal, boundary->axis[axis]));
+        const double at = lar_dot(triangles->vertex[triangles->corner[t][0]], boundary->axis[axis]);
+        if (!(across >= FLAT * lar_length(normal))) continue;
+        if (fmin(at - low[axis], high[axis] - at) < NEAR * size) area += across / 2;
+    }
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    return area > 2 * PART * (high[u] - low[u]) * (high[v] - low[v]);
+}
+
+/* Cells along an axis with the body in their middle. At flat ends the outermost ones are filled by
+ * a quarter of their length at most, and left out, or by three quarters at least: where two sides
+ * met that cut cells in half, those along the edge would be left out alone, and no fitting draws an
+ * edge from there. */
+static double cells_along(double extent, bool flat) {
     const double cells = fmax(1, ceil(extent - 1e-6)), filled = (extent - cells) / 2 + 1;
-    return cut || filled >= 0.75 || cells < 3 ? cells : cells + 1;
+    return !flat || filled >= 0.75 || cells < 3 ? cells : cells + 1;
 }
 
 static lar_status place_lattice(const lar_boundary *boundary, double size, lar_lattice *lattice,
@@ -106,7 +125,9 @@ static lar_status place_lattice(const lar_boundary *boundary, double size, lar_l
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: the body has no finite extent; look at its coordinates",
                             boundary->triangles.source ? boundary->triangles.source : "surface");
-        double cells = cells_along(extent, end[a].cut[0] || end[a].cut[1]);
+        bool cut = end[a].cut[0] || end[a].cut[1];
+        double cells =
+            cells_along(extent, !cut && has_flat_ends(boundary, lattice->size, a, low, high));
         bool at_low = end[a].cut[0] && (!end[a].cut[1] || end[a].area[0] >= end[a].area[1]);
         if (at_low)
             corner[a] = low[a];
