@@ -136,8 +136,8 @@ void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u,
         const double *from[8];
         double *to[8];
         modes U, G;
-        for (int a = 0; a < 8; a++) from[a] = &u[e->node[a]][0][0];
-        for (int a = 0; a < 8; a++) to[a] = &f[e->node[a]][0][0];
+        for (int a = 0; a < 8; a++) from[a] = (const double *)u[e->node[a]];
+        for (int a = 0; a < 8; a++) to[a] = (double *)f[e->node[a]];
         to_modes(from, VECTORS, U[0]);
         modal_forces(e, U, G);
         add_from_modes(G, to);
