@@ -15,14 +15,25 @@ typedef struct fitted {
     lar_draft_mesh draft;
 } fitted;
 
-static void begin_image(fitted *body, const shape *what) {
+static void take_image(fitted *body, lar_image *image) {
     lar_error error = {0};
+    *body = (fitted){0};
+    if (lar_boundary_from_image(image, NULL, &body->boundary, &error))
+        fail_msg("%s", error.message);
+    lar_image_clear(image);
+}
+
+static void begin_image(fitted *body, const shape *what) {
     lar_image image;
     shape_image(&image, what, 1.5e-3, SHAPE_STRAIGHT);
-    *body = (fitted){0};
-    if (lar_boundary_from_image(&image, NULL, &body->boundary, &error))
-        fail_msg("%s", error.message);
-    lar_image_clear(&image);
+    take_image(body, &image);
+}
+
+static void begin_label(fitted *body, int (*label)(const double x[3]), const int32_t size[3],
+                        const double spacing[3]) {
+    lar_image image;
+    shape_image_of(&image, label, size, spacing, SHAPE_STRAIGHT);
+    take_image(body, &image);
 }
 
 static void begin_surface(fitted *body, lar_triangles *surface) {
@@ -205,16 +216,12 @@ static int half_ball(const double x[3]) {
 }
 
 static void begin_cut(fitted *body) {
-    lar_error error = {0};
     lar_image image;
     const int32_t size[3] = {44, 44, 44};
     const double spacing[3] = {1e-3, 1e-3, 1e-3};
     shape_image_of(&image, half_ball, size, spacing, SHAPE_STRAIGHT);
     image.size[2] = 26; /* the upper part is not there: cut at z = 4 mm */
-    *body = (fitted){0};
-    if (lar_boundary_from_image(&image, NULL, &body->boundary, &error))
-        fail_msg("%s", error.message);
-    lar_image_clear(&image);
+    take_image(body, &image);
 }
 
 /* Nodes on the cut lie in its plane, those of its rim on the ball too: an edge as sharp as before
@@ -272,13 +279,8 @@ static void test_thin_region(void **state) {
     const int32_t size[3] = {50, 50, 50};
     const double spacing[3] = {1e-3, 1e-3, 1e-3};
     for (int s = 0; s < 2; s++) {
-        fitted body = {0};
-        lar_error error = {0};
-        lar_image image;
-        shape_image_of(&image, label[s], size, spacing, SHAPE_STRAIGHT);
-        if (lar_boundary_from_image(&image, NULL, &body.boundary, &error))
-            fail_msg("%s", error.message);
-        lar_image_clear(&image);
+        fitted body;
+        begin_label(&body, label[s], size, spacing);
         make_draft(&body, 4e-3);
         fit(&body);
         lar_jacobians jacobians;
@@ -303,13 +305,8 @@ static void test_a_block_has_its_edges(void **state) {
     const int32_t size[3] = {54, 38, 38};
     const double spacing[3] = {1e-3, 1e-3, 1e-3};
     for (double edge = 2.5e-3; edge < 6e-3; edge += 0.5e-3) {
-        fitted body = {0};
-        lar_error error = {0};
-        lar_image image;
-        shape_image_of(&image, block, size, spacing, SHAPE_STRAIGHT);
-        if (lar_boundary_from_image(&image, NULL, &body.boundary, &error))
-            fail_msg("%s", error.message);
-        lar_image_clear(&image);
+        fitted body;
+        begin_label(&body, block, size, spacing);
         make_draft(&body, edge);
         fit(&body);
         lar_jacobians jacobians;
@@ -335,13 +332,8 @@ static void test_walls_of_a_slot_stay_apart(void **state) {
     const double spacing[3] = {0.6e-3, 0.6e-3, 0.6e-3};
     int32_t crossings[2];
     for (int without = 0; without < 2; without++) {
-        fitted body = {0};
-        lar_error error = {0};
-        lar_image image;
-        shape_image_of(&image, slotted_block, size, spacing, SHAPE_STRAIGHT);
-        if (lar_boundary_from_image(&image, NULL, &body.boundary, &error))
-            fail_msg("%s", error.message);
-        lar_image_clear(&image);
+        fitted body;
+        begin_label(&body, slotted_block, size, spacing);
         make_draft(&body, 4e-3);
         if (without) body.draft.slot_count = 0;
         fit(&body);
