@@ -93,10 +93,10 @@ typedef struct lar_contact_board {
     int32_t *pusher; /* [contact faces] thread that recovers its element, -1: not here */
     int32_t *loader; /* [contact nodes] thread that adds its force, -1: another processor */
     int32_t slot_count;
-    int32_t *slot;          /* [contact nodes], -1: not on the board */
-    double (*place[2])[6];  /* [contact nodes] by slot: place and velocity */
-    lar_contact_page *page; /* [threads] */
-    lar_contact_mark *mark; /* [threads] */
+    int32_t *slot;                        /* [contact nodes], -1: not on the board */
+    double (*place[2])[LAR_PLACE_VALUES]; /* [contact nodes] by slot, as in lar_contact_view */
+    lar_contact_page *page;               /* [threads] */
+    lar_contact_mark *mark;               /* [threads] */
     lar_contact_mark arrived;
     int32_t peer_count, peer_room;
     lar_contact_peer *peer; /* [peer_room], those in use first */
