@@ -119,6 +119,77 @@ static double deepest_inside(const lar_simulation *s, int *count) {
     return deepest;
 }
 
+/* ---- one node ------------------------------------------------------------------------------- */
+
+/* Puts a node at `depth` below the middle of a face, sinking by `sinks` in a step. Returns the
+ * force on it, in the way out, and lets the step pass. */
+static double put(lar_simulation *s, int32_t node, int32_t face, double depth, double sinks) {
+    lar_domain *domain = &s->domain;
+    const lar_model *model = domain->model;
+    const lar_collide *collide = &domain->acting.collide;
+    static const double even[4] = {0.25, 0.25, 0.25, 0.25};
+    double corner[4][3], middle[3], normal[3], length = 0, force = 0;
+    int32_t value = 4 * domain->layout.local[node];
+    for (int a = 0; a < 4; a++) place_of(s, model->surface.corner[face][a], corner[a]);
+    lar_face_mean((const double(*)[3])corner, even, middle);
+    lar_face_normal((const double(*)[3])corner, normal);
+    for (int i = 0; i < 3; i++) length += normal[i] * normal[i];
+    for (int i = 0; i < 3; i++) {
+        double way = normal[i] / sqrt(length);
+        s->state.u[value + i] = middle[i] - depth * way - model->mesh.position[node][i];
+        s->state.v[value + i] = -sinks * way / domain->time_step;
+    }
+    lar_condition_context context = lar_domain_context(domain);
+    lar_collide_forget(&domain->acting.collide);
+    lar_collide_apply(&domain->acting.collide, &context, &s->state);
+    for (int32_t p = 0; p < collide->part_count; p++)
+        for (int i = 0; i < 3 && collide->part[p].value[0] == value; i++)
+            force += collide->part[p].force[0][i] * normal[i] / sqrt(length);
+    lar_collide_moved(&domain->acting.collide, &s->state, 0);
+    memset(s->state.force, 0, 4 * (size_t)s->state.node_count * sizeof *s->state.force);
+    return force;
+}
+
+static void a_node_is_pushed_from_where_it_appeared(void **unused) {
+    (void)unused;
+    static const double mm = 1e-3;
+    lar_model *model = folding_bar(1e3, 2);
+    lar_simulation *s = start(model);
+    const brick b = {.cells = {12, 3, 2}};
+    int32_t node = brick_node(&b, 12, 1, 2),
+            face = -1; /* an end, against the inside of the other */
+    for (int32_t f = 0; f < model->surface.face_count; f++) {
+        const int32_t *corner = model->surface.corner[f];
+        int on = 0;
+        for (int a = 0; a < 4; a++)
+            for (int j = 0; j < 4; j++) on += corner[a] == brick_node(&b, 1 + j % 2, 1 + j / 2, 2);
+        if (on == 4) face = f;
+    }
+    assert_true(face >= 0);
+    /* From the side: only what it sinks deeper counts, and it takes the level out with it. */
+    assert_true(put(s, node, face, 3 * mm, 0) == 0);
+    assert_below(fabs(level_of(s, node) - 3 * mm), 1e-9);
+    double deeper = put(s, node, face, 3.5 * mm, 0);
+    assert_true(deeper > 0);
+    assert_below(fabs(level_of(s, node) - 3 * mm), 1e-9);
+    assert_true(put(s, node, face, 2 * mm, 0) == 0);
+    assert_below(fabs(level_of(s, node) - 2 * mm), 1e-9);
+    assert_below(fabs(put(s, node, face, 2.5 * mm, 0) - deeper), 1e-6 * deeper);
+    assert_true(put(s, node, face, -0.1 * mm, 0) == 0);
+    assert_true(level_of(s, node) == 0);
+    /* Through the face: all counts, also later. */
+    assert_true(put(s, node, face, 0.1 * mm, 0.2 * mm) > 0);
+    assert_true(level_of(s, node) == LAR_LEVEL_FRONT);
+    assert_below(fabs(put(s, node, face, 0.5 * mm, 0) - deeper), 1e-6 * deeper);
+    assert_true(level_of(s, node) == LAR_LEVEL_FRONT);
+    /* Deeper than the layer it is lost, and comes back from the side. */
+    assert_true(put(s, node, face, 6 * mm, 0) == 0);
+    assert_true(level_of(s, node) == 0);
+    assert_true(put(s, node, face, 4 * mm, 0) == 0);
+    assert_below(fabs(level_of(s, node) - 4 * mm), 1e-9);
+    finish(s, model);
+}
+
 /* ---- to rest -------------------------------------------------------------------------------- */
 
 /* Kinetic energy half a step back, as in test_collide_rest.c. */
@@ -212,18 +283,18 @@ static void take_up(lar_simulation *s, const uint64_t hash[2]) {
 
 static void bits_do_not_depend_on_the_division(void **unused) {
     (void)unused;
-    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "1x3x1", "3x1x2"};
+    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "1x3x1", "3x1x2", "4x1x1"};
     lar_model *model = folding_bar(1e3, 2);
     lar_options options = lar_options_default();
     uint64_t one[2], other[2];
     straight(model, options, one);
-    for (int i = 0; i < 7; i++) {
+    for (int i = 0; i < 8; i++) {
         options = lar_options_default();
-        options.grid = i < 5 ? grids[i] : NULL;
-        options.threads = i < 5 ? 1 + i % 2 : 0;
+        options.grid = i < 6 ? grids[i] : NULL;
+        options.threads = i < 6 ? 1 + i % 2 : 0;
         options.delays = i == 2 ? 5 : 0;
-        options.isa = i == 5 ? LAR_ISA_C : LAR_ISA_AUTO;
-        options.search_always = i == 3 || i == 6;
+        options.isa = i == 6 ? LAR_ISA_C : LAR_ISA_AUTO;
+        options.search_always = i == 3 || i == 7;
         straight(model, options, other);
         if (other[0] != one[0] || other[1] != one[1]) fail_msg("number %d: other bits", i);
         lar_simulation *s = start_with(model, options);
@@ -253,6 +324,7 @@ static void nor_on_processes(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_node_is_pushed_from_where_it_appeared),
         cmocka_unit_test(a_crease_that_folds_shut_goes_on_to_rest),
         cmocka_unit_test(bits_do_not_depend_on_the_division),
         cmocka_unit_test(nor_on_processes),
