@@ -16,7 +16,7 @@
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
 static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
     char magic[8];
@@ -38,7 +38,7 @@ typedef double node_vector[3];
 
 static size_t file_bytes(size_t tools, size_t holds, size_t nodes) {
     return sizeof(file_head) + tools * sizeof(lar_tool_motion) + holds * sizeof(lar_hold) +
-           2 * nodes * sizeof(node_vector) + sizeof(uint64_t);
+           nodes * (sizeof(double) + 2 * sizeof(node_vector)) + sizeof(uint64_t);
 }
 
 uint64_t lar_checkpoint_sum(const void *data, size_t words) {
@@ -53,12 +53,13 @@ uint64_t lar_checkpoint_sum(const void *data, size_t words) {
 }
 
 /* As lar_state_hash, for nodes in the mesh's order. */
-static uint64_t hash_state(uint64_t step, const node_vector *u, const node_vector *v,
-                           lar_gid nodes) {
+static uint64_t hash_state(uint64_t step, const double *level, const node_vector *u,
+                           const node_vector *v, lar_gid nodes) {
     uint64_t hash = lar_hash_word(0, step);
     for (lar_gid n = 0; n < nodes; n++) {
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
+        if (level[n] > 0) hash = lar_hash_double(hash, level[n]);
     }
     return hash;
 }
@@ -70,7 +71,7 @@ static lar_status check_finite(const char *path, const lar_domain *whole, const 
     const lar_mesh *mesh = &whole->model->mesh;
     bool finite = isfinite(state->external) && isfinite(state->damped) && isfinite(state->contact);
     for (lar_gid g = 0; g < mesh->node_count; g++)
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 4; i++) {
             size_t value = 4 * (size_t)whole->layout.local[g] + (size_t)i;
             finite = finite && isfinite(state->u[value]) && isfinite(state->v[value]);
         }
@@ -91,22 +92,25 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
     size_t holds = (size_t)tools->hold_count * sizeof tools->hold[0];
     memcpy(at, tools->motion, motions);
     memcpy(at + motions, tools->hold, holds);
-    node_vector *u = (node_vector *)(void *)(at + motions + holds), *v = u + nodes;
+    double *level = (double *)(void *)(at + motions + holds);
+    node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
     for (lar_gid g = 0; g < nodes; g++) {
-        memcpy(u[g], state->u + 4 * (size_t)whole->layout.local[g], sizeof u[g]);
-        memcpy(v[g], state->v + 4 * (size_t)whole->layout.local[g], sizeof v[g]);
+        size_t there = 4 * (size_t)whole->layout.local[g];
+        level[g] = state->u[there + 3];
+        memcpy(u[g], state->u + there, sizeof u[g]);
+        memcpy(v[g], state->v + there, sizeof v[g]);
     }
-    file_head head = {
-        .version = VERSION,
-        .byte_order = BYTE_ORDER_MARK,
-        .bytes = bytes,
-        .step = state->step,
-        .external = state->external,
-        .damped = state->damped,
-        .contact = state->contact,
-        .hash = hash_state(state->step, (const node_vector *)u, (const node_vector *)v, nodes),
-        .tools = tools->count,
-        .holds = tools->hold_count};
+    file_head head = {.version = VERSION,
+                      .byte_order = BYTE_ORDER_MARK,
+                      .bytes = bytes,
+                      .step = state->step,
+                      .external = state->external,
+                      .damped = state->damped,
+                      .contact = state->contact,
+                      .hash = hash_state(state->step, level, (const node_vector *)u,
+                                         (const node_vector *)v, nodes),
+                      .tools = tools->count,
+                      .holds = tools->hold_count};
     memcpy(head.magic, MAGIC, sizeof MAGIC);
     lar_model_identify(whole, &head.identity);
     memcpy(data, &head, sizeof head);
@@ -306,6 +310,12 @@ static bool all_finite(const double *value, size_t count) {
     return finite;
 }
 
+static bool none_negative(const double *value, size_t count) {
+    bool good = true;
+    for (size_t i = 0; i < count; i++) good = good && value[i] >= 0;
+    return good;
+}
+
 static bool good_pose(const lar_tool_pose *pose) {
     double square = 0;
     for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
@@ -365,12 +375,14 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     const unsigned char *at = bytes->data + sizeof head;
     if (!take_tools(&head, model, &at, &found.tools))
         return refuse(error, path, "has a tool at no place; take another checkpoint");
-    found.u = (const node_vector *)(const void *)at;
+    found.level = (const double *)(const void *)at;
+    found.u = (const node_vector *)(const void *)(found.level + nodes);
     found.v = found.u + nodes;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    if (!finite || !all_finite(found.u[0], 6 * nodes) || head.step > STEPS_MOST)
+    if (!finite || !all_finite(found.level, 7 * nodes) || !none_negative(found.level, nodes) ||
+        head.step > STEPS_MOST)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    if (head.hash != hash_state(head.step, found.u, found.v, (lar_gid)nodes))
+    if (head.hash != hash_state(head.step, found.level, found.u, found.v, (lar_gid)nodes))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
     *checkpoint = found;
     return LAR_OK;
@@ -385,6 +397,7 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
     for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
         memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
+        state->u[there + 3] = checkpoint->level[g];
         memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
     }
     state->step = checkpoint->step;

@@ -1,6 +1,6 @@
 /* A state in a file: everything that the next step depends on, and nothing about who computes it.
  *
- *     | head | tools and holds | u of all nodes | v of all nodes | checksum |
+ *     | head | tools and holds | levels | u of all nodes | v of all nodes | checksum |
  *
  * Binary, words of eight bytes, described in docs/formats.md. The nodes are in the mesh's order, so
  * that a checkpoint of one grid goes on on any other; numbers are written as they are, so that the
@@ -14,11 +14,12 @@
 #include "engine/state.h"
 #include "engine/tools.h"
 
-/* What a file says, found to be right. u and v stand in the bytes that were parsed. */
+/* What a file says, found to be right. The arrays stand in the bytes that were parsed. */
 typedef struct lar_checkpoint {
     uint64_t step;
     double external, damped, contact; /* as in lar_state */
     lar_tools tools;
+    const double *level;           /* [nodes of the mesh] in contact of bodies with themselves */
     const double (*u)[3], (*v)[3]; /* [nodes of the mesh] */
 } lar_checkpoint;
 

@@ -142,8 +142,42 @@ static int32_t choose_face(const lar_collide *collide, const lar_state *state, i
     return chosen;
 }
 
+/* ---- levels ---------------------------------------------------------------------------------- */
+
+static bool same_body(const lar_collide *collide, int32_t node, int32_t face) {
+    return collide->surface->node[node].body == collide->surface->face[face].body;
+}
+
+static double level_of(const lar_collide *collide, const lar_state *state, int32_t node) {
+    const lar_contact_view *view = &collide->view;
+    return view->place ? view->place[view->slot[node]][6] : state->u[view->value[node] + 3];
+}
+
+/* Notes the level that the node will have when it moves. */
+static void set_level(lar_collide *collide, const lar_state *state, int32_t node, double level) {
+    if (level == level_of(collide, state, node) || (collide->keeps && !collide->keeps[node]))
+        return;
+    collide->level[collide->level_count++] =
+        (lar_collide_level){collide->view.value[node] + 3, level};
+}
+
+/* From which depth on a node is pushed by its own body, `depth` deep and sinking at `rate`. Who was
+ * before the face a step ago has come through it. */
+static double follow_level(lar_collide *collide, const lar_state *state, int32_t node, double depth,
+                           double rate) {
+    double before = level_of(collide, state, node), level = depth;
+    if (depth <= collide->time_step * rate)
+        level = LAR_LEVEL_FRONT;
+    else if (before > 0 && before < depth)
+        level = before;
+    set_level(collide, state, node, level);
+    return level;
+}
+
+/* ---- one node and one face ------------------------------------------------------------------ */
+
 /* The force of a face on a node behind it. False: they do not touch, or no longer push. */
-static bool push(const lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
+static bool push(lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
                  const lar_face_point *point, touching *t) {
     const lar_contact_surface *surface = collide->surface;
     const lar_contact_face *f = &surface->face[face];
@@ -155,36 +189,47 @@ static bool push(const lar_collide *collide, const lar_state *state, int32_t nod
     for (int i = 0; i < 3; i++) square += (p[i] - x[i]) * (p[i] - x[i]);
     double depth = sqrt(square);
     /* Without a length there is no direction. */
-    if (!(point->height < 0) || !(depth > LAR_FACE_TIE * f->size)) return false;
+    if (!(depth > LAR_FACE_TIE * f->size)) return false;
     for (int i = 0; i < 3; i++) rate += (vp[i] - v[i]) * (p[i] - x[i]) / depth;
+    double level =
+        same_body(collide, node, face) ? follow_level(collide, state, node, depth, rate) : 0;
+    if (!lar_contact_active(&surface->node[node], f)) return false;
     for (int a = 0; a < 4; a++) mass[a] = surface->node[f->corner[a]].mass;
     double moved =
         lar_contact_pair_mass(surface->node[node].mass, lar_contact_face_mass(mass, point->weight));
-    double force = lar_contact_force(&collide->law, moved, depth, rate);
+    double force = lar_contact_force(&collide->law, moved, depth - level, rate);
     *t = (touching){.face = face, .depth = depth};
     memcpy(t->weight, point->weight, sizeof t->weight);
     for (int i = 0; i < 3; i++) t->force[i] = force * (p[i] - x[i]) / depth;
     return true;
 }
 
-/* Contact of group g; sets when it is due again. */
-static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
+/* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
+static int32_t closest(lar_collide *collide, const lar_state *state, int32_t g,
+                       lar_face_point *point) {
     const lar_contact_group *group = &collide->list.group[g];
     double x[3];
     survey s;
-    lar_face_point point;
     place_of(collide, state, group->node, x, NULL);
     survey_group(collide, state, g, x, &s);
     /* A little earlier, for rounding. */
     collide->due[g] = s.gap > 0 ? fmin(collide->travel + 0.999 * s.gap / APPROACH, s.next) : 0;
-    if (!(s.least < INFINITY)) return false;
-    int32_t chosen = choose_face(collide, state, g, x, &s, &point);
-    if (chosen < 0) return false;
+    if (!(s.least < INFINITY)) return -1;
+    int32_t chosen = choose_face(collide, state, g, x, &s, point);
+    if (chosen < 0) return -1;
     collide->last[g] = chosen;
-    int32_t face = collide->list.face[group->first + chosen];
-    return lar_contact_active(&collide->surface->node[group->node],
-                              &collide->surface->face[face]) &&
-           push(collide, state, group->node, face, &point, t);
+    return collide->list.face[group->first + chosen];
+}
+
+/* Contact of group g. */
+static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
+    const lar_contact_group *group = &collide->list.group[g];
+    lar_face_point point;
+    int32_t face = closest(collide, state, g, &point);
+    if (face >= 0 && point.height < 0) return push(collide, state, group->node, face, &point, t);
+    if (same_body(collide, group->node, collide->list.face[group->first]))
+        set_level(collide, state, group->node, 0);
+    return false;
 }
 
 /* ---- forces --------------------------------------------------------------------------------- */
@@ -238,7 +283,7 @@ static void look_ahead(lar_collide *collide) {
 }
 
 void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
-    collide->part_count = 0;
+    collide->part_count = collide->level_count = 0;
     collide->info.touching = 0;
     collide->info.deepest = 0;
     if (!(collide->travel < collide->horizon)) look_ahead(collide);
@@ -372,7 +417,10 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
     collide->info.steps++;
 }
 
-void lar_collide_moved(lar_collide *collide, double way) {
+void lar_collide_moved(lar_collide *collide, lar_state *state, double way) {
+    for (int32_t i = 0; i < collide->level_count; i++)
+        state->u[collide->level[i].value] = collide->level[i].depth;
+    collide->level_count = 0;
     collide->moved += way;
     collide->way = way;
     if (!collide->motion) return;
@@ -401,8 +449,9 @@ static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error
     collide->near = lar_calloc(groups, sizeof *collide->near);
     collide->away = lar_calloc(pairs, sizeof *collide->away);
     collide->part = lar_calloc(groups, sizeof *collide->part);
+    collide->level = lar_calloc(groups, sizeof *collide->level);
     if (!value || !motion->x || !motion->searched || !collide->due || !collide->last ||
-        !collide->near || !collide->away || !collide->part)
+        !collide->near || !collide->away || !collide->part || !collide->level)
         return lar_fail_memory(error, groups * sizeof *collide->part, "contact of bodies");
     for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
     return LAR_OK;
@@ -425,6 +474,7 @@ lar_status lar_collide_create(const lar_model *model, const double *mass, const 
         return status;
     }
     collide->law = lar_contact_law_for(time_step, stable_step);
+    collide->time_step = time_step;
     collide->list = motion->search->list;
     motion->always = search_always;
     motion->skin_least = 0.25 * surface->reach;
@@ -444,6 +494,7 @@ void lar_collide_destroy(lar_collide *collide) {
     free(collide->near);
     free(collide->away);
     free(collide->part);
+    free(collide->level);
     if (motion) {
         free((int32_t *)collide->view.value);
         if (motion->search) lar_contact_search_clear(motion->search);

@@ -2,15 +2,23 @@
  *
  *     search (contact_search.h)     now and then: groups of a node and faces that it may meet
  *     prediction                    each group: not looked at before it can have come into reach
- *     contact                       a function of places and velocities alone
+ *     contact                       a function of places, velocities and levels
  *
  * Contact of a group. Of all its faces within reach the closest one counts; between equally close
  * ones the one over or under whose plane the node is farthest, then the one with the lower number.
  * If the node is behind it, the closest point p pulls it: F along p - x, of the law of
- * mechanics/contact.h, -w_a F on the corners. The mass is that of the
- * node against that of the point of the face. Which other pairs are in the list does not matter, nor
+ * mechanics/contact.h, -w_a F on the corners. The mass is that of the node against that of the
+ * point of the face. Which other pairs are in the list does not matter, nor
  * when it was made, so searching in every step gives the same bits. Forces are rounded at the
  * corners, and the node gets minus their sum: momentum is kept to the last bit.
+ *
+ * Levels. A node of a body may come to lie below that body's own faces without having come through
+ * one of them: through its neighbours, which do not push it, or because the body lies in itself at
+ * rest. Pushed from there it would get energy that contact never took. So the depth at which it
+ * appears is its level, and only what it sinks below that pushes it; coming out, it takes the level
+ * along. A node that came through the face has the level 0. Levels are the one thing that contact
+ * remembers: they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is
+ * not inside, and belong to the state like u and v.
  *
  * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
  * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
@@ -36,11 +44,14 @@ static inline double lar_most(double most, double other) {
     return other <= most || isnan(most) ? most : other;
 }
 
+/* Of a contact node on a board: place, velocity, level. */
+enum { LAR_PLACE_VALUES = 7 };
+
 /* Where the contact nodes are: in the state of whoever has all of them, or on a board. */
 typedef struct lar_contact_view {
-    const int32_t *value;     /* [contact nodes] 4 * local node, -1: not here */
-    const double (*place)[6]; /* NULL, or by slot: place and velocity */
-    const int32_t *slot;      /* [contact nodes] with `place` */
+    const int32_t *value;                    /* [contact nodes] 4 * local node, -1: not here */
+    const double (*place)[LAR_PLACE_VALUES]; /* NULL, or by slot */
+    const int32_t *slot;                     /* [contact nodes] with `place` */
 } lar_contact_view;
 
 /* What this thread adds in the step under way: forces on its local nodes. */
@@ -49,6 +60,15 @@ typedef struct lar_collide_part {
     int32_t value[5]; /* 4 * local node */
     double force[5][3];
 } lar_collide_part;
+
+/* The level of a node that came through the face: nothing that can be measured, but not 0. */
+#define LAR_LEVEL_FRONT 1e-300
+
+/* A level that is another than in the last step. */
+typedef struct lar_collide_level {
+    int32_t value; /* 4 * local node + 3 */
+    double depth;  /* [m] */
+} lar_collide_level;
 
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_collide_motion {
@@ -66,6 +86,7 @@ typedef struct lar_collide_motion {
 typedef struct lar_collide {
     const lar_contact_surface *surface; /* NULL: nothing to do */
     lar_contact_law law;
+    double time_step;
     lar_contact_view view;
     lar_contact_list list;                  /* what this thread has to do with */
     const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
@@ -80,7 +101,10 @@ typedef struct lar_collide {
     double way;   /* the same in the last step [m] */
     int32_t part_count;
     lar_collide_part *part; /* [list.group_room] */
-    bool crowded;           /* there was no room for all pairs: the run must stop */
+    const uint8_t *keeps;   /* [contact nodes] those that this thread moves; NULL: all */
+    int32_t level_count;
+    lar_collide_level *level; /* [list.group_room] of these nodes, from when they move on */
+    bool crowded;             /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
     lar_collide_motion *motion; /* of whoever has all nodes; otherwise NULL */
 } lar_collide;
@@ -105,8 +129,8 @@ void lar_collide_add(lar_collide *collide, const lar_condition_context *context,
 /* All groups are to be looked at again. */
 void lar_collide_restart(lar_collide *collide);
 
-/* The nodes have moved, none farther than `way` along any axis [m]. */
-void lar_collide_moved(lar_collide *collide, double way);
+/* The nodes have moved, none farther than `way` along any axis [m]; levels become theirs. */
+void lar_collide_moved(lar_collide *collide, lar_state *state, double way);
 
 /* Half the work of these forces in this step, to state->contact: once before and once after the
  * nodes move. */

@@ -4,15 +4,15 @@
 
 #include "engine/computer.h"
 
-/* What travels for a node: u and v. */
-typedef double node_values[6];
+/* What travels for a node: u with the level behind it, and v. */
+typedef double node_values[7];
 
 /* ---- gathering ----------------------------------------------------------------------------- */
 
 static void take_node(const lar_domain *whole, lar_gid node, const double *u, const double *v,
                       lar_state *state) {
     size_t there = 4 * (size_t)whole->layout.local[node];
-    memcpy(state->u + there, u, 3 * sizeof *u);
+    memcpy(state->u + there, u, 4 * sizeof *u);
     memcpy(state->v + there, v, 3 * sizeof *v);
 }
 
@@ -24,7 +24,7 @@ static void check_copies(const lar_computer *computer, const lar_processor *p) {
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
         size_t there = 4 * (size_t)whole->local[layout->global[n]], here = 4 * (size_t)n;
-        assert(!memcmp(state->u + there, p->worker[0].state.u + here, 3 * sizeof(double)));
+        assert(!memcmp(state->u + there, p->worker[0].state.u + here, 4 * sizeof(double)));
         assert(!memcmp(state->v + there, p->worker[0].state.v + here, 3 * sizeof(double)));
     }
 #else
@@ -64,7 +64,7 @@ static lar_gid take_answer(const lar_computer *computer, int32_t p, lar_gid node
     const lar_mesh *mesh = &computer->whole->model->mesh;
     for (int64_t i = 0; i < count && node < mesh->node_count; node++)
         if (computer->division.reporter[node] == p) {
-            take_node(computer->whole, node, value[i], value[i] + 3, computer->state);
+            take_node(computer->whole, node, value[i], value[i] + 4, computer->state);
             i++;
         }
     return node;
@@ -127,8 +127,8 @@ lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar
             continue;
         }
         size_t n = 4 * (size_t)p->domain.layout.local[node];
-        memcpy(value[count], own->u + n, 3 * sizeof(double));
-        memcpy(value[count] + 3, own->v + n, 3 * sizeof(double));
+        memcpy(value[count], own->u + n, 4 * sizeof(double));
+        memcpy(value[count] + 4, own->v + n, 3 * sizeof(double));
         count++;
     }
     return lar_control_answer(computer->control, &answer, value, count * sizeof *value, error);
@@ -149,8 +149,8 @@ static lar_status scatter_others(lar_computer *computer, lar_error *error) {
     if (!value) return lar_fail_memory(error, nodes * sizeof *value, "the state");
     for (size_t node = 0; node < nodes; node++) {
         size_t there = 4 * (size_t)whole->layout.local[node];
-        memcpy(value[node], computer->state->u + there, 3 * sizeof(double));
-        memcpy(value[node] + 3, computer->state->v + there, 3 * sizeof(double));
+        memcpy(value[node], computer->state->u + there, 4 * sizeof(double));
+        memcpy(value[node] + 4, computer->state->v + there, 3 * sizeof(double));
     }
     const lar_order order = {LAR_ORDER_SCATTER, computer->state->step};
     lar_status status =
@@ -173,7 +173,7 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
                         "again, from the same installation",
                         bytes, (int)nodes);
     for (lar_gid node = 0; node < nodes; node++)
-        take_node(computer->whole, node, value[node], value[node] + 3, computer->state);
+        take_node(computer->whole, node, value[node], value[node] + 4, computer->state);
     computer->state->step = step;
     scatter_here(computer);
     return LAR_OK;

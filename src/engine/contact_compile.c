@@ -8,7 +8,7 @@
 /* ---- the map --------------------------------------------------------------------------------- */
 
 static size_t region_bytes(int32_t nodes) {
-    size_t bytes = (size_t)nodes * sizeof(double[6]) + LAR_PACKET_ALIGN;
+    size_t bytes = (size_t)nodes * sizeof(double[LAR_PLACE_VALUES]) + LAR_PACKET_ALIGN;
     return (bytes + LAR_PACKET_ALIGN - 1) / LAR_PACKET_ALIGN * LAR_PACKET_ALIGN;
 }
 
@@ -83,11 +83,17 @@ static bool has_node(const lar_contact_map *map, int32_t processor, int32_t node
 
 /* ---- who takes part -------------------------------------------------------------------------- */
 
-/* Whether a processor adds forces of a group. */
+static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *list,
+                        const lar_contact_group *group) {
+    return s->face[list->face[group->first]].body == s->node[group->node].body;
+}
+
+/* Whether a processor adds forces of a group, or has the node and keeps its level. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
     if (map->reporter[group->node] == processor) return true;
+    if (is_own_body(s, list, group) && has_node(map, processor, group->node)) return true;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
         int32_t f = list->face[i];
         if (map->recoverer[f] == processor &&
@@ -144,7 +150,7 @@ static void plan_peer(lar_contact_board *board, const lar_contact_list *list, in
     if (peer->send_count + peer->receive_count > 0) board->peer_count++;
 }
 
-/* The groups in which a thread adds something. */
+/* The groups in which a thread adds something, or whose node's level it keeps. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     lar_collide *collide = &worker->acting.collide;
     lar_contact_list *own = &collide->list;
@@ -153,7 +159,8 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         const int32_t *face = list->face + group->first;
-        bool takes = collide->adds_node[group->node] != 0;
+        bool takes = collide->adds_node[group->node] ||
+                     (collide->keeps[group->node] && is_own_body(collide->surface, list, group));
         for (int32_t i = 0; i < group->count && !takes; i++)
             takes = collide->adds_corner[face[i]] &&
                     lar_contact_active(&collide->surface->node[group->node],
@@ -192,23 +199,31 @@ static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_p
     size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
     size_t groups = (size_t)whole->list.group_room, pairs = (size_t)whole->list.face_room;
     uint8_t *adds_node = lar_calloc(nodes, 1), *adds_corner = lar_calloc(faces, 1);
+    uint8_t *keeps = lar_calloc(nodes, 1);
     *collide = (lar_collide){.surface = surface,
                              .law = whole->law,
+                             .time_step = whole->time_step,
                              .view = {.value = board->value, .slot = board->slot},
                              .adds_node = adds_node,
                              .adds_corner = adds_corner,
+                             .keeps = keeps,
                              .due = lar_calloc(groups, sizeof *collide->due),
                              .last = lar_calloc(groups, sizeof *collide->last),
                              .near = lar_calloc(groups, sizeof *collide->near),
                              .away = lar_calloc(pairs, sizeof *collide->away),
-                             .part = lar_calloc(groups, sizeof *collide->part)};
+                             .part = lar_calloc(groups, sizeof *collide->part),
+                             .level = lar_calloc(groups, sizeof *collide->level)};
     collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
     collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
-    if (!adds_node || !adds_corner || !collide->due || !collide->last || !collide->near ||
-        !collide->away || !collide->part || !collide->list.group || !collide->list.face)
+    if (!adds_node || !adds_corner || !keeps || !collide->due || !collide->last || !collide->near ||
+        !collide->away || !collide->part || !collide->level || !collide->list.group ||
+        !collide->list.face)
         return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
                                "contact of bodies");
-    for (size_t n = 0; n < nodes; n++) adds_node[n] = board->loader[n] == thread;
+    for (size_t n = 0; n < nodes; n++) {
+        adds_node[n] = board->loader[n] == thread;
+        keeps[n] = board->mover[n] == thread;
+    }
     for (size_t f = 0; f < faces; f++) adds_corner[f] = board->pusher[f] == thread;
     return LAR_OK;
 }
@@ -230,7 +245,8 @@ static lar_status allocate_board(int32_t processors, int32_t threads, size_t nod
     LAR_BOARD_ARRAY(peer, (size_t)processors);
     LAR_BOARD_ARRAY(marked, nodes);
 #undef LAR_BOARD_ARRAY
-    fits = fits && (board->gather = lar_calloc_aligned(nodes, sizeof(double[6]))) != NULL;
+    fits = fits &&
+           (board->gather = lar_calloc_aligned(nodes, sizeof(double[LAR_PLACE_VALUES]))) != NULL;
     for (int32_t t = 0; t < threads && fits; t++) {
         board->page[t].slot = lar_calloc(nodes, sizeof *board->page[t].slot);
         board->page[t].node = lar_calloc(nodes, sizeof *board->page[t].node);
@@ -277,9 +293,10 @@ void lar_contact_board_destroy(lar_processor *p) {
         lar_collide *collide = &p->worker[t].acting.collide;
         free((uint8_t *)collide->adds_node);
         free((uint8_t *)collide->adds_corner);
+        free((uint8_t *)collide->keeps);
         free(collide->list.group);
         free(collide->list.face);
-        collide->adds_node = collide->adds_corner = NULL;
+        collide->adds_node = collide->adds_corner = collide->keeps = NULL;
         collide->list = (lar_contact_list){0};
         if (!board->page) continue;
         free(board->page[t].slot);

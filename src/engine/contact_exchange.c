@@ -14,7 +14,7 @@ static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_e
 
 /* ---- the board ------------------------------------------------------------------------------- */
 
-static double fastest_of(const double place[6], double most) {
+static double fastest_of(const double place[LAR_PLACE_VALUES], double most) {
     for (int i = 3; i < 6; i++) most = lar_most(most, fabs(place[i]));
     return most;
 }
@@ -25,7 +25,7 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
     const lar_contact_page *page = &board->page[worker->thread];
     lar_contact_mark *mark = &board->mark[worker->thread];
     const lar_state *state = &worker->state;
-    double(*place)[6] = board->place[round & 1], most = 0;
+    double(*place)[LAR_PLACE_VALUES] = board->place[round & 1], most = 0;
     for (int32_t i = 0; i < page->count; i++) {
         const double *rest = board->map->surface->rest[page->node[i]];
         double *to = place[page->slot[i]];
@@ -34,6 +34,7 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
             to[k] = rest[k] + state->u[value + k];
             to[3 + k] = state->v[value + k];
         }
+        to[6] = state->u[value + 3];
         most = fastest_of(to, most);
     }
     mark->speed[round & 1] = most;
@@ -52,7 +53,7 @@ void lar_contact_begin(lar_processor *p) {
 /* Where a packet of so many places begins in the receiver's buffer, and its size. */
 static size_t packet_place(const lar_contact_map *map, int32_t from, int32_t to, int32_t count,
                            size_t *bytes) {
-    *bytes = (size_t)count * sizeof(double[6]);
+    *bytes = (size_t)count * sizeof(double[LAR_PLACE_VALUES]);
     return map->shift[to] + map->region[from + 1] - LAR_PACKET_ALIGN - *bytes;
 }
 
@@ -68,8 +69,8 @@ lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error
         unsigned char *to = lar_comm_room(p->comm, peer->peer, place, bytes, round);
         if (!to) to = board->gather;
         for (int32_t k = 0; k < peer->send_count; k++)
-            memcpy(to + (size_t)k * sizeof(double[6]), board->place[round & 1][peer->send[k]],
-                   sizeof(double[6]));
+            memcpy(to + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
+                   board->place[round & 1][peer->send[k]], sizeof(double[LAR_PLACE_VALUES]));
         status = lar_comm_put(p->comm, peer->peer, place, to, bytes, round, error);
     }
     return status;
@@ -89,7 +90,8 @@ static lar_status receive_places(const lar_processor *p, uint64_t round, lar_err
         if (status) return status;
         for (int32_t k = 0; k < peer->receive_count; k++) {
             double *to = board->place[round & 1][peer->receive[k]];
-            memcpy(to, (const char *)payload + (size_t)k * sizeof(double[6]), sizeof(double[6]));
+            memcpy(to, (const char *)payload + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
+                   sizeof(double[LAR_PLACE_VALUES]));
             most = fastest_of(to, most);
         }
     }
@@ -112,7 +114,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     double speed = board->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)
         speed = lar_most(speed, board->mark[t].speed[round & 1]);
-    collide->view.place = (const double(*)[6])board->place[round & 1];
+    collide->view.place = (const double(*)[LAR_PLACE_VALUES])board->place[round & 1];
     /* What stands on the board has come here in the last step with this speed. */
     collide->travel += speed * worker->context.time_step;
     lar_collide_add(collide, &worker->context, &worker->state);

@@ -3,10 +3,12 @@
  *     search        between two stretches of steps, when nobody computes: processor zero searches
  *                   the whole model and everyone gets the same list of groups (computer_contact.c)
  *     compile       each processor takes the groups that concern it: it accounts for the node, or
- *                   recovers the element behind a face that may push. All who take part in a group
- *                   need the places of all its nodes, and compute its contact to the same bits; who
- *                   accounts for the node adds the node's force, who recovers the element the
- *                   forces of the corners. So nothing but places travels, once per step.
+ *                   recovers the element behind a face that may push, or has the node of a group
+ *                   within one body and keeps its level. All who take part in a group need the
+ *                   places of all its nodes, and compute its contact to the same bits; who accounts
+ *                   for the node adds the node's force, who recovers the element the forces of the
+ *                   corners. So nothing but places travels, with velocities and levels, once per
+ *                   step.
  *     each step     publish --> board --> packets to others --> their boards --> contact
  *
  * The board. A thread may not read the displacements of nodes that others move: nothing makes those
@@ -93,10 +95,10 @@ typedef struct lar_contact_board {
     int32_t *pusher; /* [contact faces] thread that recovers its element, -1: not here */
     int32_t *loader; /* [contact nodes] thread that adds its force, -1: another processor */
     int32_t slot_count;
-    int32_t *slot;          /* [contact nodes], -1: not on the board */
-    double (*place[2])[6];  /* [contact nodes] by slot: place and velocity */
-    lar_contact_page *page; /* [threads] */
-    lar_contact_mark *mark; /* [threads] */
+    int32_t *slot;                        /* [contact nodes], -1: not on the board */
+    double (*place[2])[LAR_PLACE_VALUES]; /* [contact nodes] by slot, as in lar_contact_view */
+    lar_contact_page *page;               /* [threads] */
+    lar_contact_mark *mark;               /* [threads] */
     lar_contact_mark arrived;
     int32_t peer_count, peer_room;
     lar_contact_peer *peer; /* [peer_room], those in use first */

@@ -303,6 +303,8 @@ uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
         hash = lar_hash_double(hash, (double)state->name[node * (values) + (size_t)i]);
         LAR_STATE_ARRAYS(LAR_STATE_HASH)
 #undef LAR_STATE_HASH
+        double level = state->u[4 * node + 3];
+        if (level > 0) hash = lar_hash_double(hash, level);
     }
     return hash;
 }

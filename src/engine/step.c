@@ -155,7 +155,7 @@ void lar_step_move(const lar_domain *domain, lar_acting *acting,
     move_nodes(domain, acting, context, time, state, trip);
     state->external += lar_conditions_impose(conditions, context, time, state);
     lar_touch_stop(&acting->touch, context, state);
-    lar_collide_moved(&acting->collide, state->fastest * domain->time_step);
+    lar_collide_moved(&acting->collide, state, state->fastest * domain->time_step);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,

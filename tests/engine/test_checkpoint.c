@@ -377,6 +377,7 @@ static void forged_files_are_refused(void **unused) {
     lar_simulation *simulation = start_with(model, setting(0));
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
+    size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
     const struct {
         size_t at, size;
         double value; /* as a double, or as a 32-bit integer */
@@ -393,6 +394,8 @@ static void forged_files_are_refused(void **unused) {
         {144 + 144, 4, 2, "tool"},            /* whether it holds */
         {bytes.size - 16, 8, NAN, "numbers"}, /* a velocity */
         {bytes.size - 16, 8, 3, "hash"},
+        {level, 8, -1e-3, "numbers"}, /* from the side, outside */
+        {level, 8, 1e-3, "hash"},
     };
     for (size_t i = 0; i < sizeof forged / sizeof forged[0]; i++) {
         lar_bytes bad = {lar_calloc(bytes.size, 1), bytes.size};

@@ -53,15 +53,18 @@ static void repair(lar_bytes *bytes) {
     memcpy(bytes->data + AT_BYTES, &length, sizeof length);
     memcpy(bytes->data + AT_IDENTITY, &identity, sizeof identity);
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
-    size_t values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
+    size_t levels = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
     if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_HOLDS_MOST &&
         last == AT_TOOLS + 3 * sizeof(lar_tool_motion) + (size_t)counts[1] * sizeof(lar_hold) +
-                    values) {
+                    levels + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));
-        for (size_t n = 0; n < NODES; n++)
+        for (size_t n = 0; n < NODES; n++) {
+            uint64_t level = word_at(bytes, last - values - levels + 8 * n);
             for (size_t i = 0; i < 6; i++)
                 hash = lar_hash_word(hash, word_at(bytes, last - values + (i < 3 ? 0 : values / 2) +
                                                               8 * (3 * n + i % 3)));
+            if (level != 0) hash = lar_hash_word(hash, level);
+        }
         memcpy(bytes->data + AT_HASH, &hash, sizeof hash);
     }
     uint64_t sum = lar_checkpoint_sum(bytes->data, bytes->size / 8 - 1);
