@@ -264,7 +264,8 @@ LAR_API lar_meshing_options lar_meshing_options_default(void);
 
 /* Meshes one label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk .vtp), one
  * region each; where surfaces overlap the later one has the place. World: metres, for images +x
- * right, +y front, +z head. docs/meshing.md. `options` may be NULL. */
+ * right, +y front, +z head. docs/meshing.md. Works on all cores that the process may use; what it
+ * makes does not depend on how many these are. `options` may be NULL. */
 LAR_API lar_status lar_meshing_create(const char *const *paths, int32_t count,
                                       const lar_meshing_options *options, lar_meshing **meshing,
                                       lar_error *error);
