@@ -129,8 +129,10 @@ static int inspect(mesh_report *report) {
 }
 
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
-static void doubt(const mesh_report *report) {
-    static const double LARGE = 10, LOST = 0.1, FAR = 0.3;
+static void doubt(const mesh_report *report, bool cubes) {
+    static const double LARGE = 10;
+    /* What a fitted mesh keeps (docs/meshing.md, "How good it is"); cubes stand off more. */
+    const double LOST = cubes ? 0.1 : 0.02, FAR = cubes ? 0.3 : 0.15;
     const lar_mesh_quality *quality = &report->info.quality;
     double size = 0, lost = 1 - quality->volume / quality->true_volume;
     for (int i = 0; i < 3; i++) size = fmax(size, report->model.upper[i] - report->model.lower[i]);
@@ -147,8 +149,8 @@ static void doubt(const mesh_report *report) {
     else if (quality->deviation_mean > FAR * quality->mean_edge)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh is %.0f %% of an edge off the true surface in the mean: parts "
-                     "of it are thinner than an element of %.3g m and are lost; take more elements "
-                     "or a smaller size",
+                     "of it are thinner than an element of %.3g m, and coarse or lost; take more "
+                     "elements or a smaller size",
                      100 * quality->deviation_mean / quality->mean_edge, report->info.size);
 }
 
@@ -166,7 +168,7 @@ static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double s
         mesh_report_json(&report);
     else
         mesh_report_table(&report);
-    doubt(&report);
+    doubt(&report, s->voxel);
     return CLI_DONE;
 }
 

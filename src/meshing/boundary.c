@@ -225,7 +225,7 @@ lar_status lar_boundary_principal_axes(lar_boundary *boundary, lar_error *error)
 typedef struct line_test {
     const lar_boundary *boundary;
     double point[3];
-    int32_t own; /* region whose surface does not count */
+    int32_t own, first; /* surfaces that count: of regions from `first` on, but for `own` */
     int crossings;
 } line_test;
 
@@ -234,7 +234,8 @@ typedef struct line_test {
 static bool cross_triangle(void *context, int32_t t) {
     line_test *test = context;
     const lar_boundary *boundary = test->boundary;
-    if (boundary->side[t][1] == test->own) return true;
+    const int32_t region = boundary->side[t][1];
+    if (region == test->own || region < test->first) return true;
     const int32_t *corner = boundary->triangles.corner[t];
     const double *x[3];
     double weight[3], whole = 0, at = 0;
@@ -252,15 +253,37 @@ static bool cross_triangle(void *context, int32_t t) {
     return true;
 }
 
-static bool held_by_another(const lar_triangle_tree *tree, const lar_boundary *boundary,
-                            const double high[3], int32_t t) {
-    line_test test = {.boundary = boundary, .own = boundary->side[t][1]};
+static bool held_by_another(const lar_triangle_tree *tree, line_test *test, const double high[3]) {
+    double end[3] = {high[0], test->point[1], test->point[2]};
+    test->crossings = 0;
+    lar_triangle_tree_boxes(tree, test->point, end, 0, cross_triangle, test);
+    return test->crossings > 0;
+}
+
+/* Nobody else has the place in front of the triangle, and no later one that behind it: of surfaces
+ * that lie on each other none is seen where bodies touch, and the last one where they end together.
+ */
+static bool is_seen(const lar_triangle_tree *tree, const lar_boundary *boundary,
+                    const double low[3], const double high[3], int32_t t) {
+    /* Of the triangle and of all: farther than rounding of what lies on it. */
+    const double NEAR = 1e-3, LEAST = 1e-6;
+    const int32_t *corner = boundary->triangles.corner[t], own = boundary->side[t][1];
+    double normal[3], diagonal[3], middle[3] = {0};
+    lar_triangles_normal(&boundary->triangles, t, normal);
+    lar_minus(high, low, diagonal);
+    const double length = lar_length(normal);
+    const double step = NEAR * sqrt(length) + LEAST * lar_length(diagonal);
     for (int c = 0; c < 3; c++)
-        for (int a = 0; a < 3; a++)
-            test.point[a] += boundary->triangles.vertex[boundary->triangles.corner[t][c]][a] / 3;
-    double end[3] = {high[0], test.point[1], test.point[2]};
-    lar_triangle_tree_boxes(tree, test.point, end, 0, cross_triangle, &test);
-    return test.crossings > 0;
+        for (int a = 0; a < 3; a++) middle[a] += boundary->triangles.vertex[corner[c]][a] / 3;
+    for (int behind = 0; behind < 2; behind++) {
+        line_test test = {.boundary = boundary, .own = own, .first = behind ? own : 0};
+        for (int a = 0; a < 3; a++) {
+            const double out = length > 0 ? normal[a] / length : 0;
+            test.point[a] = middle[a] + (behind ? -step : step) * out;
+        }
+        if (held_by_another(tree, &test, high)) return false;
+    }
+    return true;
 }
 
 /* seen[t]: triangle t is seen from outside. */
@@ -275,7 +298,7 @@ static lar_status find_seen(const lar_boundary *boundary, bool *seen, lar_error 
     double low[3], high[3];
     find_box(triangles, low, high);
     for (int32_t t = 0; t < triangles->triangle_count && !status; t++)
-        seen[t] = !held_by_another(tree, boundary, high, t);
+        seen[t] = is_seen(tree, boundary, low, high, t);
     lar_triangle_tree_destroy(tree);
     return status;
 }

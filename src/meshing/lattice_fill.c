@@ -102,12 +102,13 @@ static bool has_flat_ends(const lar_boundary *boundary, double size, int axis, c
 }
 
 /* Cells along an axis with the body in their middle. At flat ends the outermost ones are filled by
- * a quarter of their length at most, and left out, or by three quarters at least: where two sides
- * met that cut cells in half, those along the edge would be left out alone, and no fitting draws an
+ * less than a third of their length, and left out, or nearly: where sides that cut cells in half
+ * met, those along the edge, and at the corner, would be left out alone, and no fitting draws an
  * edge from there. */
 static double cells_along(double extent, bool flat) {
+    const double FULL = 0.82; /* cubed, at a corner, it is half and something for counting lines */
     const double cells = fmax(1, ceil(extent - 1e-6)), filled = (extent - cells) / 2 + 1;
-    return !flat || filled >= 0.75 || cells < 3 ? cells : cells + 1;
+    return !flat || filled >= FULL || cells < 3 ? cells : cells + 1;
 }
 
 static lar_status place_lattice(const lar_boundary *boundary, double size, lar_lattice *lattice,

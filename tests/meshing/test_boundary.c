@@ -462,6 +462,45 @@ static void test_surfaces(void **state) {
     lar_boundary_clear(&boundary);
 }
 
+/* The area that is seen of each of two boxes. */
+static void see_boxes(const double lower[2][3], const double upper[2][3], double area[2]) {
+    const char *const name[2] = {"one", "other"};
+    lar_triangles surface[2], outer;
+    lar_boundary boundary;
+    lar_error error = {0};
+    for (int b = 0; b < 2; b++) shape_box_surface(&surface[b], lower[b], upper[b]);
+    if (lar_boundary_from_surfaces(surface, name, 2, &boundary, &error) ||
+        lar_boundary_outer(&boundary, &outer, &error))
+        fail_msg("%s", error.message);
+    area[0] = area[1] = 0;
+    for (int32_t t = 0; t < outer.triangle_count; t++) {
+        double normal[3];
+        lar_triangles_normal(&outer, t, normal);
+        area[outer.tag[t] - 1] += lar_length(normal) / 2;
+    }
+    lar_triangles_clear(&outer);
+    lar_boundary_clear(&boundary);
+}
+
+/* Surfaces that lie on each other exactly: boxes side by side, along each axis and in both orders,
+ * and one in the other's corner. */
+static void test_surfaces_that_touch(void **state) {
+    (void)state;
+    double area[2];
+    for (int axis = 0; axis < 3; axis++)
+        for (int order = 0; order < 2; order++) {
+            double lower[2][3] = {{0}}, upper[2][3] = {{2, 2, 2}, {2, 2, 2}};
+            lower[!order][axis] = 2;
+            upper[!order][axis] = 5;
+            see_boxes((const double(*)[3])lower, (const double(*)[3])upper, area);
+            assert_below(fabs(area[order] - 5 * 4), 1e-9);
+            assert_below(fabs(area[!order] - (4 + 4 * 6)), 1e-9);
+        }
+    see_boxes((const double[][3]){{0, 0, 0}, {0, 0, 0}}, (const double[][3]){{4, 4, 4}, {2, 2, 2}},
+              area);
+    assert_below(fabs(area[1] - 3 * 4), 1e-9);
+}
+
 static void test_one_surface(void **state) {
     (void)state;
     lar_triangles surface;
@@ -539,14 +578,23 @@ static void test_chest(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes),         cmocka_unit_test(test_distance),
-        cmocka_unit_test(test_mirrored),       cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_flat_voxels),    cmocka_unit_test(test_sheared),
-        cmocka_unit_test(test_touching),       cmocka_unit_test(test_thin),
-        cmocka_unit_test(test_all_cut),        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_noise),          cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_surfaces),       cmocka_unit_test(test_one_surface),
-        cmocka_unit_test(test_principal_axes), cmocka_unit_test(test_chest),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_distance),
+        cmocka_unit_test(test_mirrored),
+        cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_flat_voxels),
+        cmocka_unit_test(test_sheared),
+        cmocka_unit_test(test_touching),
+        cmocka_unit_test(test_thin),
+        cmocka_unit_test(test_all_cut),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_surfaces),
+        cmocka_unit_test(test_one_surface),
+        cmocka_unit_test(test_surfaces_that_touch),
+        cmocka_unit_test(test_principal_axes),
+        cmocka_unit_test(test_chest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
