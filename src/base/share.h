@@ -1,4 +1,4 @@
-/* Independent items of work, divided among the cores that this process may use.
+/* Independent items of work, divided among the cores that the calling thread may use.
  *
  *     items      0 . . . | . . . . | . . . . | . . .        in portions
  *     caller     #########           ########## ...         each takes the next one that is left

@@ -1,9 +1,11 @@
 /* Every item is done once, whoever does it. */
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -60,10 +62,34 @@ static void calls_can_be_nested(void **state) {
         for (int32_t n = 0; n < MOST; n++) assert_int_equal(all.row[r].done[n], 1);
 }
 
+/* Waits for another one who is at work at the same time, and no longer than ten seconds. */
+static void meet(void *context, int32_t first, int32_t end) {
+    int *here = context;
+    (void)first, (void)end;
+    __atomic_fetch_add(here, 1, __ATOMIC_SEQ_CST);
+    for (int waits = 0; waits < 10000 && __atomic_load_n(here, __ATOMIC_SEQ_CST) < 2; waits++)
+        usleep(1000);
+    if (__atomic_load_n(here, __ATOMIC_SEQ_CST) == 2) return;
+    __atomic_fetch_add(here, 100, __ATOMIC_SEQ_CST);
+}
+
+static void two_cores_are_at_work_at_once(void **state) {
+    (void)state;
+    cpu_set_t allowed;
+    int here = 0;
+    if (sched_getaffinity(0, sizeof allowed, &allowed) || CPU_COUNT(&allowed) < 2) {
+        print_message("skipped: one core\n");
+        return;
+    }
+    lar_share(2, 1, meet, &here);
+    assert_int_equal(here, 2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_item_is_done_once),
         cmocka_unit_test(calls_can_be_nested),
+        cmocka_unit_test(two_cores_are_at_work_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
