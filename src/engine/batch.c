@@ -225,6 +225,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_processor *p = worker->processor;
     uint64_t round = worker->round + 1; /* comm and marks count from 1 */
     lar_status status = LAR_OK;
+    lar_step_enter(&p->domain, &worker->acting, &worker->context, &worker->state);
     fetch_foreign(worker);
     if (p->board) status = lar_contact_send(worker, round, error);
     if (!p->check && !status)

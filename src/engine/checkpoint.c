@@ -401,6 +401,9 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
         memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
     }
     state->step = checkpoint->step;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
     state->external = checkpoint->external;
     state->damped = checkpoint->damped;
     state->contact = checkpoint->contact;

@@ -12,7 +12,7 @@
 
 #include "engine/domain.h"
 #include "engine/state.h"
-#include "engine/tools.h"
+#include "contact/tools.h"
 
 /* What a file says, found to be right. The arrays stand in the bytes that were parsed. */
 typedef struct lar_checkpoint {

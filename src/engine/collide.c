@@ -409,9 +409,9 @@ void lar_collide_apply(lar_collide *collide, const lar_condition_context *contex
                        lar_state *state) {
     if (!collide->surface) return;
     lar_collide_motion *motion = collide->motion;
-    if (state->step != motion->next) motion->valid = false;
-    keep_list(collide, state, context->time_step * state->fastest);
-    motion->next = state->step + 1;
+    if (state->round != motion->next) motion->valid = false;
+    keep_list(collide, state, context->whole_step * state->fastest);
+    motion->next = state->round + 1;
     lar_collide_add(collide, context, state);
     collide->info.possible += collide->surface->possible;
     collide->info.steps++;

@@ -77,7 +77,7 @@ typedef struct lar_collide_motion {
     double (*searched)[3];        /* and at the last one */
     double since;                 /* what has moved since the search under way began [m] */
     double skin_least, skin_most; /* [m] */
-    uint64_t next;                /* the step that follows the last one */
+    uint64_t next;                /* the round that follows the last one */
     bool searching;               /* a search is under way */
     bool valid;                   /* the list belongs to the state */
     bool always;                  /* search in every step */

@@ -301,8 +301,12 @@ static void report_here(const lar_computer *computer, lar_report *report) {
 static lar_status advance_here(lar_computer *computer, uint64_t until, bool first,
                                lar_error *error) {
     computer->until = until;
-    for (int32_t i = 0; i < seats(computer) && first; i++)
-        lar_report_begin(&processor_of(computer, i)->worker[i % computer->threads].acting);
+    for (int32_t i = 0; i < seats(computer); i++) {
+        lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
+        if (first) lar_report_begin(acting);
+        lar_touch_forget_depths(&acting->touch);
+        processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
+    }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
     lar_crew_run(computer->crew, advance_seat, computer);
     for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].stop = 0;
@@ -350,7 +354,13 @@ static lar_status advance_all(lar_computer *computer, uint64_t until, bool first
     return status;
 }
 
-/* Without contact of bodies one stretch; otherwise all stop now and then, for a search. */
+/* The step at which all stop next: for a search, or where an interval ends. */
+static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t end) {
+    uint64_t interval = lar_interval_end(computer->whole, step);
+    return lar_contact_until(computer, interval < end ? interval : end);
+}
+
+/* Without contact of bodies and tools one stretch. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
                                 void *context, lar_trip *trip, lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
@@ -362,11 +372,16 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     computer->called_off = false;
     /* A trip before the first stretch leaves no step over which these could be a mean. */
     memset(computer->report.tool, 0, sizeof computer->report.tool);
+    lar_interval_restart(&computer->interval);
     for (bool first = true; first || *step < end; first = false) {
         uint64_t begin = *step;
         status = lar_contact_refresh(computer, trip, error);
         if (status || trip->kind) break;
-        status = advance_all(computer, lar_contact_until(computer, end), first, trip, error);
+        if (lar_interval_decide(computer->whole, begin, computer->tools))
+            computer->tools_sent = false;
+        status = advance_all(computer, next_stop(computer, begin, end), first, trip, error);
+        lar_interval_harvest(&computer->interval, &computer->report, *step - begin,
+                             computer->tools);
         lar_contact_count(computer, *step - begin);
         if (status || trip->kind || computer->called_off) break;
     }

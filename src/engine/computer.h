@@ -22,6 +22,7 @@
 #include "engine/contact_exchange.h"
 #include "engine/control.h"
 #include "engine/division.h"
+#include "engine/interval.h"
 #include "engine/processor.h"
 #include "engine/report.h"
 
@@ -67,9 +68,10 @@ typedef struct lar_computer {
     lar_report report; /* of the last advance; at processor zero, of all processors */
     lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
     lar_tools *tools;  /* of this process: zero's are those that count */
-    bool tools_sent;   /* to the other processes, as they are */
-    bool broken;       /* a processor failed: nothing goes on */
-    bool finished;     /* processor zero has let everyone go */
+    lar_interval interval;
+    bool tools_sent; /* to the other processes, as they are */
+    bool broken;     /* a processor failed: nothing goes on */
+    bool finished;   /* processor zero has let everyone go */
     /* for opening */
     const lar_options *options;
     const lar_domain *whole;

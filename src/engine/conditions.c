@@ -229,7 +229,8 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         double weight = context->weight[constraint->value / 4];
         /* The kernel moved this value as if it were free and counted that as damped motion. */
         double before = constraint->curve < 0 ? 0 : constraint->before;
-        state->damped -= weight * (before + *v) * (before + *v);
+        double share = dt / context->whole_step;
+        state->damped -= share * weight * (before + *v) * (before + *v);
         if (constraint->curve < 0) {
             *u = 0;
             *v = 0;

@@ -57,7 +57,10 @@ typedef struct lar_conditions {
 typedef struct lar_condition_context {
     const lar_model *model;
     double scale;         /* force units per newton */
-    double time_step;     /* [s] */
+    double time_step;     /* of the step, or the part of it, under way [s] */
+    double whole_step;    /* [s] */
+    double hardness;      /* of tools: lar_step_division */
+    int32_t shares;       /* of LAR_STEP_SHARES, that the part of the step is */
     double stable_step;   /* the elements' bound at rest [s] */
     const double *mass;   /* by local node */
     const double *weight; /* the same, 0 for nodes that another processor accounts for */

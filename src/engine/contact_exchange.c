@@ -116,7 +116,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
         speed = lar_most(speed, board->mark[t].speed[round & 1]);
     collide->view.place = (const double(*)[LAR_PLACE_VALUES])board->place[round & 1];
     /* What stands on the board has come here in the last step with this speed. */
-    collide->travel += speed * worker->context.time_step;
+    collide->travel += speed * worker->context.whole_step;
     lar_collide_add(collide, &worker->context, &worker->state);
     lar_collide_half_work(collide, &worker->context, &worker->state);
     return LAR_OK;
@@ -131,6 +131,6 @@ void lar_contact_watch(lar_worker *worker, uint64_t steps) {
     uint64_t done = worker->state.step;
     if (!(collide->moved <= allowed) && !worker->trip.kind)
         worker->trip = (lar_trip){.kind = LAR_TRIP_RUSH, .element = -1, .step = done - 1};
-    if (collide->moved + (double)(steps + 1) * speed * worker->context.time_step > allowed)
+    if (collide->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
         lar_processor_ask_stop(worker->processor, done + steps);
 }

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/tool_body.h"
 #include "mechanics/hex8_full.h"
+#include "mechanics/hex8_guard.h"
 
 /* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
 static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
@@ -18,13 +20,18 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
                                     : lar_hex8_full_frequency(corner, material);
 }
 
-lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                           lar_gid *worst, lar_error *error) {
+/* `rate` may be NULL. */
+static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                              lar_gid *worst, lar_element_rate *rate, lar_error *error) {
     double fastest = 0;
     *worst = 0;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         lar_hex8 hex8;
         double frequency = element_frequency(model, kind, e, &hex8);
+        if (rate) {
+            double density = lar_model_material_of(model, e)->density;
+            rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
+        }
         if (!(frequency <= fastest)) {
             fastest = frequency;
             *worst = e;
@@ -38,6 +45,11 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
     return LAR_OK;
 }
 
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error) {
+    return stable_step(model, kind, step, worst, NULL, error);
+}
+
 double lar_auto_step(const lar_model *model, double stable_step) {
     double step = 0.8 * stable_step;
     return model->duration > 0 ? fmin(step, model->duration / 200) : step;
@@ -45,8 +57,12 @@ double lar_auto_step(const lar_model *model, double stable_step) {
 
 static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
     const lar_model *model = domain->model;
-    lar_status status =
-        lar_stable_step(model, domain->kind, &domain->stable_step, &domain->stable_worst, error);
+    size_t elements = (size_t)model->mesh.element_count;
+    domain->rate = lar_calloc(elements, sizeof *domain->rate);
+    if (!domain->rate)
+        return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
+    lar_status status = stable_step(model, domain->kind, &domain->stable_step,
+                                    &domain->stable_worst, domain->rate, error);
     if (status) return status;
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
@@ -78,7 +94,7 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
 }
 
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
-                      lar_gid e, double *steepest) {
+                      lar_gid e, double *steepest, double *limit) {
     lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_material *material = lar_model_material_of(domain->model, e);
@@ -101,6 +117,8 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
     }
+    *limit =
+        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         head->modulus[k][lane] = material->parameter[k] * hex8.volume * domain->scale;
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
@@ -145,7 +163,12 @@ static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) 
 
 static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
-    if (!domain->blocks) return lar_fail_memory(error, domain->block_bytes, "the elements");
+    size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
+    domain->strained = lar_calloc(elements, sizeof *domain->strained);
+    domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
+    domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
+    if (!domain->blocks || !domain->corner_limit || !domain->strained || !domain->strained_count)
+        return lar_fail_memory(error, domain->block_bytes, "the elements");
     double steepest = 0;
     char *memory = domain->blocks;
     for (int32_t r = 0; r < domain->run_count; r++) {
@@ -154,9 +177,12 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
         run->streamed = domain->block_bytes > CACHED_BYTES;
         for (int32_t b = 0; b < run->count; b++) {
             const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+            double *limit = domain->corner_limit + LAR_BLOCK * (domain->run_first[r] + b);
+            for (int lane = 0; lane < LAR_BLOCK; lane++) limit[lane] = INFINITY;
             for (int lane = 0; lane < LAR_BLOCK; lane++)
                 if (lanes->element[lane] >= 0)
-                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest);
+                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest,
+                              limit + lane);
                 else
                     for (int a = 0; a < 8; a++)
                         ((lar_block_head *)(void *)memory)->node[a][lane] =
@@ -216,7 +242,7 @@ static void prepare_motion(lar_domain *domain) {
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
     lar_gravity_at(model, 0, gravity);
-    domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt};
+    domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
     for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0)
@@ -240,6 +266,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = choose_step(domain, options, error);
+    domain->interval = lar_idle_interval(domain->time_step);
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
@@ -290,6 +317,9 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .kind = whole->kind,
                            .scale = whole->scale,
                            .time_step = whole->time_step,
+                           .interval = whole->interval,
+                           .rate = whole->rate,
+                           .rate_lent = true,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
                            .motion = whole->motion};
@@ -310,6 +340,10 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run);
     free(domain->run_first);
     free(domain->blocks);
+    free(domain->corner_limit);
+    free(domain->strained);
+    free(domain->strained_count);
+    if (!domain->rate_lent) free(domain->rate);
     free(domain->spare);
     if (domain->weight != domain->mass) free(domain->weight);
     free(domain->mass);

@@ -17,6 +17,12 @@
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
 
+/* What an element's frequency follows from. */
+typedef struct lar_element_rate {
+    double square; /* of its highest frequency at rest [1/s^2] */
+    double mass;   /* of a corner [kg] */
+} lar_element_rate;
+
 typedef struct lar_domain {
     const lar_model *model;
     const lar_kernels *kernels;
@@ -24,9 +30,14 @@ typedef struct lar_domain {
 
     lar_layout layout;
     int32_t run_count;
-    lar_block_run *run; /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
-    int32_t *run_first; /* [run_count] the run's first block in layout.block */
-    void *blocks;       /* all blocks of all runs */
+    lar_block_run *run;   /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
+    int32_t *run_first;   /* [run_count] the run's first block in layout.block */
+    void *blocks;         /* all blocks of all runs */
+    double *corner_limit; /* [8 for each block] lar_hex8_corner_limit, in squared force units */
+    int32_t *strained;    /* [8 for each block] elements that the guard looks at in every step, */
+    int32_t *strained_count; /* [run_count] the first of a run's place; scratch (engine/guard.h) */
+    lar_element_rate *rate;  /* [elements of the model] */
+    bool rate_lent;          /* `rate` belongs to the whole */
     size_t block_bytes;
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */
@@ -37,6 +48,7 @@ typedef struct lar_domain {
 
     double scale;       /* force units per newton, a power of two */
     double time_step;   /* [s] */
+    uint64_t interval;  /* steps after which is decided (engine/interval.h) */
     double stable_step; /* the elements' bound at rest [s] */
     lar_gid stable_worst;
     lar_hex8_limits limits;

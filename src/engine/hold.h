@@ -9,7 +9,7 @@
  * the point and where it was in the tool's own axes when it was taken, so taking hold moves
  * nothing. All holds of a tool together are as stiff as what it stands for: finger tips, or jaws.
  *
- * Decided between advances by whoever has the whole state (engine/tools.h); the springs themselves
+ * Decided between advances by whoever has the whole state (contact/tools.h); the springs themselves
  * are engine/touch.h's.
  */
 #ifndef LAR_ENGINE_HOLD_H

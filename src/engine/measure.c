@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/guard.h"
 #include "mechanics/hex8_full.h"
 
 static double element_energy(const lar_domain *domain, const lar_state *state, lar_gid e,
@@ -15,16 +16,19 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
         return lar_hex8_full_energy(corner, lar_model_material_of(domain->model, e), u);
     lar_hex8 hex8;
     lar_hex8_prepare(corner, lar_model_material_of(domain->model, e), &hex8);
-    return lar_hex8_energy(&hex8, lar_model_material_of(domain->model, e), u, hourglass);
+    return lar_hex8_energy(&hex8, lar_model_material_of(domain->model, e), u, hourglass) +
+           lar_guard_energy(domain, state, e);
 }
 
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
 static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
                             const double gravity[3]) {
-    double half = 0.5 * domain->model->damping * domain->time_step;
-    double drift = gravity[value % 4] * domain->time_step / (1 + half);
-    return domain->motion.keep * state->v[value] + drift -
-           domain->push[value / 4] * (double)state->force[value];
+    lar_motion motion = lar_step_motion(domain, lar_division_of(&domain->acting), state);
+    double step = lar_mean_step(domain, lar_division_of(&domain->acting), state);
+    double half = 0.5 * domain->model->damping * step;
+    double drift = gravity[value % 4] * step / (1 + half);
+    return motion.keep * state->v[value] + drift -
+           motion.push * domain->push[value / 4] * (double)state->force[value];
 }
 
 /* Kinetic energy of one value, and half of the present step's share of damping. */

@@ -107,7 +107,7 @@ static inline double dot(const double a[3], const double *b) {
 }
 
 static double step_travel(const lar_condition_context *context, const lar_state *state) {
-    return 1.7320508075688774 * context->time_step * state->fastest;
+    return 1.7320508075688774 * context->whole_step * state->fastest;
 }
 
 /* Looks so far that at the present speed the next search is some dozens of steps away, and never

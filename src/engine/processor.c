@@ -286,6 +286,9 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_worker *worker = &p->worker[t];
         worker->state.step = state->step;
+        worker->state.part = 0;
+        worker->state.parts = 1;
+        worker->state.listed = false;
         worker->state.external = worker->state.damped = worker->state.contact = 0;
         worker->trip = (lar_trip){0};
         lar_acting_forget(&worker->acting);

@@ -10,6 +10,7 @@ typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MOST];
     lar_contact_info contact; /* since the start */
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
+    double need;       /* of the elements: lar_state.need */
     double taken;      /* by contact, as lar_state.contact: since the start [J] */
 } lar_report;
 
@@ -38,12 +39,15 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
             to->torque[k] += from->torque[k];
             to->rest[k] += from->rest[k];
         }
+        to->squeeze += from->squeeze;
+        to->depth = from->depth > to->depth ? from->depth : to->depth;
         to->touching += from->touching;
         to->held += from->held;
     }
     lar_report_contact(&sum->contact, &other->contact);
     sum->moved = lar_most(sum->moved, other->moved);
     sum->way = lar_most(sum->way, other->way);
+    sum->need = lar_most(sum->need, other->need);
     sum->taken += other->taken;
 }
 
@@ -56,6 +60,7 @@ static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
     lar_report_contact(&own.contact, &acting->collide.info);
     own.moved = acting->collide.moved;
     own.way = acting->collide.way;
+    own.need = state->need;
     own.taken = state->contact;
     lar_report_join(sum, &own);
 }

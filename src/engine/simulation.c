@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "base/vector.h"
+#include "contact/tool_body.h"
 #include "engine/field.h"
 #include "engine/measure.h"
 
@@ -84,6 +86,9 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
 #undef LAR_STATE_CLEAR
     state->step = 0;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
     state->damped = state->external = state->contact = 0;
     simulation->measured = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
@@ -93,13 +98,42 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     lar_acting_forget(&simulation->domain.acting);
 }
 
+/* How much the tissue bears of a tool: see contact/tool_body.h. */
+static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
+    const lar_model *model = domain->model;
+    const lar_surface *surface = &model->surface;
+    lar_contact_law law = lar_contact_tool_law_for(domain->time_step, domain->stable_step);
+    lar_tissue_scale scale = {.shear = INFINITY,
+                              .interval =
+                                  (double)lar_tool_interval(domain->time_step) * domain->time_step};
+    double edges = 0, mass = 0;
+    for (int32_t f = 0; f < surface->face_count; f++) {
+        scale.shear = fmin(scale.shear,
+                           lar_material_shear(lar_model_material_of(model, surface->element[f])));
+        for (int a = 0; a < 4; a++) {
+            double edge[3];
+            int32_t node = surface->corner[f][a], next = surface->corner[f][(a + 1) % 4];
+            lar_minus(model->mesh.position[next], model->mesh.position[node], edge);
+            edges += lar_length(edge);
+            mass += domain->mass[domain->layout.local[node]];
+        }
+    }
+    if (surface->face_count > 0) {
+        scale.edge = edges / (4 * (double)surface->face_count);
+        scale.stiffness = law.stiffness * mass / (4 * (double)surface->face_count);
+    }
+    lar_tool_limits_set(&scale, list);
+}
+
 static lar_status compile(const lar_model *model, const lar_options *options,
                           lar_simulation *simulation, lar_error *error) {
     lar_domain *domain = &simulation->domain;
     lar_status status = lar_tool_list_create(model, options->hands, &simulation->list, error);
     if (!status) status = lar_domain_create(model, options, domain, error);
     if (status) return status;
+    set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
+    if (model->tool_count > 0) domain->interval = lar_tool_interval(domain->time_step);
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
                               &simulation->tools, &domain->acting.touch, error);
     domain->acting.touch.always = options->search_always != 0;
@@ -148,19 +182,41 @@ void lar_simulation_destroy(lar_simulation *simulation) {
     free(simulation);
 }
 
-static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                          void *context) {
+/* Steps up to `end`, an interval's or the advance's. False when it shall not go on. */
+static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch *watch,
+                            void *context) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
     lar_trip *trip = &simulation->trip;
-    lar_report_begin(&domain->acting);
-    for (uint64_t i = 0; i < steps && !trip->kind; i++) {
+    uint64_t begin = state->step;
+    bool goes_on = true;
+    lar_touch_forget_depths(&domain->acting.touch);
+    state->need = 0;
+    while (state->step < end && goes_on) {
         lar_step(domain, state, trip);
         if (trip->kind) lar_trip_examine(domain, state, trip);
-        if (watch && !watch(context, state->step)) break;
+        bool whole = state->part == 0;
+        goes_on = !trip->kind && (!watch || !whole || watch(context, state->step));
     }
     simulation->report = (lar_report){0};
     lar_report_add(&simulation->report, &domain->acting, state);
+    lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
+                         &simulation->tools);
+    return goes_on;
+}
+
+static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                          void *context) {
+    const uint64_t *step = &simulation->state.step;
+    uint64_t end = *step + steps;
+    bool goes_on = true;
+    lar_report_begin(&simulation->domain.acting);
+    lar_interval_restart(&simulation->interval);
+    while (*step < end && goes_on) {
+        lar_interval_decide(&simulation->domain, *step, &simulation->tools);
+        uint64_t until = lar_interval_end(&simulation->domain, *step);
+        goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
+    }
 }
 
 /* Contact may keep or lose energy, but must not have given more than it took: then the bodies would

@@ -5,6 +5,7 @@
 
 #include "engine/computer.h"
 #include "engine/domain.h"
+#include "engine/interval.h"
 #include "engine/state.h"
 #include "engine/step.h"
 
@@ -14,6 +15,7 @@ struct lar_simulation {
     lar_trip trip;
     lar_tool_list list;
     lar_tools tools;
+    lar_interval interval;        /* of an advance without a computer */
     lar_computer *computer;       /* NULL: lar_step advances the whole model */
     bool gathered;                /* `state` is what the computer has */
     lar_report report;            /* of the last advance, of all processors */

@@ -1,6 +1,7 @@
 /* Tools and contact of a simulation, as the public header has them. */
 #include <math.h>
 
+#include "contact/tool_body.h"
 #include "engine/hold.h"
 #include "engine/simulation.h"
 
@@ -118,7 +119,7 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     if (steps < 1 || (double)steps > STEPS_MOST)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
                         tool->name, (unsigned long long)steps);
-    lar_tool_at(motion, step, time_step, &now, NULL);
+    lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
     status = check_pose(tool, pose, &wanted, error);
     if (!status && !(tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
@@ -131,10 +132,8 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
                                      index, &wanted, tools, error);
     }
     if (status) return status;
-    motion->from = now;
-    motion->to = wanted;
-    motion->start = step;
-    motion->end = step + steps;
+    lar_tool_ask(tools, index,
+                 &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
     if (simulation->computer) simulation->computer->tools_sent = false;
     return LAR_OK;
 }
@@ -147,7 +146,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     if (status) return status;
     const lar_tool_sum *sum = &simulation->report.tool[tool];
     double steps = simulation->report_steps ? (double)simulation->report_steps : 1;
-    double unit = 1 / (simulation->domain.scale * steps);
+    double unit = 1 / (LAR_STEP_SHARES * simulation->domain.scale * steps);
     *force =
         (lar_tool_force){.touching = sum->touching, .held = holds_of(&simulation->tools, tool)};
     for (int i = 0; i < 3; i++) {

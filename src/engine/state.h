@@ -22,10 +22,15 @@
 
 typedef struct lar_state {
     uint64_t step;   /* steps done */
+    int32_t part;    /* parts of a divided step done; 0 between advances */
+    int32_t parts;   /* of the step under way */
+    uint64_t round;  /* times that nodes were moved; no state */
     double damped;   /* sum over the steps of sum m |v + v'|^2 */
     double external; /* work of loads, prescribed motion and tools so far [J] */
     double contact;  /* what contacts have taken from the bodies so far [J] */
     double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */
+    double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
+    bool listed;     /* the strained elements are listed; false: they are looked for anew */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)

@@ -3,23 +3,53 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/guard.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
 
+/* Of several elements in a step the first of the mesh, whoever computes them. */
 static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
-    if (!trip->kind)
-        *trip = (lar_trip){.kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step};
+    if (!trip->kind || (trip->kind == LAR_TRIP_ELEMENT && trip->step == state->step &&
+                        trip->part == state->part && e < trip->element))
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step, .part = state->part};
+}
+
+/* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
+ * no longer count. */
+static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
+                     lar_trip *trip) {
+    lar_block_run one = domain->run[r];
+    size_t size = lar_block_size(one.shape);
+    one.count = 1;
+    for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
+        one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;
+        found = domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
+        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
+                trip_element(trip, state, lanes->element[lane]);
+    }
+}
+
+/* Whether the strained elements are looked for in this step: in the last one of an interval, so
+ * that what is found is known when the next one begins. */
+static bool interval_ends(const lar_domain *domain, const lar_state *state) {
+    return (state->step + 1) % domain->interval == 0 && state->part == 0;
 }
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
                            lar_trip *trip) {
-    bool watch = state->step % LAR_WATCH_INTERVAL == 0;
+    bool due = interval_ends(domain, state), watches = due || !state->listed;
     for (int32_t r = first; r < first + count; r++) {
-        int64_t lane = domain->kernels->recover(&domain->run[r], state->u, state->force,
-                                                &domain->limits, watch);
-        if (lane < 0) continue;
-        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + lane / LAR_BLOCK];
-        trip_element(trip, state, lanes->element[lane % LAR_BLOCK]);
+        size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
+        lar_hex8_watch watch = {.limit = domain->corner_limit + place,
+                                .lane = domain->strained + place};
+        int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
+                                                 &domain->limits, watches ? &watch : NULL);
+        if (watches) lar_guard_select(domain, r, &watch, due, state);
+        lar_guard_apply(domain, r, state);
+        if (found >= 0) trip_run(domain, r, found, state, trip);
     }
 }
 
@@ -59,6 +89,46 @@ void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, la
             }
 }
 
+/* ---- how long a step is --------------------------------------------------------------------- */
+
+const lar_step_division *lar_division_of(const lar_acting *acting) {
+    static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1};
+    return acting->touch.tools ? &acting->touch.tools->division : &undivided;
+}
+
+double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
+                     const lar_state *state) {
+    double step = domain->time_step / division->parts;
+    bool changes = state->part == 0 && state->step == division->since;
+    return changes ? 0.5 * (step + domain->time_step / division->before) : step;
+}
+
+lar_motion lar_step_motion(const lar_domain *domain, const lar_step_division *division,
+                           const lar_state *state) {
+    lar_motion motion = domain->motion;
+    double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
+    motion.dt = whole / division->parts;
+    if (mean == whole) return motion;
+    double half = 0.5 * domain->model->damping * mean;
+    double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
+    lar_gravity_at(domain->model, 0, gravity);
+    motion.keep = (1 - half) / (1 + half);
+    motion.push = mean / whole * (1 + half_whole) / (1 + half);
+    for (int i = 0; i < 3; i++) motion.drift[i] = gravity[i] * mean / (1 + half);
+    return motion;
+}
+
+void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+                    lar_condition_context *context, lar_state *state) {
+    const lar_step_division *division = lar_division_of(acting);
+    if (state->part == 0) state->parts = division->parts;
+    context->time_step = domain->time_step / state->parts;
+    context->hardness = division->hardness;
+    context->shares = LAR_STEP_SHARES / state->parts;
+}
+
+/* ---- the parts ------------------------------------------------------------------------------ */
+
 /* Spare nodes fall with gravity like any other; now and then they are put back. */
 static void park_spares(const lar_domain *domain, const lar_condition_context *context,
                         lar_state *state) {
@@ -76,15 +146,17 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts =
         acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
-    uint64_t park_interval = predicts ? 4 : LAR_WATCH_INTERVAL;
+    uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
-    lar_motion motion = domain->motion;
+    lar_motion motion = lar_step_motion(domain, lar_division_of(acting), state);
     if (acting->conditions.gravity_varies) {
         double gravity[3];
         lar_gravity_at(model, time, gravity);
+        double mean = lar_mean_step(domain, lar_division_of(acting), state);
         for (int i = 0; i < 3; i++)
-            motion.drift[i] = gravity[i] * motion.dt / (1 + 0.5 * model->damping * motion.dt);
+            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * model->damping * mean);
     }
+    double before = state->damped;
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = model->damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
@@ -93,6 +165,7 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
                                  &state->fastest) &&
         !trip->kind)
         *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
+    if (state->parts > 1) state->damped = before + (state->damped - before) / state->parts;
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
@@ -137,7 +210,13 @@ void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_collide_forget(&domain->acting.collide);
     domain->acting.collide.info = counted;
     lar_touch_restore(&domain->acting.touch, &note);
-    lar_step_recover(domain, 0, domain->run_count, state, trip);
+    if (domain->kind != LAR_ELEMENT_HEX8) {
+        lar_step_recover(domain, 0, domain->run_count, state, trip);
+        return;
+    }
+    for (int32_t r = 0; r < domain->run_count; r++)
+        domain->kernels->recover(&domain->run[r], state->u, state->force, &domain->limits, NULL);
+    lar_guard_apply_all(domain, state);
 }
 
 void lar_step_begin(const lar_domain *domain, lar_acting *acting,
@@ -155,7 +234,7 @@ void lar_step_move(const lar_domain *domain, lar_acting *acting,
     move_nodes(domain, acting, context, time, state, trip);
     state->external += lar_conditions_impose(conditions, context, time, state);
     lar_touch_stop(&acting->touch, context, state);
-    lar_collide_moved(&acting->collide, state, state->fastest * domain->time_step);
+    lar_collide_moved(&acting->collide, state, state->fastest * context->time_step);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,
@@ -165,11 +244,16 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !trip->kind)
         *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
+    state->round++;
+    state->listed = true;
+    if (++state->part < state->parts) return;
+    state->part = 0;
     state->step++;
 }
 
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
+    lar_step_enter(domain, &domain->acting, &context, state);
     lar_step_begin(domain, &domain->acting, &context, state, trip);
     collide(&domain->acting.collide, &context, state, trip);
     lar_collide_half_work(&domain->acting.collide, &context, state);

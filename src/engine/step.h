@@ -28,6 +28,7 @@ typedef struct lar_trip {
     } kind;
     lar_gid element; /* of LAR_TRIP_ELEMENT and LAR_TRIP_GAIN; the node of the others */
     uint64_t step;   /* the step under way */
+    int32_t part;    /* of a divided step */
     /* What lar_trip_examine found, for the report. */
     double place[3];     /* [m] */
     double volume_ratio; /* of the element; of LAR_TRIP_GAIN: in its worst corner */
@@ -41,14 +42,28 @@ typedef struct lar_trip {
     double tool_speed; /* [m/s] */
 } lar_trip;
 
-/* Every so many steps the kernels also look at the hourglass modes. */
-enum { LAR_WATCH_INTERVAL = 32 };
+/* Every so many steps spare nodes are put back. */
+enum { LAR_PARK_INTERVAL = 32 };
 
-/* Advances the state by one step. */
+/* Advances the state by one step, or by a part of a divided one. */
 void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
 
 /* The parts of a step. What acts, and the state's sums (force, damped, external, contact), are one
  * thread's; u and v may be shared with the threads that move other nodes. */
+
+/* Before all others: how long the step is, or its part. */
+void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+                    lar_condition_context *context, lar_state *state);
+
+/* How steps are divided now. */
+const lar_step_division *lar_division_of(const lar_acting *acting);
+/* Velocities stand half-way between the displacements before and after: where the length of steps
+ * changes they are carried over the mean of two lengths [s]. */
+double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
+                     const lar_state *state);
+/* How nodes move in the step that lies before the state: see lar_step_division. */
+lar_motion lar_step_motion(const lar_domain *domain, const lar_step_division *division,
+                           const lar_state *state);
 
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
  * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */
@@ -70,7 +85,8 @@ void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip);
 
 /* Time of the state [s]. */
 static inline double lar_state_time(const lar_domain *domain, const lar_state *state) {
-    return (double)state->step * domain->time_step;
+    double part = state->part > 0 ? (double)state->part / state->parts : 0;
+    return ((double)state->step + part) * domain->time_step;
 }
 
 /* What the conditions need of a domain, for the nodes first .. end - 1. */
@@ -79,6 +95,9 @@ static inline lar_condition_context lar_domain_context_of(const lar_domain *doma
     return (lar_condition_context){.model = domain->model,
                                    .scale = domain->scale,
                                    .time_step = domain->time_step,
+                                   .whole_step = domain->time_step,
+                                   .hardness = 1,
+                                   .shares = LAR_STEP_SHARES,
                                    .stable_step = domain->stable_step,
                                    .mass = domain->mass,
                                    .weight = domain->weight,

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
+#include "mechanics/face_contact.h"
+
 /* ---- set-up -------------------------------------------------------------------------------- */
 
 static bool mine(const lar_model *model, const lar_condition_share *share, int32_t face) {
@@ -147,6 +150,15 @@ void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_bo
             segment[s].end[1][i] += pose->position[i];
         }
     }
+    if (tool->shape != LAR_TOOL_GRASPER) return;
+    static const double hinge[3] = {0, 1, 0};
+    double axis[3], jaw[3];
+    lar_turn(pose->orientation, hinge, axis);
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < 3; i++)
+            jaw[i] = (s ? 1 : -1) * (segment[s].end[1][i] - segment[s].end[0][i]) / tool->length;
+        lar_cross(axis, jaw, body->outward[s]);
+    }
 }
 
 double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t count) {
@@ -163,17 +175,27 @@ double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t coun
     return sqrt(farthest);
 }
 
+/* The pose now, or `ahead` parts of a step later. */
+static void pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                     double time_step, lar_tool_pose *pose) {
+    int32_t part = state->part + ahead;
+    if (part >= state->parts)
+        lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
+    else
+        lar_tool_within(motion, state->step, (double)part / state->parts, time_step, pose, NULL);
+}
+
 /* Brings the tool to the step. Returns how far it has come since the last one. */
 static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool_motion *motion,
-                     uint64_t step, double time_step) {
-    if (watch->rests && step >= motion->end) return 0;
+                     const lar_state *state, double time_step) {
+    if (watch->rests && state->step >= motion->end) return 0;
     lar_tool_body *body = &watch->body, old = *body;
     lar_tool_pose pose;
-    lar_tool_at(motion, step, time_step, &pose, NULL);
+    pose_now(motion, state, 0, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->now);
-    lar_tool_at(motion, step + 1, time_step, &pose, NULL);
+    pose_now(motion, state, 1, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->next);
-    watch->rests = step >= motion->end;
+    watch->rests = state->step >= motion->end;
     return watch->known ? lar_tool_way(old.now, body->now, body->count) : 0;
 }
 
@@ -203,8 +225,14 @@ typedef struct lar_patch { /* one face before one tool */
     double x[4][3], v[4][3], out[3];
     double force[4][3];
     double closest; /* distance of the closest point [m] */
+    double covered; /* how many of the points are as deep in the tool as the wall */
+    double depth;   /* the deepest point [m] */
+    double squeeze; /* of the jaws [N] */
     int32_t touching;
 } lar_patch;
+
+/* Where the wall begins, in radii of the tool. */
+static const double WALL = 0.2;
 
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
@@ -215,26 +243,80 @@ static double facing(const lar_patch *patch, const double normal[3]) {
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
+/* A point of the face is pushed along the normal of segment s. */
+static void push_point(lar_patch *patch, const lar_contact_law *law, int32_t s, double along,
+                       const double weight[4], const double normal[3], double mass, double depth) {
+    const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
+    double v[3], rate = 0;
+    lar_face_mean((const double(*)[3])patch->v, weight, v);
+    for (int i = 0; i < 3; i++) {
+        double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
+        rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
+    }
+    double force = lar_contact_force(law, mass, depth, rate);
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
+    if (patch->body->count == 2)
+        patch->squeeze -= force * along * lar_dot(normal, patch->body->outward[s]);
+    patch->touching++;
+}
+
 static void touch_point(lar_patch *patch, const lar_contact_law *law, const double weight[4]) {
-    double x[3], v[3], normal[3], along;
+    double x[3], normal[3], along;
     lar_face_mean((const double(*)[3])patch->x, weight, x);
     for (int32_t s = 0; s < patch->body->count; s++) {
-        const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
-        double depth = lar_segment_depth(now, patch->radius, x, normal, &along), rate = 0;
+        double depth = lar_segment_depth(&patch->body->now[s], patch->radius, x, normal, &along);
         patch->closest = fmin(patch->closest, -depth);
         if (!(depth > 0)) continue;
         double share = facing(patch, normal);
         if (share == 0) continue;
-        lar_face_mean((const double(*)[3])patch->v, weight, v);
-        for (int i = 0; i < 3; i++) {
-            double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
-            rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
-        }
-        double force = lar_contact_force(law, share * patch->mass, depth, rate);
-        for (int a = 0; a < 4; a++)
-            for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
-        patch->touching++;
+        patch->depth = fmax(patch->depth, share * depth);
+        patch->covered += fmin(1, depth / (WALL * patch->radius));
+        push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
     }
+}
+
+/* What a point with these weights may count as, so that the stiffness at each corner stays within
+ * its mass: the row sums of theory.md, with one point instead of many. */
+static double wall_mass(const lar_touch_face *face, const double *mass, const double weight[4]) {
+    double most = INFINITY;
+    for (int a = 0; a < 4; a++)
+        if (weight[a] > 0) most = fmin(most, mass[face->value[a] / 4] * face->share[a] / weight[a]);
+    return most;
+}
+
+/* The wall. Of a tool that is small beside a face few points of the grid touch, or none, and they
+ * bear what so few may. What the others could bear belongs to the closest point of the face, when
+ * that is deep in the tool: as much as its corners bear, at whatever size of tool and face. */
+static void touch_wall(lar_patch *patch, const lar_contact_law *law, const double *mass, int n) {
+    double free_share = 1 - patch->covered / (n * n);
+    if (!(free_share > 0)) return;
+    for (int32_t s = 0; s < patch->body->count; s++) {
+        lar_face_segment at;
+        lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
+        double depth = patch->radius - at.distance;
+        if (!(depth > WALL * patch->radius)) continue;
+        if (!(at.distance > 0)) /* the middle line goes through the face: out the way it came */
+            for (int i = 0; i < 3; i++) at.normal[i] = -patch->out[i];
+        double share = facing(patch, at.normal);
+        if (share == 0) continue;
+        patch->depth = fmax(patch->depth, share * depth);
+        push_point(patch, law, s, at.along, at.weight, at.normal,
+                   free_share * share * wall_mass(patch->face, mass, at.weight),
+                   depth - WALL * patch->radius);
+    }
+}
+
+/* How far the face is at least from where the wall begins: no point of it is farther from a point
+ * of the grid than half of the diagonal between two of these. */
+static double wall_gap(const lar_patch *patch, int n) {
+    double longest = 0;
+    for (int a = 0; a < 4; a++) {
+        double edge[3];
+        lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
+        longest = fmax(longest, lar_dot(edge, edge));
+    }
+    return patch->closest - sqrt(0.5 * longest) / n + WALL * patch->radius;
 }
 
 static void touch_face(lar_patch *patch, const lar_contact_law *law, const double *v,
@@ -244,14 +326,16 @@ static void touch_face(lar_patch *patch, const lar_contact_law *law, const doubl
     patch->mass = point_mass(face, mass, n);
     for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
-    double size = sqrt(patch->out[0] * patch->out[0] + patch->out[1] * patch->out[1] +
-                       patch->out[2] * patch->out[2]);
+    double size = lar_length(patch->out);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
     for (int i = 0; i < n * n; i++) {
         double weight[4];
         lar_touch_weights(i, n, weight);
         touch_point(patch, law, weight);
     }
+    double gap = wall_gap(patch, n);
+    if (gap < 0) touch_wall(patch, law, mass, n);
+    patch->closest = fmin(patch->closest, gap);
 }
 
 /* ---- forces -------------------------------------------------------------------------------- */
@@ -275,15 +359,15 @@ static void give(lar_touch *touch, const lar_condition_context *context, int32_t
         for (int i = 0; i < 3; i++) {
             int64_t whole = llrint(force[a][i] * context->scale);
             acting->force[a][i] += whole;
-            sum->force[i] -= whole;
+            sum->force[i] -= context->shares * whole;
             units[i] = (double)whole;
             arm[i] = x[a][i] - tip[i];
         }
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
             double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
-            sum->torque[i] += llrint(whole);
-            sum->rest[i] += llrint((torque - whole) / LAR_TORQUE_REST);
+            sum->torque[i] += context->shares * llrint(whole);
+            sum->rest[i] += context->shares * llrint((torque - whole) / LAR_TORQUE_REST);
         }
     }
 }
@@ -308,7 +392,11 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
         touch_face(&patch, law, state->v, context->mass);
         watch->look[i] = watch->path + lar_touch_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
-        touch->sum[tool].touching += patch.touching;
+        lar_tool_sum *sum = &touch->sum[tool];
+        sum->touching += patch.touching;
+        sum->depth = fmax(sum->depth, patch.depth);
+        if (fabs(patch.squeeze * context->scale) < 0x1p56)
+            sum->squeeze += context->shares * llrint(patch.squeeze * context->scale);
         give(touch, context, watch->near[i], tool, watch->body.now[0].end[0],
              (const double(*)[3])patch.x, (const double(*)[3])patch.force);
     }
@@ -368,8 +456,8 @@ static void apply_holds(lar_touch *touch, const lar_condition_context *context,
         lar_hold_motion *of = &motion[hold->tool];
         const lar_tool_motion *tool = &touch->tools->motion[hold->tool];
         if (!of->known) {
-            lar_tool_at(tool, state->step, context->time_step, &of->now, NULL);
-            lar_tool_at(tool, state->step + 1, context->time_step, &of->next, NULL);
+            pose_now(tool, state, 0, context->whole_step, &of->now);
+            pose_now(tool, state, 1, context->whole_step, &of->next);
             of->known = true;
         }
         hold_point(touch, context, state, hold, of, law);
@@ -381,17 +469,11 @@ static void apply_holds(lar_touch *touch, const lar_condition_context *context,
 /* How far any corner can have gone since the last step; infinitely far when that is not known. */
 static double step_travel(const lar_touch *touch, const lar_condition_context *context,
                           const lar_state *state) {
-    if (touch->moved != state->step) return INFINITY;
+    if (touch->moved != state->round) return INFINITY;
     double fastest = state->fastest;
     for (int32_t i = 0; i < touch->foreign_count; i++)
         for (int k = 0; k < 3; k++) fastest = fmax(fastest, fabs(state->v[touch->foreign[i] + k]));
-    return 1.7320508075688774 * context->time_step * fastest;
-}
-
-static bool holds_anything(const lar_touch *touch, int32_t tool) {
-    for (int32_t i = 0; i < touch->tools->hold_count; i++)
-        if (touch->tools->hold[i].tool == tool) return true;
-    return false;
+    return 1.7320508075688774 * context->whole_step * fastest;
 }
 
 static void apply_tool(lar_touch *touch, const lar_condition_context *context,
@@ -399,15 +481,12 @@ static void apply_tool(lar_touch *touch, const lar_condition_context *context,
                        const lar_contact_law *law) {
     const lar_tool *tool = &touch->list->tool[t];
     lar_tool_watch *watch = &touch->watch[t];
-    double came = follow(watch, tool, &touch->tools->motion[t], state->step, context->time_step);
+    double came = follow(watch, tool, &touch->tools->motion[t], state, context->whole_step);
     watch->path += travel + came;
     if (touch->always || !watch->known || !(watch->path < watch->limit))
         lar_touch_search(touch, t, state,
                          travel +
                              lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
-    /* What jaws have closed upon is theirs: the holds keep it, and to press it as well would crush
-     * it between them. */
-    if (tool->shape == LAR_TOOL_GRASPER && holds_anything(touch, t)) return;
     touch_near(touch, context, state, t, law);
     touch->seen.possible += (uint64_t)touch->face_count;
 }
@@ -432,8 +511,10 @@ static void add_forces(const lar_touch *touch, int64_t *force) {
 void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
     clear_acting(touch);
     if (touch->face_count == 0) return;
-    lar_contact_law law = lar_contact_law_for(context->time_step, context->stable_step);
-    lar_contact_law tool_law = lar_contact_tool_law_for(context->time_step, context->stable_step);
+    lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
+    lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
+    tool_law.stiffness *= context->hardness;
+    tool_law.lead *= context->time_step / context->whole_step;
     double travel = step_travel(touch, context, state);
     bool known = isfinite(travel);
     if (!known) lar_touch_forget(touch);
@@ -468,7 +549,7 @@ void lar_touch_observe(lar_touch *touch, const lar_condition_context *context,
 
 void lar_touch_stop(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
     lar_planes_stop(&touch->planes, context, state, touch->always, &touch->seen);
-    touch->moved = state->step + 1;
+    touch->moved = state->round + 1;
     if (touch->planes.count > 0 || touch->face_count > 0) touch->seen.steps++;
 }
 

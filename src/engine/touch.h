@@ -19,16 +19,19 @@
 #define LAR_ENGINE_TOUCH_H
 
 #include "engine/planes.h"
-#include "engine/tools.h"
+#include "contact/tools.h"
 #include "mechanics/contact.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
 __extension__ typedef __int128 lar_wide;
 
-/* Sum of what a tool felt, in force units (and those times metres), of all steps of an advance. */
+/* Sum of what a tool felt, in force units (and those times metres), of all shares of all steps of
+ * an advance. */
 typedef struct lar_tool_sum {
     lar_wide force[3], torque[3]; /* of the tissue on the tool; about the tip */
     int64_t rest[3];              /* of the torques, in LAR_TORQUE_REST: arms are short */
+    int64_t squeeze;              /* of the jaws, outwards, as a force at their ends */
+    double depth;                 /* the deepest point since the last stretch of steps began [m] */
     int32_t touching, held;       /* in the last step */
 } lar_tool_sum;
 
@@ -61,6 +64,7 @@ typedef struct lar_touch_force {
 typedef struct lar_tool_body {
     int32_t count;
     lar_segment now[2], next[2];
+    double outward[2][3]; /* of jaws: unit, where their ends go when they open */
 } lar_tool_body;
 
 /* What this thread knows of the surroundings of one tool. */
@@ -102,6 +106,11 @@ void lar_touch_destroy(lar_touch *touch); /* idempotent */
 /* The state has been replaced by another one, or the tools have been put elsewhere: everything is
  * searched anew. */
 void lar_touch_forget(lar_touch *touch);
+
+/* Before a stretch of steps: the deepest points are asked for stretch by stretch. */
+static inline void lar_touch_forget_depths(lar_touch *touch) {
+    for (int i = 0; i < LAR_TOOLS_MOST; i++) touch->sum[i].depth = 0;
+}
 
 /* Adds the forces at the state's step to state->force. Asks for no memory. */
 void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar_state *state);

@@ -2,8 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
-
-#include "mechanics/contact.h"
+#include <string.h>
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -144,4 +143,96 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
         if (!chosen || lar_face_point_before(&part[t], chosen)) chosen = &part[t];
     }
     *point = chosen ? *chosen : part[0];
+}
+
+/* ---- segments ------------------------------------------------------------------------------- */
+
+/* Takes a point of the face, by its weights, where it is closer than what was found before. */
+static void offer(const lar_segment *segment, const double corner[4][3], double along,
+                  const double weight[4], lar_face_segment *closest) {
+    double point[3], away[3];
+    lar_face_mean(corner, weight, point);
+    for (int i = 0; i < 3; i++) {
+        double on = segment->end[0][i] + along * (segment->end[1][i] - segment->end[0][i]);
+        away[i] = point[i] - on;
+    }
+    double distance = sqrt(dot(away, away));
+    if (!(distance < closest->distance)) return;
+    closest->distance = distance;
+    closest->along = along;
+    memcpy(closest->weight, weight, sizeof closest->weight);
+    for (int i = 0; i < 3; i++) closest->normal[i] = distance > 0 ? away[i] / distance : 0;
+}
+
+static double clamp(double x) {
+    return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+/* The closest points of two segments p + s d1, q + t d2 (Ericson 2005, 5.1.9). */
+static void closest_of_segments(const double p[3], const double d1[3], const double q[3],
+                                const double d2[3], double *s, double *t) {
+    double r[3];
+    between(q, p, r);
+    double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2);
+    double denominator = a * e - b * b;
+    *s = denominator > 0 ? clamp((b * f - c * e) / denominator) : 0;
+    *t = e > 0 ? (b * *s + f) / e : 0;
+    if (*t < 0 || *t > 1) {
+        *t = clamp(*t);
+        *s = a > 0 ? clamp((b * *t - c) / a) : 0;
+    }
+}
+
+/* Against the edges of a triangle that begin in corner t: to the next corner, and to the middle. */
+static void offer_edges(const lar_segment *segment, const double corner[4][3],
+                        const double middle[3], int t, lar_face_segment *closest) {
+    int next = (t + 1) % 4;
+    double d1[3], d2[3], s, along;
+    between(segment->end[0], segment->end[1], d1);
+    between(corner[t], corner[next], d2);
+    closest_of_segments(segment->end[0], d1, corner[t], d2, &along, &s);
+    double weight[4] = {0};
+    weight[t] = 1 - s;
+    weight[next] = s;
+    offer(segment, corner, along, weight, closest);
+    between(corner[t], middle, d2);
+    closest_of_segments(segment->end[0], d1, corner[t], d2, &along, &s);
+    for (int a = 0; a < 4; a++) weight[a] = 0.25 * s;
+    weight[t] += 1 - s;
+    offer(segment, corner, along, weight, closest);
+}
+
+/* Where the segment goes through triangle t. */
+static void offer_crossing(const lar_segment *segment, const double corner[4][3],
+                           const double middle[3], int t, lar_face_segment *closest) {
+    double weight[4] = {0.25, 0.25, 0.25, 0.25}, on[3], wb, wc;
+    double below = height_over(segment->end[0], corner, middle, t, weight);
+    double above = height_over(segment->end[1], corner, middle, t, weight);
+    if (!(below * above < 0)) return;
+    double along = below / (below - above);
+    for (int i = 0; i < 3; i++)
+        on[i] = segment->end[0][i] + along * (segment->end[1][i] - segment->end[0][i]);
+    int next = (t + 1) % 4;
+    closest_of_triangle(on, corner[t], corner[next], middle, &wb, &wc);
+    for (int a = 0; a < 4; a++) weight[a] = 0.25 * wc;
+    weight[next] += wb;
+    weight[t] += 1 - wb - wc;
+    offer(segment, corner, along, weight, closest);
+}
+
+void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
+                              lar_face_segment *closest) {
+    double middle[3], weight[4];
+    bool is_point = memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
+    *closest = (lar_face_segment){.distance = INFINITY};
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        for (int e = 0; e < (is_point ? 1 : 2); e++) {
+            closest_of_part(segment->end[e], corner, middle, t, weight);
+            offer(segment, corner, e, weight, closest);
+        }
+        if (is_point) continue;
+        offer_edges(segment, corner, middle, t, closest);
+        offer_crossing(segment, corner, middle, t, closest);
+    }
 }

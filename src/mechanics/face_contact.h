@@ -25,6 +25,8 @@
 
 #include <stdbool.h>
 
+#include "mechanics/contact.h"
+
 typedef struct lar_face_point {
     double distance;  /* from the point to the closest one of the face, at least 0 [m] */
     double height;    /* of the point over the plane of that triangle, negative inside [m] */
@@ -46,6 +48,17 @@ double lar_face_distance(const double x[3], const double corner[4][3]);
  * equally close. Faces without area are as good as any, at height 0. */
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point);
+
+/* Where a segment comes closest to a face. */
+typedef struct lar_face_segment {
+    double distance;  /* at least 0; 0 where the segment goes through the face [m] */
+    double along;     /* where on the segment, 0 to 1 */
+    double weight[4]; /* of the corners in the point of the face */
+    double normal[3]; /* unit, from the segment to that point; 0 where the distance is 0 */
+} lar_face_segment;
+
+void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
+                              lar_face_segment *closest);
 
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {

@@ -129,22 +129,37 @@ LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
 typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar_lane I1,
                              const lar_lane p[3]);
 
-/* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. */
+/* From where on an element is looked at more closely: its volume; the sum of the squares of its
+ * cofactors, 3 at rest, with which its frequency goes; and how far the gradient in a corner may be
+ * from the mean one, squared. */
+static const double STRAINED_VOLUME = 0.75, STRAINED_COFACTOR = 3 * 1.3, STRAINED_CORNER = 0.0625;
+
+LAR_INLINE unsigned strained_lanes(const lar_lane cof[9], lar_lane J) {
+    return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), lar_lane_square_sum(cof)) |
+           lar_lane_not_greater(J, lar_lane_set(STRAINED_VOLUME));
+}
+
+/* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. With the
+ * corners' `limit` (may be NULL) *strained gets those to be looked at more closely. */
 LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
-                                 const lar_hex8_limits *limits, lane_law law, bool watch) {
+                                 const lar_hex8_limits *limits, lane_law law, const double *limit,
+                                 unsigned *strained) {
     lar_lane P[9], p[LAR_LAW_PARAMETERS];
     UNROLL3 for (int k = 0; k < LAR_LAW_PARAMETERS; k++) p[k] =
         lar_lane_load(&head->modulus[k][lane]);
     lar_lane J = lar_lane_cofactor(record->F, P);
+    if (limit) *strained = strained_lanes(P, J);
     lar_lane stress = law(record->F, P, J, lar_lane_square_sum(record->F), p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
     unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->least_volume)) |
                       lar_lane_not_greater(lar_lane_set(limits->stress_square), stress);
-    if (watch) {
+    if (limit) {
         lar_lane sum = lar_lane_set(0);
         UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
             sum = lar_lane_fma(record->cq[m][i], record->cq[m][i], sum);
         beyond |= lar_lane_not_greater(lar_lane_set(limits->hourglass_square), sum);
+        lar_lane most = lar_lane_set(STRAINED_CORNER) * lar_lane_load(limit);
+        *strained |= lar_lane_not_greater(most, sum);
     }
     return beyond;
 }
@@ -244,7 +259,8 @@ enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
 typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const double *u,
                              lane_record *record);
 typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
-                                 const lar_hex8_limits *limits, bool watch);
+                                 const lar_hex8_limits *limits, const double *limit,
+                                 unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
@@ -277,13 +293,15 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
 #define DEFINE_LAW(identifier, name)                                                               \
     static unsigned stress_##identifier(const char *blocks, size_t count, size_t size,             \
                                         lane_record *record, const lar_hex8_limits *limits,        \
-                                        bool watch) {                                              \
-        unsigned beyond = 0;                                                                       \
+                                        const double *limit, unsigned *strained) {                 \
+        unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
-            beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
-                                   limits, lar_##identifier##_stress, watch)                       \
-                      << shift;                                                                    \
+            beyond |=                                                                              \
+                stress_lanes((const lar_block_head *)(const void *)block, lane, record, limits,    \
+                             lar_##identifier##_stress, limit ? limit + shift : NULL, &part)       \
+                << shift;                                                                          \
+            if (limit) *strained |= part << shift;                                                 \
             shift += LAR_LANES;                                                                    \
         }                                                                                          \
         return beyond;                                                                             \
@@ -301,8 +319,14 @@ LAR_INLINE void ask_for_next_chunk(const char *blocks, size_t bytes) {
     for (size_t k = 0; k < bytes; k += 64) __builtin_prefetch(blocks + bytes + k, 0, 3);
 }
 
+/* Lists the strained elements of a chunk that begins with block b. */
+static void list_strained(lar_hex8_watch *watch, int32_t b, unsigned strained) {
+    for (; strained; strained &= strained - 1)
+        watch->lane[watch->count++] = b * LAR_BLOCK + __builtin_ctz(strained);
+}
+
 static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
-                       const lar_hex8_limits *limits, bool watch) {
+                       const lar_hex8_limits *limits, lar_hex8_watch *watch) {
     lane_record record[CHUNK * PARTS];
     strain_phase strain = strain_table[run->shape][run->rows];
     stress_phase stress = stress_table[run->law];
@@ -314,10 +338,15 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         const char *blocks = (const char *)run->blocks + (size_t)b * size;
         strain(blocks, count, run->turn, u, record);
         if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
-        unsigned beyond = stress(blocks, count, size, record, limits, watch);
+        unsigned strained = 0;
+        const double *limit = watch ? watch->limit + b * LAR_BLOCK : NULL;
+        unsigned beyond = stress(blocks, count, size, record, limits, limit, &strained);
         forces(blocks, count, run->turn, record, force);
-        if (__builtin_expect(beyond != 0 && first < 0, 0))
-            first = (int64_t)b * LAR_BLOCK + __builtin_ctz(beyond);
+        if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained);
+        if (__builtin_expect(beyond != 0 && first < 0, 0)) {
+            int block = __builtin_ctz(beyond) / LAR_BLOCK;
+            first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);
+        }
     }
     return first;
 }
@@ -327,14 +356,14 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
                               double *v, int64_t *force, const double *push, const double *mass,
                               double *damped, double *fastest) {
     const lar_lane keep = lar_lane_set(motion->keep), dt = lar_lane_set(motion->dt);
-    const lar_lane speed = lar_lane_set(motion->speed);
+    const lar_lane speed = lar_lane_set(motion->speed), factor = lar_lane_set(motion->push);
     lar_lane sum = lar_lane_set(0), most = lar_lane_set(0);
     unsigned beyond = 0;
     for (int64_t k = 4 * first; k < 4 * end; k += LAR_LANES) {
         lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
         lar_lane before = lar_lane_load(v + k);
         lar_lane after = lar_lane_fma(keep, before, lar_lane_repeat4(motion->drift, k));
-        after = lar_lane_fnma(f, lar_lane_per_node(push, k), after);
+        after = lar_lane_fnma(f, factor * lar_lane_per_node(push, k), after);
         lar_lane_store(v + k, after);
         lar_lane_store(u + k, lar_lane_fma(dt, after, lar_lane_load(u + k)));
         lar_ilane_store(force + k, (lar_ilane){0});

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "engine/tools.h"
+#include "contact/tools.h"
 #include "session/device_backend.h"
 #include "base/quaternion.h"
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "engine/tools.h"
+#include "contact/tools.h"
 #include "base/quaternion.h"
 
 static const double TILT_MOST = 80 * 3.14159265358979323846 / 180;

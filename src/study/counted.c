@@ -270,7 +270,7 @@ void lar_counted_recover(int law, bool box, const lar_counted_block *block, cons
                                .blocks = box ? (const void *)&boxes : (const void *)&general};
     const lar_hex8_limits limits = {1e-3, INFINITY, INFINITY};
     begin();
-    counted_kernels.recover(&run, displacement, force, &limits, false);
+    counted_kernels.recover(&run, displacement, force, &limits, NULL);
     end(counts);
 }
 
@@ -278,7 +278,7 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
                         const double *push, lar_operations *counts) {
     enum { NODES = 8 };
     counted wide_u[4 * NODES], wide_v[4 * NODES], wide_push[NODES], fastest = 0;
-    const lar_motion motion = {.keep = keep, .dt = dt, .speed = INFINITY};
+    const lar_motion motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
     widen(u, 4 * NODES, wide_u);
     widen(v, 4 * NODES, wide_v);
     widen(push, NODES, wide_push);

@@ -80,7 +80,7 @@ static void recover_single(const lar_single_kernels *kernels, const lar_block_ru
 
 #define DEFINE_RECOVER(kernels)                                                                    \
     static int64_t recover_##kernels(const lar_block_run *run, const double *u, int64_t *force,    \
-                                     const lar_hex8_limits *limits, bool watch) {                  \
+                                     const lar_hex8_limits *limits, lar_hex8_watch *watch) {       \
         (void)limits, (void)watch;                                                                 \
         recover_single(&lar_single_##kernels, run, u, force);                                      \
         return -1;                                                                                 \

@@ -274,14 +274,18 @@ typedef struct lar_block_run {
 typedef struct lar_hex8_limits {
     float least_volume, stress_square, hourglass_square;
 } lar_hex8_limits;
+typedef struct lar_hex8_watch {
+    const float *limit;
+    int32_t count, *lane;
+} lar_hex8_watch;
 typedef struct lar_motion {
-    float keep, dt, speed, drift[4];
+    float keep, dt, speed, drift[4], push;
 } lar_motion;
 typedef struct lar_kernels {
     const char *name;
     bool (*available)(void);
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
-                       const lar_hex8_limits *limits, bool watch);
+                       const lar_hex8_limits *limits, lar_hex8_watch *watch);
     bool (*update)(const lar_motion *motion, int32_t first, int32_t end, float *u, float *v,
                    int64_t *force, const float *push, const float *mass, float *damped,
                    float *fastest);
@@ -313,7 +317,7 @@ static void recover_run(const lar_single_run *run, const double *u, int64_t *for
                                 .turn = run->turn,
                                 .count = run->count,
                                 .blocks = run->blocks};
-    LAR_KERNELS_NAME.recover(&made, (const float *)(const void *)u, force, &none, false);
+    LAR_KERNELS_NAME.recover(&made, (const float *)(const void *)u, force, &none, NULL);
 }
 
 #define EXPORTED JOIN(lar_single_, LAR_SINGLE_NAME, LAR_SINGLE_STATE)

@@ -2,7 +2,7 @@
 
 BEGIN {
     # The layers, docs/architecture.md. Folders of one layer do not know each other.
-    split("base 0 model 1 mechanics 2 meshing 2 divide 2 comm 2 engine 3 session 4 study 4 cli 5", words, " ")
+    split("base 0 model 1 mechanics 2 meshing 2 divide 2 comm 2 contact 2.5 engine 3 session 4 study 4 cli 5", words, " ")
     for (i = 1; i in words; i += 2) layer[words[i]] = words[i + 1]
     command_may["cli"] = command_may["study"] = 1
 

@@ -120,7 +120,7 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     for (int n = 0; n < NODES; n++) w->push[n] = w->mass[n] > 0 ? DT / (w->mass[n] * SCALE) : 0;
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
-    const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}};
+    const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .push = 1, .drift = {0, 0, -9.81 * DT}};
     bool boxes = as->shape == LAR_SHAPE_BOX;
     const lar_block_run run = {.law = law,
                                .shape = as->shape,

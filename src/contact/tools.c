@@ -1,4 +1,4 @@
-#include "engine/tools.h"
+#include "contact/tools.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,9 +31,12 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_
 }
 
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
-    *tools = (lar_tools){.count = list->count};
-    for (int32_t i = 0; i < list->count; i++)
+    *tools =
+        (lar_tools){.count = list->count, .division = {.parts = 1, .before = 1, .hardness = 1}};
+    for (int32_t i = 0; i < list->count; i++) {
         tools->motion[i] = (lar_tool_motion){.from = list->tool[i].rest, .to = list->tool[i].rest};
+        tools->follower[i].hand = tools->motion[i];
+    }
 }
 
 /* Straight line of unit quaternions, brought back to length one: exact at both ends, and between
@@ -50,6 +53,11 @@ static void blend_turn(const double from[4], const double to[4], double share, d
 
 void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
                  lar_tool_pose *pose, double velocity[3]) {
+    lar_tool_within(motion, step, 0, time_step, pose, velocity);
+}
+
+void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, double time_step,
+                     lar_tool_pose *pose, double velocity[3]) {
     bool moves = step < motion->end;
     if (velocity)
         for (int i = 0; i < 3; i++)
@@ -60,7 +68,7 @@ void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
         *pose = moves ? motion->from : motion->to;
         return;
     }
-    double share = (double)(step - motion->start) / (double)(motion->end - motion->start);
+    double share = ((double)(step - motion->start) + part) / (double)(motion->end - motion->start);
     for (int i = 0; i < 3; i++)
         pose->position[i] = (1 - share) * motion->from.position[i] + share * motion->to.position[i];
     blend_turn(motion->from.orientation, motion->to.orientation, share, pose->orientation);

@@ -1,0 +1,250 @@
+#include "contact/tool_body.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/quaternion.h"
+#include "base/vector.h"
+
+/* ---- limits -------------------------------------------------------------------------------- */
+
+/* A haptic device gives about 8 N (Massie and Salisbury 1994). */
+static const double FORCE_MOST = 8;
+/* Pressure that tissue bears under a tool, in shear moduli; on the tool's cross-section and half an
+ * element around it. */
+static const double PRESSURE_MOST = 20;
+/* Contact must bear the limit at a depth at which the tool's middle is well outside. */
+static const double DEPTH_MOST = 0.5, BEARS = 0.3;
+static const double GRASP_SHARE = 0.5;
+/* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
+static const double DRAG = 16;
+
+uint64_t lar_tool_interval(double time_step) {
+    static const double SECONDS = 4e-4;
+    uint64_t steps = 1;
+    while (steps < LAR_INTERVAL_MOST && (double)(2 * steps) * time_step <= SECONDS) steps *= 2;
+    return steps;
+}
+
+uint64_t lar_idle_interval(double time_step) {
+    return 4 * lar_tool_interval(time_step);
+}
+
+void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
+    for (int32_t i = 0; i < list->count; i++) {
+        const lar_tool *tool = &list->tool[i];
+        lar_tool_limits *limits = &list->limits[i];
+        double reach = tool->radius + 0.5 * scale->edge;
+        double tissue = PRESSURE_MOST * scale->shear * 3.14159265358979 * reach * reach;
+        double contact = BEARS * tool->radius * scale->stiffness;
+        *limits = (lar_tool_limits){.force = fmin(fmin(tissue, contact), FORCE_MOST),
+                                    .depth = DEPTH_MOST * tool->radius,
+                                    .lever = fmax(tool->radius, 0.5 * tool->length),
+                                    .travel = 0.5 * tool->spread * tool->length,
+                                    .drag = DRAG * scale->stiffness * scale->interval};
+        limits->grasp = GRASP_SHARE * limits->force;
+    }
+}
+
+/* ---- following ------------------------------------------------------------------------------ */
+
+void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion) {
+    lar_tool_motion *now = &tools->motion[tool];
+    lar_tool_follower *follower = &tools->follower[tool];
+    follower->hand = *motion;
+    follower->hand.holding = follower->hand.padding = 0;
+    if (follower->lagging) return;
+    int32_t holding = now->holding;
+    *now = *motion;
+    now->holding = holding;
+}
+
+/* What a tool has felt in an interval, on average. */
+typedef struct mean_load {
+    double force[3], torque[3]; /* [N] [N m] */
+    double squeeze;             /* [N] */
+    double excess;              /* how many times more than may be, at least 1 */
+} mean_load;
+
+static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double unit,
+                         double *load) {
+    mean_load mean = {.excess = 1};
+    double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
+    for (int i = 0; i < 3; i++) {
+        mean.force[i] = (double)felt->force[i] * share;
+        mean.torque[i] = (double)felt->torque[i] * share;
+    }
+    mean.squeeze = (double)felt->squeeze * share;
+    double force = lar_length(mean.force) / limits->force;
+    double turn = lar_length(mean.torque) / (limits->force * limits->lever);
+    double grasp = mean.squeeze / limits->grasp;
+    double depth = felt->depth / limits->depth;
+    double most = fmax(fmax(force, turn), grasp);
+    *load = fmax(most, depth);
+    if (depth > 1 && depth > most && most > 0) mean.excess = depth / most;
+    return mean;
+}
+
+/* What holds in an interval for position, turn and jaws alike. */
+typedef struct follow_law {
+    double drag, seconds; /* [N s/m], of the interval */
+    double farthest;      /* way in the interval [m] */
+} follow_law;
+
+static double length_of(int count, const double *v) {
+    double square = 0;
+    for (int i = 0; i < count; i++) square += v[i] * v[i];
+    return sqrt(square);
+}
+
+/* The way along `count` coordinates: `gap` is what is left to go, `pushed` what the tissue pushes
+ * with, `most` what the hand may. True when all of it is gone. */
+static bool go(const follow_law *law, int count, const double *gap, const double *pushed,
+               double most, double *way) {
+    double drawn[3];
+    for (int i = 0; i < count; i++) drawn[i] = law->drag * gap[i] / law->seconds - pushed[i];
+    double length = length_of(count, drawn);
+    double share = length > most ? most / length : 1;
+    for (int i = 0; i < count; i++)
+        way[i] = law->seconds / law->drag * (drawn[i] * share + pushed[i]);
+    if (share < 1 || length_of(count, gap) > law->farthest) {
+        double far = length_of(count, way);
+        for (int i = 0; i < count && far > law->farthest; i++) way[i] *= law->farthest / far;
+        return false;
+    }
+    return true;
+}
+
+/* Turns `from` by a small rotation vector. */
+static void turn_by(const double from[4], const double vector[3], double out[4]) {
+    double turn[4] = {1, 0.5 * vector[0], 0.5 * vector[1], 0.5 * vector[2]};
+    lar_quaternion_normalise(turn);
+    lar_quaternion_product(turn, from, out);
+    lar_quaternion_normalise(out);
+}
+
+/* From one orientation to another: twice the vector part, which is the rotation vector where the
+ * angle is small, and has its direction always. */
+static void turn_between(const double from[4], const double to[4], double vector[3]) {
+    double inverse[4], turn[4];
+    lar_quaternion_inverse(from, inverse);
+    lar_quaternion_product(to, inverse, turn);
+    for (int i = 0; i < 3; i++) vector[i] = (turn[0] < 0 ? -2 : 2) * turn[1 + i];
+}
+
+/* The pose at the end of the interval: that of the hand, or as far towards it as may be. */
+static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const mean_load *mean,
+                      const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand,
+                      lar_tool_pose *next) {
+    double gap[3], way[3], pushed[3], lever = limits->lever;
+    *next = *hand;
+    lar_minus(hand->position, now->position, gap);
+    for (int i = 0; i < 3; i++) pushed[i] = mean->excess * mean->force[i];
+    if (!go(law, 3, gap, pushed, limits->force, way))
+        for (int i = 0; i < 3; i++) next->position[i] = now->position[i] + way[i];
+    /* Turns as ways of a point at the lever's end. */
+    turn_between(now->orientation, hand->orientation, gap);
+    for (int i = 0; i < 3; i++) {
+        gap[i] *= lever;
+        pushed[i] = mean->excess * mean->torque[i] / lever;
+    }
+    if (!go(law, 3, gap, pushed, limits->force, way)) {
+        for (int i = 0; i < 3; i++) way[i] /= lever;
+        turn_by(now->orientation, way, next->orientation);
+    }
+    if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
+    gap[0] = limits->travel * (hand->opening - now->opening);
+    pushed[0] = mean->excess * mean->squeeze;
+    if (!go(law, 1, gap, pushed, limits->grasp, way))
+        next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
+}
+
+static bool same_pose(const lar_tool_pose *a, const lar_tool_pose *b) {
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* A tool that is kept from following goes its own way; one that has come back to its hand follows
+ * again. True when it goes elsewhere than before. */
+static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tools *tools,
+                   int32_t index, const mean_load *mean, uint64_t step, uint64_t until,
+                   double time_step) {
+    /* A tool may go half its radius in a step, all its parts together (lariat.h). */
+    static const double SHARE = 0.15;
+    static const double FASTEST = 0.5; /* [m/s]: no blows */
+    lar_tool_follower *follower = &tools->follower[index];
+    lar_tool_motion *motion = &tools->motion[index];
+    bool free_again = follower->lagging && follower->load <= 1;
+    if (!follower->lagging && follower->load <= 1) return false;
+    lar_tool_pose now, hand, next;
+    lar_tool_at(motion, step, time_step, &now, NULL);
+    lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
+    if (free_again && same_pose(&now, &hand)) {
+        int32_t holding = motion->holding;
+        *motion = follower->hand;
+        motion->holding = holding;
+        follower->lagging = 0;
+        return true;
+    }
+    double steps = (double)(until - step), seconds = steps * time_step;
+    const follow_law law = {.drag = limits->drag * tools->division.hardness,
+                            .seconds = seconds,
+                            .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
+    lar_tool_at(&follower->hand, until, time_step, &hand, NULL);
+    step_pose(tool, limits, mean, &law, &now, &hand, &next);
+    motion->from = now;
+    motion->to = next;
+    motion->start = step;
+    motion->end = until;
+    follower->lagging = 1;
+    return true;
+}
+
+/* Tissue that is deeper in a tool than SOFT radii makes tools harder, interval by interval, as long
+ * as no more parts are needed than there may be. */
+static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness) {
+    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4, SLOWER = 0.9;
+    double deepest = 0;
+    for (int32_t i = 0; i < tools->count; i++)
+        deepest = fmax(deepest, tools->follower[i].felt.depth / list->tool[i].radius);
+    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_PARTS_MOST * LAR_PARTS_MOST);
+    return deepest < HARD ? fmax(1, SLOWER * hardness) : hardness;
+}
+
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most) {
+    enum { CALM = 8 };
+    lar_step_division *d = &tools->division;
+    double hardness = harden(list, tools, d->hardness), need = d->need;
+    int32_t parts = d->parts, wanted = 1;
+    d->need = 0;
+    while (wanted < LAR_PARTS_MOST && (need > most * wanted * wanted || hardness > wanted * wanted))
+        wanted *= 2;
+    d->calm = wanted < parts ? d->calm + 1 : 0;
+    /* Fewer parts one by one, and not before there is some room. */
+    if (wanted < parts) {
+        double half = 0.25 * parts * parts;
+        bool room = need < 0.85 * most * half && hardness <= half;
+        wanted = room && d->calm >= CALM ? parts / 2 : parts;
+    }
+    bool changed = hardness != d->hardness || wanted != parts;
+    d->hardness = hardness;
+    if (wanted == parts) return changed;
+    d->before = parts;
+    d->parts = wanted;
+    d->since = step;
+    d->calm = 0;
+    return true;
+}
+
+bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
+                      double time_step, double unit) {
+    bool changed = false;
+    for (int32_t i = 0; i < tools->count; i++) {
+        const lar_tool_limits *limits = &list->limits[i];
+        lar_tool_follower *follower = &tools->follower[i];
+        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
+        mean_load mean = mean_of(&follower->felt, limits, unit, &follower->load);
+        follower->felt = (lar_tool_felt){0};
+        changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
+    }
+    return changed;
+}

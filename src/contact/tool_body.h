@@ -1,0 +1,59 @@
+/* Tools as bodies: stopped by tissue, whatever the hand does (Zilles and Salisbury 1995: god
+ * object; Colgate, Stanley, Brown 1995: virtual coupling).
+ *
+ *     hand  o----[ |D| <= limit ]----( tool )----[ contact ]---- tissue
+ *           asked for                 goes                       pushes with F
+ *
+ * As long as the tissue pushes no harder than the limit, and is nowhere deeper in the tool than its
+ * depth limit, the tool is where its hand asks it to be, exactly. Beyond that it is a body without
+ * mass, with a drag b, between its hand and the tissue: the hand draws it with the force D that
+ * would bring it to where it is asked to be,
+ *
+ *     b dx/dt = D + F,      D = b (x_hand - x) / T - F, shortened to the limit,
+ *
+ * so it stays where the tissue bears the limit, and is pushed back where it bears more. The same
+ * for the turn (torques about the tip) and for the jaws (their moment against closing). Where the
+ * tissue is too deep in the tool F counts for more than it is: contact can hold a tool outside only
+ * as long as the tool's middle line is outside (mechanics/contact.h).
+ *
+ * This is decided at the beginning of INTERVALS of a few steps, the same steps everywhere, from
+ * sums of whole numbers: the way of a tool does not depend on who computes, nor on how many steps
+ * are advanced at once. Within an interval a tool moves evenly.
+ */
+#ifndef LAR_CONTACT_TOOL_BODY_H
+#define LAR_CONTACT_TOOL_BODY_H
+
+#include "contact/tools.h"
+
+/* What the limits follow from. */
+typedef struct lar_tissue_scale {
+    double shear;     /* least shear modulus at the surface [Pa] */
+    double edge;      /* mean length of an element's edges at the surface [m] */
+    double stiffness; /* of contact with tools at a node of the surface, mean [N/m] */
+    double interval;  /* [s] */
+} lar_tissue_scale;
+
+/* Limits for all tools of a list. Without a surface (edge 0) there are none. */
+void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
+
+/* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
+enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
+uint64_t lar_tool_interval(double time_step);
+/* Of models without tools: four times that. */
+uint64_t lar_idle_interval(double time_step);
+
+/* Asks a tool to go where `motion` says; it does when nothing keeps it. */
+void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion);
+
+/* Divides steps, or no longer, at the beginning of an interval. Elements: `division->need` against
+ * `most`, which the undivided step bears. Tools: where tissue is deep in one, all become harder,
+ * which takes parts of a step. True when something changes. */
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most);
+
+/* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
+ * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where
+ * it went before. */
+bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
+                      double time_step, double unit);
+
+#endif

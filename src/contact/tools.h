@@ -1,0 +1,122 @@
+/* Where the tools are: the input of a simulation besides its model. Where they are asked to go is
+ * one thing (their hand), where they go another (tool_body.h).
+ *
+ *     tool_move at step 100, 10 steps:   from ---- linear ---- to ======= rests there
+ *                                        100                  110
+ *
+ * Plain numbers without pointers, so that they travel in orders to other processes and into
+ * checkpoints as they are. Changed between advances only, when no processor computes (so the change
+ * takes effect in the same step everywhere, T 6.5.1); read by all threads within them.
+ *
+ * Who holds what is decided here too, by whoever has the whole state: a hold binds a point of a
+ * face to the tool's own axes (docs/theory.md, contact).
+ */
+#ifndef LAR_CONTACT_TOOLS_H
+#define LAR_CONTACT_TOOLS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "model/model.h"
+
+enum { LAR_TOOLS_MOST = 16, LAR_HOLDS_MOST = 256 };
+
+typedef struct lar_tool_motion {
+    lar_tool_pose from, to;
+    uint64_t start, end; /* steps */
+    int32_t holding;     /* it has closed upon something, or nothing, and not opened since */
+    int32_t padding;
+} lar_tool_motion;
+
+/* A surface point that a tool has hold of. */
+typedef struct lar_hold {
+    int32_t tool;
+    int32_t face;     /* index into the model's surface */
+    double weight[4]; /* of the face's corners, sum 1 */
+    double anchor[3]; /* where the point is kept, in the tool's own axes [m] */
+    double stiffness; /* [N/m] */
+} lar_hold;
+
+/* What a tool has felt of the tissue since the present interval began (contact/tool_body.h). Whole
+ * numbers, so that it does not matter who felt it nor where an advance ended. */
+typedef struct lar_tool_felt {
+    int64_t force[3], torque[3]; /* sums over shares of steps [force units, and times metres] */
+    int64_t squeeze;             /* of the jaws, outwards at their ends, likewise [force units] */
+    double depth;                /* the deepest point of the tissue in the tool [m] */
+    uint64_t steps;
+} lar_tool_felt;
+
+/* Forces on tools are summed in shares of a step, so that a part of a divided one counts for what
+ * it is: as many as parts, at most. */
+enum { LAR_STEP_SHARES = 8 };
+
+/* How steps are divided, for a while, where elements are strained or tools press hard. */
+typedef struct lar_step_division {
+    int32_t parts;   /* of a step, a power of two */
+    int32_t before;  /* as many until `since` */
+    uint64_t since;  /* step */
+    double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
+    double need;  /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
+    int32_t calm; /* intervals in which fewer parts would have done */
+    int32_t padding;
+} lar_step_division;
+
+/* The hand of a tool, and how far the tool is from following it. */
+typedef struct lar_tool_follower {
+    lar_tool_motion hand; /* what was asked for; `holding` and `padding` are 0 */
+    lar_tool_felt felt;
+    double load;     /* of the last interval: what was felt, as a part of what the tool may bear */
+    int32_t lagging; /* it goes its own way: tools->motion is not that of the hand */
+    int32_t padding;
+} lar_tool_follower;
+
+typedef struct lar_tools {
+    int32_t count, hold_count;
+    lar_step_division division;
+    lar_tool_motion motion[LAR_TOOLS_MOST]; /* where tools really go */
+    lar_hold hold[LAR_HOLDS_MOST];
+    lar_tool_follower follower[LAR_TOOLS_MOST]; /* of processor zero only */
+} lar_tools;
+
+/* What a tool may bear before it stays behind its hand, and how it then moves. */
+typedef struct lar_tool_limits {
+    double force;  /* [N] */
+    double depth;  /* tissue in the tool [m] */
+    double lever;  /* [m]: torques are forces at this distance from the tip */
+    double grasp;  /* of closing jaws, at their ends [N] */
+    double travel; /* of a jaw's end from open to closed [m] */
+    double drag;   /* of a tool on its own way [N s/m] */
+} lar_tool_limits;
+
+/* What a tool is, of the model's or a hand: the same on all processors, constant. */
+typedef struct lar_tool_list {
+    int32_t count;
+    lar_tool tool[LAR_TOOLS_MOST]; /* names are borrowed from the model, or static */
+    lar_tool_limits limits[LAR_TOOLS_MOST];
+} lar_tool_list;
+
+/* The model's tools and so many hands; too many are an error. */
+lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_list *list,
+                                lar_error *error);
+/* All at rest, holding nothing. */
+void lar_tools_reset(const lar_tool_list *list, lar_tools *tools);
+
+/* Bytes of the used part, from the beginning on: what travels. */
+static inline size_t lar_tools_bytes(const lar_tools *tools) {
+    return offsetof(lar_tools, hold) + (size_t)tools->hold_count * sizeof tools->hold[0];
+}
+
+/* Pose and velocity (of the tip, [m/s]; may be NULL) of a tool at a step. */
+void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
+                 lar_tool_pose *pose, double velocity[3]);
+
+/* The same when a part of the step, 0 up to 1, has passed. */
+void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, double time_step,
+                     lar_tool_pose *pose, double velocity[3]);
+
+/* ---- quaternions w, x, y, z, of unit length ------------------------------------------------- */
+
+void lar_turn(const double q[4], const double v[3], double out[3]);      /* own axes to the world */
+void lar_turn_back(const double q[4], const double v[3], double out[3]); /* and back */
+
+#endif

@@ -1,0 +1,90 @@
+#include "engine/guard.h"
+
+#include <math.h>
+
+#include "mechanics/hex8_guard.h"
+
+/* Elements are listed when a corner is no farther from its barrier than this: it cannot come there
+ * before the next list is made. */
+static const double LISTED = 2 * LAR_GUARD_START;
+
+static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
+                       double rest[8][3], double now[8][3]) {
+    lar_mesh_corners(&domain->model->mesh, e, rest);
+    lar_domain_corners(domain, state->u, e, now);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
+}
+
+/* (omega dt / 2)^2 of an element as it is strained. */
+static double need_of(const lar_domain *domain, lar_gid e, const double rest[8][3],
+                      const double now[8][3], const lar_guard *guard) {
+    const lar_element_rate *rate = &domain->rate[e];
+    double growth = lar_hex8_growth(rest, now, lar_model_material_of(domain->model, e));
+    double square = rate->square * growth + guard->stiffness / rate->mass;
+    return 0.25 * domain->time_step * domain->time_step * square;
+}
+
+void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,
+                      bool measures, lar_state *state) {
+    int32_t *kept = watch->lane, count = 0;
+    for (int32_t i = 0; i < watch->count; i++) {
+        int32_t lane = watch->lane[i];
+        lar_gid e =
+            domain->layout.block[domain->run_first[r] + lane / LAR_BLOCK].element[lane % LAR_BLOCK];
+        if (e < 0) continue;
+        double rest[8][3], now[8][3];
+        lar_guard guard;
+        corners_of(domain, state, e, rest, now);
+        lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
+                       lar_model_material_of(domain->model, e), NULL, &guard);
+        double need = need_of(domain, e, (const double(*)[3])rest, (const double(*)[3])now, &guard);
+        if (measures && !(need <= state->need)) state->need = need;
+        if (!(guard.least >= LISTED)) kept[count++] = e;
+    }
+    domain->strained_count[r] = count;
+}
+
+/* In whole units, which sum to nothing. */
+static void add(const lar_domain *domain, lar_gid e, const double force[8][3], lar_state *state) {
+    int64_t whole[8][3], sum[3] = {0};
+    for (int a = 0; a < 7; a++)
+        for (int i = 0; i < 3; i++) {
+            double units = force[a][i] * domain->scale;
+            if (!(fabs(units) < 0x1p56)) return; /* a run that is about to break */
+            whole[a][i] = llrint(units);
+            sum[i] += whole[a][i];
+        }
+    for (int i = 0; i < 3; i++) whole[7][i] = -sum[i];
+    for (int a = 0; a < 8; a++) {
+        int64_t *to = state->force + 4 * domain->layout.local[domain->model->mesh.element[e][a]];
+        for (int i = 0; i < 3; i++) to[i] = (int64_t)((uint64_t)to[i] + (uint64_t)whole[a][i]);
+    }
+}
+
+static void apply(const lar_domain *domain, lar_gid e, lar_state *state) {
+    double rest[8][3], now[8][3], force[8][3] = {{0}};
+    lar_guard guard;
+    corners_of(domain, state, e, rest, now);
+    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
+                   lar_model_material_of(domain->model, e), force, &guard);
+    if (guard.least < LAR_GUARD_START) add(domain, e, (const double(*)[3])force, state);
+}
+
+void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
+    const int32_t *element = domain->strained + LAR_BLOCK * (size_t)domain->run_first[r];
+    for (int32_t i = 0; i < domain->strained_count[r]; i++) apply(domain, element[i], state);
+}
+
+void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) apply(domain, e, state);
+}
+
+double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double rest[8][3], now[8][3];
+    lar_guard guard;
+    corners_of(domain, state, e, rest, now);
+    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
+                   lar_model_material_of(domain->model, e), NULL, &guard);
+    return guard.energy;
+}

@@ -1,0 +1,35 @@
+/* Intervals: what is decided every few steps, in the same steps on every grid.
+ *
+ *     step      0       4       8      12          an interval of four steps
+ *               |decide |decide |decide |          what is decided holds
+ *     advance   ------------->---->-------->       may end anywhere: what was felt is kept in
+ * lar_tools
+ *
+ * Several processors stop there, for one of them has to know what all have felt. What is decided:
+ * where tools go, and whether steps are divided (contact/tool_body.h).
+ */
+#ifndef LAR_ENGINE_INTERVAL_H
+#define LAR_ENGINE_INTERVAL_H
+
+#include "engine/domain.h"
+#include "engine/report.h"
+
+/* What has been handed on of the tools' sums of an advance. */
+typedef struct lar_interval {
+    lar_tool_sum seen[LAR_TOOLS_MOST];
+} lar_interval;
+
+/* An advance begins: its sums begin with nothing. */
+void lar_interval_restart(lar_interval *interval);
+
+/* After some steps of an advance: what tools have felt, and elements need, since the last call. */
+void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
+                          lar_tools *tools);
+
+/* Before the step `step`: where an interval begins, decides. True when lar_tools has changed. */
+bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools);
+
+/* The step before which the interval that `step` belongs to ends. */
+uint64_t lar_interval_end(const lar_domain *whole, uint64_t step);
+
+#endif

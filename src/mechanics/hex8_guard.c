@@ -1,0 +1,162 @@
+#include "mechanics/hex8_guard.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "mechanics/hexahedron.h"
+#include "model/mesh.h"
+
+/* Part of K + 4/3 G. */
+static const double KAPPA = 0.5;
+static const double LEAST = 0.3; /* of START: where the parabola begins */
+
+/* The neighbours of a corner along xi, eta, zeta, in an order in which a sound element's three
+ * edges are right-handed. */
+static const int neighbour[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+
+/* Volume that the edges of corner a span, and the edges. */
+static double span(const double x[8][3], int a, double edge[3][3]) {
+    double normal[3];
+    for (int k = 0; k < 3; k++) lar_minus(x[neighbour[a][k]], x[a], edge[k]);
+    lar_cross(edge[1], edge[2], normal);
+    return lar_dot(edge[0], normal);
+}
+
+/* Energy, and its first and second derivative by j, per kappa V/8. */
+static void barrier(double j, double *energy, double *slope, double *curvature) {
+    double x = j / LAR_GUARD_START, least = fmax(x, LEAST);
+    double s = LAR_GUARD_START, inverse = 1 / least;
+    *energy = 0.5 * s * s * (inverse + least - 2);
+    *slope = -0.5 * s * (inverse * inverse - 1);
+    *curvature = inverse * inverse * inverse;
+    if (x >= LEAST) return;
+    double beyond = j - LEAST * s;
+    *energy += *slope * beyond + 0.5 * *curvature * beyond * beyond;
+    *slope += *curvature * beyond;
+}
+
+/* The forces on a corner and its neighbours, and the sum of the squares of their directions. */
+static double push_corner(int a, const double edge[3][3], double volume, double slope,
+                          double force[8][3]) {
+    double square = 0, sum[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        double area[3];
+        lar_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], area);
+        for (int i = 0; i < 3; i++) {
+            area[i] /= volume;
+            sum[i] += area[i];
+            if (force) force[neighbour[a][k]][i] += slope * area[i];
+        }
+        square += lar_dot(area, area);
+    }
+    for (int i = 0; i < 3; i++)
+        if (force) force[a][i] -= slope * sum[i];
+    return square + lar_dot(sum, sum);
+}
+
+static double wave_modulus(const lar_material *material) {
+    return lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
+}
+
+void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
+                    double force[8][3], lar_guard *guard) {
+    double before[3][3], after[3][3], modulus = KAPPA * wave_modulus(material) / 8;
+    *guard = (lar_guard){.least = INFINITY};
+    for (int a = 0; a < 8; a++) {
+        double volume = span(rest, a, before), j = span(now, a, after) / volume;
+        if (!(j >= guard->least)) guard->least = j;
+        if (!(j < LAR_GUARD_START)) continue;
+        double energy, slope, curvature, weight = modulus * volume;
+        barrier(j, &energy, &slope, &curvature);
+        double square = push_corner(a, (const double(*)[3])after, volume, weight * slope, force);
+        guard->energy += weight * energy;
+        guard->stiffness += weight * curvature * square;
+    }
+}
+
+/* Signs of the seven modes at node a (hex8.h). */
+static void mode_signs(int a, double sign[7]) {
+    double x = lar_node_sign[a][0], y = lar_node_sign[a][1], z = lar_node_sign[a][2];
+    const double signs[7] = {x, y, z, y * z, x * z, x * y, x * y * z};
+    memcpy(sign, signs, sizeof signs);
+}
+
+/* B_m as a sum of B_0 .. B_2, m = 3 .. 5: what is left over of a linear field has no mean gradient,
+ * so its modes 0 .. 2 follow from the others. False where these are no three directions. */
+static bool dependence(const lar_hex8 *element, double share[4][3]) {
+    const double(*B)[3] = (const double(*)[3])element->gradient;
+    double area[3];
+    lar_cross(B[1], B[2], area);
+    double volume = lar_dot(B[0], area);
+    if (volume == 0) return false;
+    for (int k = 0; k < 3; k++) {
+        lar_cross(B[(k + 1) % 3], B[(k + 2) % 3], area);
+        for (int m = 0; m < 3; m++) share[m][k] = lar_dot(B[3 + m], area) / volume;
+        share[3][k] = 0;
+    }
+    return true;
+}
+
+double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
+    double share[4][3], worst = 0;
+    if (!dependence(element, share)) return 0;
+    for (int c = 0; c < 8; c++) {
+        double at[3], gradient[8][3], mode[7][3] = {{0}}, sum = 0;
+        for (int i = 0; i < 3; i++) at[i] = lar_node_sign[c][i];
+        lar_hexahedron_gradients(rest, at, gradient);
+        for (int a = 0; a < 8; a++) {
+            double sign[7];
+            mode_signs(a, sign);
+            for (int m = 0; m < 7; m++)
+                for (int i = 0; i < 3; i++) mode[m][i] += sign[m] * gradient[a][i] / 8;
+        }
+        for (int m = 0; m < 4; m++) {
+            double g[3];
+            for (int i = 0; i < 3; i++) {
+                g[i] = mode[3 + m][i];
+                for (int k = 0; k < 3; k++) g[i] -= share[m][k] * mode[k][i];
+            }
+            sum += lar_dot(g, g) / (element->stiffness[m] * element->stiffness[m]);
+        }
+        if (!(sum <= worst)) worst = sum;
+    }
+    return 1 / worst;
+}
+
+/* Of a law's volume term U(J): its pressure U' (positive: tension) and, returned, U'' [Pa]. */
+static double volume_slope(const lar_material *material, double J, double *pressure) {
+    const double *p = material->parameter;
+    double log_J = lar_lane_log(J); /* the same bits everywhere */
+    switch (material->law) {
+    case LAR_LAW_neo_hookean:
+        *pressure = p[1] * (J - 1);
+        return p[1];
+    case LAR_LAW_coupled_neo_hookean: /* lambda/2 (ln J)^2 - mu ln J, and what holds I1 */
+        *pressure = p[1] * log_J / J;
+        return (p[1] * (1 - log_J) + p[0]) / (J * J);
+    default:
+        *pressure = p[2] * log_J / J;
+        return p[2] * (1 - log_J) / (J * J);
+    }
+}
+
+double lar_hex8_growth(const double rest[8][3], const double now[8][3],
+                       const lar_material *material) {
+    static const double middle[3] = {0, 0, 0};
+    double gradient[8][3], F[3][3] = {{0}}, cof[9];
+    lar_hexahedron_gradients(rest, middle, gradient);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) F[i][k] += now[a][i] * gradient[a][k];
+    double J = lar_lane_cofactor((const double *)F, cof);
+    if (!(J > 0)) return INFINITY;
+    double bulk = lar_material_bulk(material), shear = 4 * lar_material_shear(material) / 3;
+    double pressure, slope = volume_slope(material, J, &pressure);
+    double area = lar_lane_square_sum(cof) / 3;
+    double stretch = sqrt(lar_lane_square_sum((const double *)F) / 3);
+    double volume = fmax(slope, 0) * area + fabs(pressure) * stretch;
+    return (volume + shear * fmax(1, area / (J * J))) / (bulk + shear);
+}

@@ -1,0 +1,50 @@
+/* The guard: what keeps an element from turning a corner inside out.
+ *
+ *      3                 The mean gradient, which is all that the law sees, may be sound while a
+ * node |   j = det[e1 e2 e3] / the same at rest      is pushed through its element: hourglass
+ * control e3 | / e2            is a weak spring, and knows no end. So every corner has an energy of
+ * its own
+ *      |/                as soon as the volume that its three edges span falls below START of that
+ *      a----- e1         at rest, x = j / START < 1:
+ *
+ *     w = kappa V/8 START^2 (1/x + x - 2)/2,   dw/dj = -kappa V/8 START/2 (1/x^2 - 1)
+ *
+ * a barrier as in incremental potential contact (Li and others 2020), with a rational function that
+ * needs no library and has the second derivative kappa V/8 / x^3. Below x = LEAST it goes on as a
+ * parabola: a corner that is inside out all the same is pushed back as well (invertible elements:
+ * Irving, Teran, Fedkiw 2004). Above START it is zero, exactly; a body whose corners keep START of
+ * their volume has the same bits with and without it.
+ *
+ * kappa is a part of the modulus of the pressure wave, so that a barrier at work is not faster than
+ * the element itself by more than its 1/x^3; divided steps (contact/tool_body.h) take that.
+ */
+#ifndef LAR_MECHANICS_HEX8_GUARD_H
+#define LAR_MECHANICS_HEX8_GUARD_H
+
+#include "mechanics/hex8.h"
+
+#define LAR_GUARD_START 0.3
+
+typedef struct lar_guard {
+    double least;     /* the least j of the corners */
+    double energy;    /* [J] */
+    double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
+} lar_guard;
+
+/* Looks at an element with corners `rest` and `now` [m]. Adds the barrier's forces dw/dx [N] to
+ * `force` where that is not NULL. */
+void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
+                    double force[8][3], lar_guard *guard);
+
+/* The sum of the squares of the hourglass forces c_m |q_m| [N^2] up to which the gradient in every
+ * corner is the mean one but for a matrix of norm 1: so much of it is what corners may be off, in
+ * proportion to its root. */
+double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]);
+
+/* How the square of an element's highest frequency has grown with its strain, barrier apart: the
+ * volume term goes with |cof F|^2 and the law's own slope, shear with |F^-1|^2; from the gradient
+ * in the middle. Infinite where that is turned over. */
+double lar_hex8_growth(const double rest[8][3], const double now[8][3],
+                       const lar_material *material);
+
+#endif
