@@ -28,6 +28,7 @@ static const char usage[] =
     "  --every N       looks at the state every N ms; default 2\n"
     "  --trace FILE    all that is seen, as CSV; of the last case\n"
     "  --rows          without the table's head\n"
+    "  --head          nothing but that\n"
     "winding: the largest winding number of the surface around the tool's middle line; inside: "
     "how\n"
     "long it was above 0.5; apart: between tool and hand; after: the force at the end; J: det F "
@@ -52,7 +53,7 @@ static const lar_kind kinds[] = {
 typedef struct lar_push_options {
     const char *scene, *name, *tools, *speeds, *sides, *grid, *trace;
     double deep, slant;
-    int through, grasp, contact, coupled, every, rows;
+    int through, grasp, contact, coupled, every, rows, head;
 } lar_push_options;
 
 /* One case. */
@@ -337,11 +338,10 @@ static lar_status run_all(const lar_push_options *options, lar_body *body, lar_e
 
 static lar_push_options read_options(int count, char **word) {
     static const struct option known[] = {
-        {"tool", 1, 0, 't'},    {"speed", 1, 0, 's'},   {"from", 1, 0, 'f'},
-        {"name", 1, 0, 'n'},    {"deep", 1, 0, 'd'},    {"slant", 1, 0, 'l'},
-        {"through", 0, 0, 'T'}, {"grasp", 0, 0, 'G'},   {"contact", 0, 0, 'C'},
-        {"grid", 1, 0, 'g'},    {"coupled", 0, 0, 'H'}, {"every", 1, 0, 'e'},
-        {"trace", 1, 0, 'c'},   {"rows", 0, 0, 'r'},    {0}};
+        {"tool", 1, 0, 't'},    {"speed", 1, 0, 's'}, {"from", 1, 0, 'f'},    {"name", 1, 0, 'n'},
+        {"deep", 1, 0, 'd'},    {"slant", 1, 0, 'l'}, {"through", 0, 0, 'T'}, {"grasp", 0, 0, 'G'},
+        {"contact", 0, 0, 'C'}, {"grid", 1, 0, 'g'},  {"coupled", 0, 0, 'H'}, {"every", 1, 0, 'e'},
+        {"trace", 1, 0, 'c'},   {"rows", 0, 0, 'r'},  {"head", 0, 0, 'h'},    {0}};
     lar_push_options o = {
         .tools = "sphere5", .speeds = "0.1", .sides = "+z", .deep = 0.03, .every = 2};
     for (int c; (c = getopt_long(count, word, "", known, NULL)) != -1;) {
@@ -359,6 +359,7 @@ static lar_push_options read_options(int count, char **word) {
         if (c == 'e') o.every = atoi(optarg);
         if (c == 'c') o.trace = optarg;
         if (c == 'r') o.rows = 1;
+        if (c == 'h') o.head = 1;
         if (c == '?') exit(2);
     }
     if (optind + 1 == count) o.scene = word[optind];
@@ -371,6 +372,10 @@ int main(int count, char **word) {
     lar_model *model = NULL;
     lar_body body = {0};
     const lar_push_options options = read_options(count, word);
+    if (options.head) {
+        print_head();
+        return 0;
+    }
     if (!options.scene) {
         fputs(usage, stderr);
         return 2;
