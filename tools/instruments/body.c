@@ -72,6 +72,8 @@ lar_status lar_body_create(const lar_model *model, lar_body *body, lar_error *er
     for (int i = 0; i < model->fix_count; i++) mark(body, &model->fix[i].nodes);
     for (int i = 0; i < model->move_count; i++) mark(body, &model->move[i].nodes);
     lar_body_look(body, NULL);
+    memcpy(body->rest_lower, body->lower, sizeof body->lower);
+    memcpy(body->rest_upper, body->upper, sizeof body->upper);
     double across[3];
     lar_minus(body->upper, body->lower, across);
     body->diagonal = lar_length(across);

@@ -10,10 +10,11 @@ typedef struct lar_body {
     const double (*rest)[3]; /* places at rest [m] */
     const lar_model *model;
     lar_surface_info surface;
-    double diagonal;           /* of its box at rest [m] */
-    double (*u)[3], (*x)[3];   /* displacements and places, of the last look */
-    double lower[3], upper[3]; /* its box then */
-    double (*middle)[3];       /* of each face of the surface then, and how far its corners are */
+    double rest_lower[3], rest_upper[3]; /* its box at rest [m] */
+    double diagonal;                     /* of its box at rest [m] */
+    double (*u)[3], (*x)[3];             /* displacements and places, of the last look */
+    double lower[3], upper[3];           /* its box then */
+    double (*middle)[3]; /* of each face of the surface then, and how far its corners are */
     double *extent;
     double (*gradient)[8][3]; /* mean gradients of the shape functions, of each element [1/m] */
     double (*corner)[8];      /* its corners' Jacobians at rest */
