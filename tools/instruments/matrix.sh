@@ -22,7 +22,8 @@ usage() {
     sed -n '2,20s/^# \{0,1\}//p' "$0" >&2
     exit 2
 }
-[ $# -ge 1 ] && [ -d "$1" ] || usage
+[ $# -ge 1 ] || usage
+[ -d "$1" ] || usage
 DATA=$1
 shift
 quick=0 build=build work=/tmp/instruments jobs=1 elements="1000 5000" bodies=
@@ -136,7 +137,7 @@ tr '\n' '\0' <"$scratch/work" | xargs -0 -P "$jobs" -I{} bash -c {} | tee "$scra
 awk -F ' *[|] *' '
     { cases++; inside += $8 > 0; stops += $18 !~ /^no/; inverted += $13 > 0; negative += $15 > 0
       left += $16 != "-" && $16 > 1; if ($9 > peak) peak = $9 }
-    END { printf "%d cases: tool inside in %d, stopped %d, inverted elements in %d, negative corners " \
-                 "in %d, not back within 1 %% in %d; largest force %.3g N\n",
+    END { printf "%d cases: tool inside in %d, stopped %d, inverted elements in %d, " \
+                 "negative corners in %d, not back within 1 %% in %d; largest force %.3g N\n",
                  cases, inside, stops, inverted, negative, left, peak }' "$scratch/rows"
 exit $status
