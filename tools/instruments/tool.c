@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/vector.h"
-#include "engine/tools.h"
+#include "contact/tools.h"
 
 /* ---- scenes -------------------------------------------------------------------------------- */
 
