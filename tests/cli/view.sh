@@ -77,9 +77,9 @@ for grid in '' '--grid 2x1x1 --comm shm'; do
     expect 0 "$LARIAT" replay back.recording block.yaml --json
     [ "$(value_of state_hash)" = "$hash" ] || fail "it replays to $(value_of state_hash), not $hash"
 done
-expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused
 
 # Every key is in the page.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0
 for key in $(grep -o '"[a-z0-9_]*":' out | tr -d '":' | sort -u); do
     grep -q "\`$key\`" "$SOURCE/docs/cli.md" || fail "docs/cli.md lacks the key $key"
 done
