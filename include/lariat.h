@@ -509,15 +509,17 @@ LAR_API double lar_model_duration(const lar_model *model);
 typedef struct lar_session lar_session;
 
 typedef struct lar_session_options {
-    double tick;         /* seconds of simulated time between exchanges; 0: 1 ms. Whole steps */
-    double pace;         /* simulated seconds per second of the clock; 0: as fast as it goes */
-    int paused;          /* not 0: starts paused */
-    double tool_speed;   /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
-    double hand_force;   /* hands pull no harder than this [N]; 0: 1 N */
-    const char *record;  /* path of a recording to write, from the start; NULL: none */
-    int priority;        /* 1 to 99: the engine's thread goes before all ordinary ones of the
-                            machine (SCHED_FIFO), where the system allows it; 0: ordinary */
-    uint64_t hash_every; /* steps between the hashes of a recording; 0: 100 */
+    double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. Whole steps */
+    double pace;            /* simulated seconds per second of the clock; 0: as fast as it goes */
+    int paused;             /* not 0: starts paused */
+    double tool_speed;      /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
+    double hand_force;      /* hands pull no harder than this [N]; 0: 1 N */
+    const char *record;     /* path of a recording to write, from the start; NULL: none */
+    int priority;           /* 1 to 99: the engine's thread goes before all ordinary ones of the
+                               machine (SCHED_FIFO), where the system allows it; 0: ordinary */
+    uint64_t hash_every;    /* steps between the hashes of a recording; 0: 100 */
+    int stop_when_unstable; /* not 0: a run that becomes unstable stops the session; 0: it goes back
+                               to a sound state and on from there (lar_session_status.recoveries) */
 } lar_session_options;
 
 LAR_API lar_session_options lar_session_options_default(void); /* pace 1, all others 0 */
@@ -606,10 +608,14 @@ typedef struct lar_session_status {
                                                        given up, and counted in `skipped` */
     double skipped;
     int recording;
-    lar_status error;   /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
-                           broke, reset or load takes it up again; LAR_ERROR_PEER: a processor is
-                           lost, nothing but closing the session is left */
-    char message[1016]; /* the same as a sentence; "" */
+    lar_status error;    /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
+                            broke and did not go back (stop_when_unstable, or nobody has moved a
+                            tool since the start), reset or load takes it up again;
+                            LAR_ERROR_PEER: a processor is lost, nothing but closing is left */
+    char message[1016];  /* the same as a sentence; "" */
+    uint64_t recoveries; /* how often the run broke and went back to a sound state by itself,
+                            since the session was opened */
+    char recovery[1016]; /* the last time: "went back 0.62 s to step 15800: " and why; "" */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);

@@ -40,7 +40,9 @@ typedef struct view {
     pid_t browser;           /* its starter; 0: none */
     lar_session_state state; /* as last told */
     bool slow;
-    double slow_told; /* when slow motion was last announced [s] */
+    double slow_told;      /* when slow motion was last announced [s] */
+    uint64_t recoveries;   /* as last told */
+    double recovered_told; /* when that was [s] */
     double progress_at;
     double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
@@ -207,9 +209,19 @@ static void show_progress(view *v, const lar_session_status *s, double at) {
     v->progress_at = at;
 }
 
+static const double RATHER_NOT_AGAIN = 5; /* [s] */
+
+/* The run went back to a sound state; when it does so often, only now and then. */
+static void announce_recovery(view *v, const lar_session_status *s, double at) {
+    if (s->recoveries == v->recoveries || at < v->recovered_told + RATHER_NOT_AGAIN) return;
+    clear_progress(v);
+    cli_complain(&cli_view, CLI_DONE, "note: the run became unstable and %s", s->recovery);
+    v->recoveries = s->recoveries;
+    v->recovered_told = at;
+}
+
 /* Slow motion and stops are announced, each time they begin. */
 static void announce(view *v, const lar_session_status *s, double at) {
-    static const double RATHER_NOT_AGAIN = 5; /* [s] */
     if (s->slow_motion && !v->slow) {
         v->report.slow_times++;
         if (at > v->slow_told + RATHER_NOT_AGAIN) {
@@ -222,6 +234,7 @@ static void announce(view *v, const lar_session_status *s, double at) {
         }
     }
     v->slow = s->slow_motion != 0;
+    announce_recovery(v, s, at);
     if (s->error == LAR_ERROR_PEER && v->failure != LAR_ERROR_PEER) {
         clear_progress(v);
         cli_complain(&cli_view, CLI_FAILED, "%s", s->message);
@@ -261,7 +274,7 @@ static bool is_over(const view *v, double begin, double at) {
 static void look_after(view *v) {
     const struct timespec nap = {0, 50000000};
     double begin = now();
-    v->slow_told = -1e9;
+    v->slow_told = v->recovered_told = -1e9;
     while (!is_over(v, begin, now())) {
         lar_session_status status;
         nanosleep(&nap, NULL);

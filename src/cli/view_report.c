@@ -86,6 +86,8 @@ void view_report_json(const view_report *report, FILE *out) {
     write_times(&json, "wall_per_tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
     json_integer(&json, "slow_motion", report->slow_times);
     json_number(&json, "skipped", s->skipped);
+    json_integer(&json, "recoveries", (int64_t)s->recoveries);
+    json_text(&json, "recovery", s->recovery);
     json_integer(&json, "viewers", report->viewers_most);
     write_devices(&json, report);
     json_text(&json, "state_hash", hash);
@@ -116,6 +118,9 @@ void view_report_table(const view_report *report, FILE *out) {
                 "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
                 1e6 * s->step_max);
     }
+    if (s->recoveries > 0)
+        fprintf(out, "%-17s%" PRIu64 "; the last time it %s\n", "recoveries", s->recoveries,
+                s->recovery);
     print_devices(report, out);
     fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));

@@ -51,6 +51,15 @@ uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state);
 /* Bytes of memory that a step can touch: domain and state, without the model. */
 size_t lar_simulation_bytes(const lar_simulation *simulation);
 
+/* State and tools into a copy in memory, and back from there between advances, as from a
+ * checkpoint: the same bits follow. `state` comes from lar_state_create for as many nodes as the
+ * simulation's; no memory is asked for, but to reach other processes. A run that has broken off is
+ * not copied. */
+lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
+                               lar_error *error);
+lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
+                                  const lar_tools *tools, lar_error *error);
+
 /* lar_simulation_save and lar_simulation_load between advances, without the file: only copying.
  * `path` is for messages; the caller frees the bytes. */
 lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,

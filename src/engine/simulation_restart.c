@@ -1,4 +1,6 @@
 /* Going back to the start, saving and loading, as the public header has them. */
+#include <string.h>
+
 #include "engine/checkpoint.h"
 #include "engine/simulation.h"
 
@@ -12,6 +14,44 @@ lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
     if (!status) status = check_whole(simulation, error);
     if (status) return status;
     lar_simulation_set_start(simulation);
+    return lar_simulation_take_up(simulation, error);
+}
+
+/* Only what carries the state from one step to the next. */
+static void copy_state(const lar_state *from, lar_state *to) {
+    to->step = from->step;
+    to->damped = from->damped;
+    to->external = from->external;
+    to->contact = from->contact;
+#define LAR_STATE_COPY(type, name, values, kept)                                                   \
+    if (kept) memcpy(to->name, from->name, (size_t)from->node_count *(values) * sizeof(type));
+    LAR_STATE_ARRAYS(LAR_STATE_COPY)
+#undef LAR_STATE_COPY
+}
+
+lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
+                               lar_error *error) {
+    if (simulation->trip.kind)
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "the state at step %llu is not kept: the run has broken off, and would "
+                        "again from here; load an earlier checkpoint or go back to the start",
+                        (unsigned long long)lar_simulation_steps(simulation));
+    lar_status status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    copy_state(&simulation->state, state);
+    memcpy(tools, &simulation->tools, lar_tools_bytes(&simulation->tools));
+    return LAR_OK;
+}
+
+lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
+                                  const lar_tools *tools, lar_error *error) {
+    lar_status status = check_whole(simulation, error);
+    if (status) return status;
+    copy_state(state, &simulation->state);
+    memset(simulation->state.force, 0,
+           4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
+    memcpy(&simulation->tools, tools, lar_tools_bytes(tools));
+    lar_acting_forget(&simulation->domain.acting);
     return lar_simulation_take_up(simulation, error);
 }
 

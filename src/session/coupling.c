@@ -42,23 +42,28 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
     double engine = REACH * tool->radius / limits->time_step;
     double jaw = 0.5 * tool->length * tool->spread; /* way of a jaw's end from open to closed */
     double share = jaw > 0 ? 0.3 : 0.4;             /* of a way, a turn, and jaws */
-    double speed = fmin(limits->tool_speed, share * engine),
-           lever = fmax(tool->length, LEVER_LEAST);
     double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
     *coupling = (lar_coupling){.shape = tool->shape,
                                .mass = MASS,
                                .stiffness = STIFFNESS,
                                .damping = 2 * sqrt(STIFFNESS * MASS),
-                               .speed = speed,
-                               .turn = fmin(TURN_MOST, speed / lever),
-                               .squeeze = jaw > 0 ? speed / jaw : INFINITY,
+                               .lever = fmax(tool->length, LEVER_LEAST),
+                               .jaw = jaw,
+                               .speed_most = fmin(limits->tool_speed, share * engine),
                                .pull = pull,
                                .feel = fmin(pull, FEEL_MOST),
-                               .drag = pull / speed,
                                .feel_torque = TORQUE_MOST,
                                .seconds = limits->seconds,
                                .credit = CREDIT};
+    lar_coupling_set_speed(coupling, INFINITY);
     lar_coupling_reset(coupling, &tool->rest);
+}
+
+void lar_coupling_set_speed(lar_coupling *c, double speed) {
+    c->speed = fmin(speed, c->speed_most);
+    c->turn = fmin(TURN_MOST, c->speed / c->lever);
+    c->squeeze = c->jaw > 0 ? c->speed / c->jaw : INFINITY;
+    c->drag = c->pull / c->speed;
 }
 
 void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {

@@ -48,9 +48,11 @@ typedef struct lar_coupling {
     double mass, stiffness, damping; /* [kg] [N/m] [N s/m] */
     double speed, turn;              /* limits [m/s] [rad/s] */
     double squeeze;                  /* limit of the opening's change [1/s] */
-    double pull, feel;               /* limits of the spring and of what the hand feels [N] */
-    double drag;                     /* of a tool whose spring is at its limit [N s/m] */
-    double feel_torque;              /* [N m] */
+    double lever, jaw;  /* from the tip to where a turn counts; way of a jaw's end [m] */
+    double speed_most;  /* what lar_coupling_set_speed may give [m/s] */
+    double pull, feel;  /* limits of the spring and of what the hand feels [N] */
+    double drag;        /* of a tool whose spring is at its limit [N s/m] */
+    double feel_torque; /* [N m] */
     double seconds;
     lar_tool_pose hand, tool; /* where they are: the hand now, the tool at the tick's end */
     double hand_velocity[3], tool_velocity[3]; /* [m/s] */
@@ -70,6 +72,9 @@ typedef struct lar_coupling {
 /* At rest with the tool. */
 void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                          const lar_coupling_limits *limits);
+
+/* The tool goes no faster than `speed` from now on, nor than its limits: INFINITY takes these. */
+void lar_coupling_set_speed(lar_coupling *coupling, double speed);
 
 /* The tool has been put somewhere: it rests at `pose`, and goes to its hand from there. */
 void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);

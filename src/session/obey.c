@@ -24,6 +24,16 @@ void lar_session_note_hash(lar_session *session) {
                                             .hash = lar_simulation_hash(session->simulation)});
 }
 
+/* The state goes on all the same when it cannot be recorded; whoever closes the recording is told.
+ */
+lar_status lar_session_note_state(lar_session *session, lar_error *error) {
+    if (!session->status.recording ||
+        !lar_recorder_put_state(session->recorder, session->simulation, error))
+        return LAR_OK;
+    session->status.recording = 0;
+    return error->status == LAR_ERROR_PEER ? LAR_ERROR_PEER : LAR_OK;
+}
+
 /* A run that broke has no hash there: when it is played it breaks in the same step. */
 void lar_session_note_end(lar_session *session) {
     if (!session->status.recording) return;
@@ -53,34 +63,28 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
 /* ---- going back, saving, loading ----------------------------------------------------------- */
 
 /* The simulation is somewhere else now. */
-static void arrive(lar_session *session) {
+static lar_status arrive(lar_session *session, lar_error *error) {
     lar_session_take_tools(session);
     session->status.error = LAR_OK;
     session->status.message[0] = '\0';
     session->good_step = session->hashed = lar_simulation_steps(session->simulation);
     if (session->status.state == LAR_SESSION_STOPPED) lar_session_go_on(session);
     lar_pace_restart(&session->pace, lar_clock_ns());
+    return lar_session_begin_states(session, error);
 }
 
 static lar_status reset(lar_session *session, lar_error *error) {
     lar_status status = lar_simulation_reset(session->simulation, error);
     if (status) return status;
     lar_session_note(session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
-    arrive(session);
-    return LAR_OK;
+    return arrive(session, error);
 }
 
 static lar_status load(lar_session *session, const lar_request *request, lar_error *error) {
     lar_status status =
         lar_simulation_unpack(session->simulation, request->path, request->state, error);
-    if (status) return status;
-    arrive(session);
-    if (!session->status.recording ||
-        !lar_recorder_put_state(session->recorder, session->simulation, error))
-        return LAR_OK;
-    /* The state is loaded all the same; whoever closes the recording is told. */
-    session->status.recording = 0;
-    return error->status == LAR_ERROR_PEER ? LAR_ERROR_PEER : LAR_OK;
+    if (!status) status = arrive(session, error);
+    return status ? status : lar_session_note_state(session, error);
 }
 
 static lar_status attach(lar_session *session, const lar_request *request, lar_error *error) {

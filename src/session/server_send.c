@@ -158,6 +158,8 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_boolean(json, "recording", s->recording != 0);
     lar_json_boolean(json, "lost", s->error == LAR_ERROR_PEER);
     lar_json_text(json, "message", s->message);
+    lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
+    lar_json_text(json, "recovery", s->recovery);
 }
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {

@@ -62,6 +62,13 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
     return status;
 }
 
+static lar_status make_recovery(lar_session *session, lar_error *error) {
+    if (session->options.stop_when_unstable) return LAR_OK;
+    lar_status status =
+        lar_recovery_create(session->simulation, session->time_step, &session->recovery, error);
+    return status ? status : lar_session_begin_states(session, error);
+}
+
 lar_recording_header lar_session_recording_header(const lar_session *session) {
     const lar_simulation *simulation = session->simulation;
     const lar_model *model = simulation->domain.model;
@@ -90,6 +97,7 @@ static void destroy(lar_session *session) {
     }
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
+    lar_recovery_destroy(&session->recovery);
     lar_mailbox_destroy(&session->view);
     lar_requests_destroy(&session->requests);
     free(session);
@@ -111,6 +119,7 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     if (!status)
         status = lar_mailbox_create(&session->view, sizeof(lar_session_view), "a session", error);
     if (!status) status = lar_snapshots_create(simulation, &session->snapshots, error);
+    if (!status) status = make_recovery(session, error);
     if (status) {
         destroy(session);
         return status;

@@ -26,6 +26,7 @@
 #include "session/history.h"
 #include "session/pace.h"
 #include "session/recording_file.h"
+#include "session/recovery.h"
 #include "session/requests.h"
 #include "session/snapshot.h"
 
@@ -44,7 +45,9 @@ typedef struct lar_session_tool {
     lar_mailbox hand;   /* lar_tool_pose, from tool_move */
     lar_tool_info info; /* constant */
     lar_device *device; /* NULL: it listens to tool_move */
-    bool led;           /* somebody has moved it since the start or the last reset or load */
+    bool led;           /* somebody has moved it since the start, or since the simulation was last
+                           put somewhere else */
+    bool waits;         /* a hand that let go when the run went back: until it has opened */
     lar_device_status device_status; /* as last summed up */
     lar_coupling coupling;           /* between the hand and it */
     lar_tool_pose target;            /* where its hand is */
@@ -74,6 +77,7 @@ struct lar_session {
     lar_pace pace;
     bool stepping; /* pauses when `steps_left` are done */
     uint64_t steps_left;
+    lar_recovery recovery;
     uint64_t good_step;     /* where the last tick ended that did not break */
     lar_recorder *recorder; /* NULL: none */
     uint64_t hashed;        /* step of the latest hash in the recording */
@@ -93,12 +97,22 @@ void lar_session_obey(lar_session *session, const lar_request *request);
 void lar_session_go_on(lar_session *session);
 void lar_session_rest(lar_session *session);
 void lar_session_stop(lar_session *session, const lar_error *error);
+/* The run has become unstable, as *error says: goes back to a sound state and plays on from there.
+ * False: the session has to stop, and *error says why. */
+bool lar_session_recover(lar_session *session, lar_error *error);
+/* At the end of a tick: keeps the state when it is time to. */
+lar_status lar_session_keep_state(lar_session *session, lar_error *error);
+/* The simulation is where the session was opened, reset or loaded: what was kept is forgotten. */
+lar_status lar_session_begin_states(lar_session *session, lar_error *error);
+/* Whether the tool may follow its hand, whose place is `target`. */
+bool lar_session_follows(lar_session *session, int32_t tool);
 /* Tells everybody how it stands; with `quantiles` also what has to be summed up. */
 void lar_session_publish(lar_session *session, bool quantiles);
 /* Into the recording, when there is one. */
 void lar_session_note(lar_session *session, const lar_record *record);
-/* The hash of this moment; the end. */
+/* The hash of this moment; the state that the simulation was put into; the end. */
 void lar_session_note_hash(lar_session *session);
+lar_status lar_session_note_state(lar_session *session, lar_error *error);
 void lar_session_note_end(lar_session *session);
 
 /* The tools are where the simulation has them, and nobody leads them. */

@@ -76,7 +76,7 @@ static void tick(lar_session *session) {
     int64_t begin = lar_clock_ns();
     if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
     if (status) {
-        lar_session_stop(session, &error);
+        if (!lar_session_recover(session, &error)) lar_session_stop(session, &error);
         return;
     }
     lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
@@ -89,6 +89,8 @@ static void tick(lar_session *session) {
     if (session->status.recording &&
         session->good_step - session->hashed >= session->options.hash_every)
         lar_session_note_hash(session);
+    if (session->status.state == LAR_SESSION_PLAYING && lar_session_keep_state(session, &error))
+        lar_session_stop(session, &error);
     if (!session->stepping) return;
     session->steps_left -= steps;
     if (session->steps_left == 0) lar_session_rest(session);

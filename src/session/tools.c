@@ -37,7 +37,7 @@ static void look_at_hands(lar_session *session) {
             fresh = lar_device_poll(tool->device, &now, &tool->target);
         else if (fresh)
             tool->target = *hand;
-        tool->led = tool->led || fresh;
+        tool->led = tool->led || (fresh && lar_session_follows(session, i));
     }
 }
 

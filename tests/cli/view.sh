@@ -34,14 +34,52 @@ says '^state hash  *[0-9a-f]\{16\}$'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --json --grid 2x1x1 --pace 0
 complains '^http://127.0.0.1:[0-9]*/$'
 has_keys title url state message steps time real_time_factor ticks deadline_misses slow_motion \
-    skipped viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
+    skipped recoveries recovery viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
 [ "$(value_of grid)" = '"2x1x1"' ] || fail "the grid is $(value_of grid)"
 [ "$(value_of steps)" -gt 0 ] || fail "nothing was simulated"
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0
 [ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
 [ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
 
+# A block that a hand rams turns inside out: the session goes back, on and on, and replays.
+awk 'BEGIN {
+    print "*NODE"
+    for (k = 0; k < 4; k++) for (j = 0; j < 5; j++) for (i = 0; i < 7; i++)
+        printf "%d, %g, %g, %g\n", 1 + i + 7 * (j + 5 * k), .01 * i, .01 * j, .01 * k
+    print "*ELEMENT, TYPE=C3D8"
+    for (k = 0; k < 3; k++) for (j = 0; j < 4; j++) for (i = 0; i < 6; i++) {
+        n = 1 + i + 7 * (j + 5 * k)
+        print ++e ", " n ", " n + 1 ", " n + 8 ", " n + 7 ", " n + 35 ", " n + 36 ", " n + 43 ", " n + 42
+    }
+    print "*NSET, NSET=bottom"
+    for (n = 1; n <= 35; n++) print n ","
+}' >block.inp
+cat >block.yaml <<EOF
+lariat: 1
+mesh: block.inp
+damping: 0.5
+materials: [ { cells: all, law: neo-hookean, density: 1000, shear_modulus: 500, bulk_modulus: 25e3 } ]
+fix: [ { nodes: bottom, axes: xyz } ]
+EOF
+awk 'BEGIN {
+    print "time,x,y,z,opening\n0,.03,.02,.03,1\n.3,.03,.02,.03,1\n.31,.03,.02,.03,0\n.4,.03,.02,.03,0"
+    for (t = .5; t < 20; t += .3) printf "%g,.03,.02,%g,0\n", t, n++ % 2 ? .13 : -.07
+}' >hand.csv
+for grid in '' '--grid 2x1x1 --comm shm'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" view block.yaml --port 0 --seconds 1 --pace 0 --record back.recording \
+        --device hand=script:hand.csv --json $grid
+    complains 'the run became unstable and went back 0\.[0-9]* s to step [0-9]*: .*tool hand'
+    [ "$(value_of recoveries)" -gt 0 ] || fail "it went back $(value_of recoveries) times"
+    [ "$(value_of state)" = '"playing"' ] || fail "the state is $(value_of state)"
+    case $(value_of recovery) in '"went back'*) ;; *) fail "the last was $(value_of recovery)" ;; esac
+    hash=$(value_of state_hash)
+    expect 0 "$LARIAT" replay back.recording block.yaml --json
+    [ "$(value_of state_hash)" = "$hash" ] || fail "it replays to $(value_of state_hash), not $hash"
+done
+
 # Every key is in the page.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0
 for key in $(grep -o '"[a-z0-9_]*":' out | tr -d '":' | sort -u); do
     grep -q "\`$key\`" "$SOURCE/docs/cli.md" || fail "docs/cli.md lacks the key $key"
 done

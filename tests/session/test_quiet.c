@@ -46,7 +46,8 @@ static void ticks_are_quiet(void **unused) {
     engine = b.session->thread;
     uint64_t begin = await(&b, LAR_SESSION_PLAYING, 100).step; /* warm */
     __atomic_store_n(&counting, true, __ATOMIC_RELEASE);
-    for (int i = 0; status_of(&b).step < begin + 2000; i++) {
+    /* Long enough for a state that is kept, one every half second. */
+    for (int i = 0; status_of(&b).step < begin + 6000; i++) {
         const lar_tool_pose pose = pose_at(0.02, 0.01, 0.03 - 1e-4 * (i % 100), 0);
         DONE(lar_session_tool_move(b.session, BALL, &pose, &failure));
         DONE(lar_session_snapshot(b.session, snapshot, 30, &failure));

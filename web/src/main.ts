@@ -47,6 +47,7 @@ function start(): void {
             force.clear();
             instrument.choose(-1);
             stopped = '';
+            recoveries = -1;
             trouble.hide();
         },
         surface(surface) {
@@ -70,6 +71,7 @@ function start(): void {
             line.update(status);
             toolCard.update(status);
             showStop(status);
+            showRecovery(status);
         },
         hand(news) {
             hand.news(news);
@@ -151,6 +153,13 @@ function start(): void {
             'Reset takes it back to the start. Pull less far, or more slowly, if it stops again.',
             ...ways,
         );
+    }
+
+    let recoveries = -1; // as shown; -1: those before this page was there are not
+    function showRecovery(status: Status): void {
+        if (recoveries >= 0 && status.recoveries > recoveries)
+            note(`The tissue was strained too much, and the run ${status.recovery}`, 9000);
+        recoveries = status.recoveries;
     }
 
     let before = performance.now();

@@ -3,14 +3,14 @@ import { element, write } from './dom';
 
 const NOTE_MS = 4500;
 
-export function note(text: string): void {
+export function note(text: string, ms = NOTE_MS): void {
     const list = element('notes');
     if (list.lastElementChild?.textContent === text) return;
     const line = document.createElement('p');
     line.textContent = text;
     list.append(line);
     while (list.children.length > 3) list.firstElementChild!.remove();
-    setTimeout(() => line.remove(), NOTE_MS);
+    setTimeout(() => line.remove(), ms);
 }
 
 /* One after the other, each until the user has done it. */

@@ -35,6 +35,7 @@ export class Panel {
         ['haptics', (s) => rate(s.haptic_rate)],
         ['pictures', () => rate(this.pictureRate)],
         ['given up', (s) => `${s.skipped.toFixed(2)} s`, (s) => s.skipped > 0],
+        ['went back', (s) => `${s.recoveries} ×`, (s) => s.recoveries > 0],
         ['viewers', (s) => String(s.viewers)],
     ];
 

@@ -81,6 +81,8 @@ export interface Status {
     recording: boolean;
     lost: boolean;
     message: string;
+    recoveries: number; // times that the run became unstable and went back to a sound state
+    recovery: string; // the last of them
     viewers: number;
     saved: string[];
     tools: ToolStatus[];

@@ -90,7 +90,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
 
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
-        slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
+        recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -183,6 +183,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         ticks: state.tick, misses: 0, real_time_factor: 1, real_time_factor_now: state.slow ? 0.4 : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, lag: 0, skipped: 0,
         recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
+        recoveries: state.recoveries, recovery: state.recovery,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             touching: 0, held: 0, by: 'nobody' })),
     });

@@ -49,6 +49,22 @@ test('a stop of the engine is shown with its reason and a way out', async () => 
     await v.close();
 });
 
+test('a run that went back says so, once, and goes on', async () => {
+    Object.assign(server.state, { recoveries: 2, recovery: 'went back 0.62 s to step 15800: element 7' });
+    const v = await openPage(browser, server.url);
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.page.locator('#notes p').count(), 0, 'what was before the page is not told');
+    Object.assign(server.state, { recoveries: 3, recovery: 'went back 0.31 s to step 9000: element 1828' });
+    const line = v.page.locator('#notes').getByText('went back 0.31 s to step 9000: element 1828');
+    await line.waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.page.locator('#notes p').count(), 1);
+    assert.equal(await v.page.locator('#trouble').isVisible(), false);
+    await v.shot('went-back');
+    Object.assign(server.state, { recoveries: 0, recovery: '' });
+    await v.close();
+});
+
 test('a lost processor is named, and nothing that would be in vain is offered', async () => {
     const v = await openPage(browser, server.url);
     Object.assign(server.state, { state: 'stopped', lost: true, message: 'processor 1 is lost' });
