@@ -1,5 +1,6 @@
 #include "contact/tool_body.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -199,39 +200,45 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     return true;
 }
 
-/* Tissue that is deeper in a tool than SOFT radii makes tools harder, interval by interval, as long
- * as no more parts are needed than there may be. */
-static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness) {
-    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4, SLOWER = 0.9;
+/* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
+ * harder, interval by interval, as long as no more parts are needed than there may be. */
+static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
+                     double fading, double unit) {
+    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4;
     double deepest = 0;
-    for (int32_t i = 0; i < tools->count; i++)
-        deepest = fmax(deepest, tools->follower[i].felt.depth / list->tool[i].radius);
+    for (int32_t i = 0; i < tools->count; i++) {
+        const lar_tool_felt *felt = &tools->follower[i].felt;
+        double load, depth = felt->depth / list->tool[i].radius;
+        if (!(depth > 0)) continue;
+        mean_load mean = mean_of(felt, &list->limits[i], unit, &load);
+        /* One that presses too hard gives way before it is made harder. */
+        if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
+            depth = fmin(depth, SOFT);
+        deepest = fmax(deepest, depth);
+    }
     if (deepest > SOFT) return fmin(FASTER * hardness, LAR_PARTS_MOST * LAR_PARTS_MOST);
-    return deepest < HARD ? fmax(1, SLOWER * hardness) : hardness;
+    return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most) {
-    enum { CALM = 8 };
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
+                      double most, double unit) {
+    /* What was needed lately counts for some time: strained tissue trembles [s]. */
+    static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
-    double hardness = harden(list, tools, d->hardness), need = d->need;
-    int32_t parts = d->parts, wanted = 1;
+    double fading = fmax(0.5, 1 - seconds / MEMORY);
+    double hardness = harden(list, tools, d->hardness, fading, unit);
+    d->lately = fmax(fmin(d->need, DBL_MAX), fading * d->lately);
     d->need = 0;
-    while (wanted < LAR_PARTS_MOST && (need > most * wanted * wanted || hardness > wanted * wanted))
+    int32_t wanted = 1;
+    while (wanted < LAR_PARTS_MOST &&
+           (d->lately > most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
-    d->calm = wanted < parts ? d->calm + 1 : 0;
-    /* Fewer parts one by one, and not before there is some room. */
-    if (wanted < parts) {
-        double half = 0.25 * parts * parts;
-        bool room = need < 0.85 * most * half && hardness <= half;
-        wanted = room && d->calm >= CALM ? parts / 2 : parts;
-    }
-    bool changed = hardness != d->hardness || wanted != parts;
+    bool changed = hardness != d->hardness || wanted != d->parts;
     d->hardness = hardness;
-    if (wanted == parts) return changed;
-    d->before = parts;
+    if (wanted == d->parts) return changed;
+    d->before = d->parts;
     d->parts = wanted;
     d->since = step;
-    d->calm = 0;
     return true;
 }
 

@@ -47,8 +47,10 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 
 /* Divides steps, or no longer, at the beginning of an interval. Elements: `division->need` against
  * `most`, which the undivided step bears. Tools: where tissue is deep in one, all become harder,
- * which takes parts of a step. True when something changes. */
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most);
+ * which takes parts of a step. `seconds`: of an interval; `unit`: newtons of a force unit. True
+ * when something changes. */
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
+                      double most, double unit);
 
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
  * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where
