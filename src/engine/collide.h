@@ -54,11 +54,14 @@ typedef struct lar_contact_view {
     const int32_t *slot;                     /* [contact nodes] with `place` */
 } lar_contact_view;
 
+/* Faces of a body that push a node together, at most, and whom they push. */
+enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 1 + 4 * LAR_CONTACT_FACES };
+
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_collide_part {
     int32_t count;
-    int32_t value[5]; /* 4 * local node */
-    double force[5][3];
+    int32_t value[LAR_CONTACT_PARTS]; /* 4 * local node */
+    double force[LAR_CONTACT_PARTS][3];
 } lar_collide_part;
 
 /* The level of a node that came through the face: nothing that can be measured, but not 0. */

@@ -47,6 +47,14 @@ double lar_face_distance(const double x[3], const double corner[4][3]);
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point);
 
+/* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
+ * points of all triangles that are about as close to x as the closest of all, `least` away. Adds
+ * those of one face: to sum[] their weights of its corners, times how much each of them counts, all
+ * of which is returned. A triangle counts 1 - (distance - least) / fade, and next to nothing where
+ * x is not straight above it. */
+double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
+                      double sum[4]);
+
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
     double more = a->toward - b->toward;
