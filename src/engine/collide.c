@@ -262,6 +262,14 @@ static double outward(const double x[3], const contact_point *point, double sign
     return sign * depth;
 }
 
+/* What part of its stiffness a spring has: it must not hurl a light node away with what it stores
+ * while it keeps the contact distance. */
+static double softness(const lar_collide *collide, double standoff) {
+    static const double SPEED = 3; /* [m/s] */
+    double most = SPEED / standoff;
+    return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_t face,
@@ -288,7 +296,9 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
         same_body(collide, node, face) ? follow_level(collide, state, node, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
-    double from = lar_contact_standoff(surface, &surface->node[node], f) - level;
+    double standoff = lar_contact_standoff(surface, &surface->node[node], f);
+    double from = standoff - level;
+    moved *= softness(collide, standoff);
     double force = lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];

@@ -12,6 +12,10 @@
  * when it was made, so searching in every step gives the same bits. Forces are rounded at the
  * corners, and the node gets minus their sum: momentum is kept to the last bit.
  *
+ * Different bodies push from a contact distance on, before they touch (contact_surface.h). Above a
+ * hollow several faces are about as close and the closest point jumps: up to LAR_CONTACT_FACES of
+ * them push together, through a mean of their points that does not jump. docs/theory.md, contact.
+ *
  * Levels. A node of a body may come to lie below that body's own faces without having come through
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
  * rest. Pushed from there it would get energy that contact never took. So the depth at which it

@@ -269,12 +269,14 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
 
 lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
                                    lar_contact_surface *s, lar_error *error) {
-    /* What comes at this speed [m/s] is noticed a step before it touches, but not from farther away
-     * than this part of the thinnest element. */
-    static const double SPEED = 6, PART = 0.5;
+    /* What comes at this speed [m/s] is noticed a step before it touches, from no nearer and no
+     * farther than these parts of the thinnest element. */
+    static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
     for (int32_t b = 0; b < s->body_count; b++) {
         lar_contact_body *body = &s->body[b];
-        body->standoff = fmin(fmin(SPEED * time_step, PART * body->reach[1]), body->clear);
+        double least = NEAREST * body->reach[1], most = FARTHEST * body->reach[1];
+        double wanted = fmin(fmax(SPEED * time_step, least), most);
+        body->standoff = fmin(wanted, body->clear);
     }
     return fit_masses(model, time_step, stable_step, s, error);
 }
