@@ -9,8 +9,6 @@
 
 /* ---- limits -------------------------------------------------------------------------------- */
 
-/* A haptic device gives about 8 N (Massie and Salisbury 1994). */
-static const double FORCE_MOST = 8;
 /* Pressure that tissue bears under a tool, in shear moduli; on the tool's cross-section and half an
  * element around it. */
 static const double PRESSURE_MOST = 6;
@@ -29,10 +27,6 @@ uint64_t lar_tool_interval(double time_step) {
     return steps;
 }
 
-uint64_t lar_idle_interval(double time_step) {
-    return 4 * lar_tool_interval(time_step);
-}
-
 void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
     for (int32_t i = 0; i < list->count; i++) {
         const lar_tool *tool = &list->tool[i];
@@ -40,7 +34,7 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
         double reach = tool->radius + 0.5 * scale->edge;
         double tissue = PRESSURE_MOST * scale->shear * 3.14159265358979 * reach * reach;
         double contact = BEARS * tool->radius * scale->stiffness;
-        *limits = (lar_tool_limits){.force = fmin(fmin(tissue, contact), FORCE_MOST),
+        *limits = (lar_tool_limits){.force = fmin(tissue, contact),
                                     .depth = DEPTH_MOST * tool->radius,
                                     .lever = fmax(tool->radius, 0.5 * tool->length),
                                     .travel = 0.5 * tool->spread * tool->length,

@@ -39,8 +39,6 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
 enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
 uint64_t lar_tool_interval(double time_step);
-/* Of models without tools: four times that. */
-uint64_t lar_idle_interval(double time_step);
 
 /* Asks a tool to go where `motion` says; it does when nothing keeps it. */
 void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion);

@@ -58,7 +58,14 @@ typedef struct lar_step_division {
     double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
+    uint64_t decided; /* the step when it was decided last */
 } lar_step_division;
+
+/* Whether it must be decided in every step: elements are strained so that they may soon be too fast
+ * for it. */
+static inline bool lar_division_is_close(const lar_step_division *division) {
+    return division->lately > 0.5;
+}
 
 /* The hand of a tool, and how far the tool is from following it. */
 typedef struct lar_tool_follower {

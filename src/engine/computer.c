@@ -356,7 +356,7 @@ static lar_status advance_all(lar_computer *computer, uint64_t until, bool first
 
 /* The step at which all stop next: for a search, or where an interval ends. */
 static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t end) {
-    uint64_t interval = lar_interval_end(computer->whole, step);
+    uint64_t interval = lar_interval_end(computer->whole, &computer->tools->division, step);
     return lar_contact_until(computer, interval < end ? interval : end);
 }
 

@@ -44,7 +44,9 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
     }
 }
 
-uint64_t lar_interval_end(const lar_domain *whole, uint64_t step) {
+uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,
+                          uint64_t step) {
+    if (lar_division_is_close(division)) return step + 1;
     return (step / whole->interval + 1) * whole->interval;
 }
 
@@ -59,11 +61,14 @@ static double most_of(const lar_domain *whole, const lar_tools *tools) {
 
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
     const lar_tool_list *list = whole->acting.touch.list;
-    if (!list || step % whole->interval != 0) return false;
-    bool changed = lar_tools_divide(list, tools, step, (double)whole->interval * whole->time_step,
-                                    most_of(whole, tools), 1 / whole->scale);
+    lar_step_division *division = &tools->division;
+    if (!list || (step % whole->interval != 0 && !lar_division_is_close(division))) return false;
+    double seconds = (double)(step - division->decided) * whole->time_step;
+    division->decided = step;
+    bool changed =
+        lar_tools_divide(list, tools, step, seconds, most_of(whole, tools), 1 / whole->scale);
     if (!has_bodies(list)) return changed;
-    return lar_tools_follow(list, tools, step, step + whole->interval, whole->time_step,
-                            1 / whole->scale) ||
+    return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
+                            whole->time_step, 1 / whole->scale) ||
            changed;
 }

@@ -133,7 +133,6 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     if (status) return status;
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
-    if (model->tool_count > 0) domain->interval = lar_tool_interval(domain->time_step);
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
                               &simulation->tools, &domain->acting.touch, error);
     domain->acting.touch.always = options->search_always != 0;
@@ -214,7 +213,7 @@ static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch 
     lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
-        uint64_t until = lar_interval_end(&simulation->domain, *step);
+        uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
         goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
     }
 }

@@ -30,6 +30,7 @@ typedef struct lar_state {
     double contact;  /* what contacts have taken from the bodies so far [J] */
     double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */
     double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
+    bool close;      /* they are looked at in this step: lar_division_is_close */
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;

@@ -34,13 +34,13 @@ static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_sta
 
 /* Whether the strained elements are looked for in this step: in the last one of an interval, so
  * that what is found is known when the next one begins. */
-static bool interval_ends(const lar_domain *domain, const lar_state *state) {
-    return (state->step + 1) % domain->interval == 0 && state->part == 0;
+static bool interval_ends(const lar_domain *domain, bool close, const lar_state *state) {
+    return (close || (state->step + 1) % domain->interval == 0) && state->part == 0;
 }
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
                            lar_trip *trip) {
-    bool due = interval_ends(domain, state), watches = due || !state->listed;
+    bool due = interval_ends(domain, state->close, state), watches = due || !state->listed;
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
         lar_hex8_watch watch = {.limit = domain->corner_limit + place,
@@ -124,6 +124,7 @@ void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
     if (state->part == 0) state->parts = division->parts;
     context->time_step = domain->time_step / state->parts;
     context->hardness = division->hardness;
+    state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
 }
 
