@@ -211,19 +211,18 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
 }
 
 bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most) {
-    enum { CALM = 8 };
     lar_step_division *d = &tools->division;
     double hardness = harden(list, tools, d->hardness), need = d->need;
     int32_t parts = d->parts, wanted = 1;
     d->need = 0;
     while (wanted < LAR_PARTS_MOST && (need > most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
-    d->calm = wanted < parts ? d->calm + 1 : 0;
+    d->calm = wanted >= parts ? 0 : d->calm < LAR_CALM_MOST ? d->calm + 1 : LAR_CALM_MOST;
     /* Fewer parts one by one, and not before there is some room. */
     if (wanted < parts) {
         double half = 0.25 * parts * parts;
         bool room = need < 0.85 * most * half && hardness <= half;
-        wanted = room && d->calm >= CALM ? parts / 2 : parts;
+        wanted = room && d->calm >= LAR_CALM_MOST ? parts / 2 : parts;
     }
     bool changed = hardness != d->hardness || wanted != parts;
     d->hardness = hardness;

@@ -38,6 +38,8 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
 enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
+/* Intervals in which fewer parts would do before there are fewer; not counted further. */
+enum { LAR_CALM_MOST = 8 };
 uint64_t lar_tool_interval(double time_step);
 /* Of models without tools: four times that. */
 uint64_t lar_idle_interval(double time_step);

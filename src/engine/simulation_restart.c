@@ -17,9 +17,13 @@ lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
     return lar_simulation_take_up(simulation, error);
 }
 
-/* Only what carries the state from one step to the next. */
+/* Only what carries the state from one step to the next. A run that breaks off may do so between
+ * the parts of a step; copies are made between steps. */
 static void copy_state(const lar_state *from, lar_state *to) {
     to->step = from->step;
+    to->part = 0;
+    to->parts = 1;
+    to->listed = false;
     to->damped = from->damped;
     to->external = from->external;
     to->contact = from->contact;
@@ -39,7 +43,7 @@ lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
     copy_state(&simulation->state, state);
-    memcpy(tools, &simulation->tools, lar_tools_bytes(&simulation->tools));
+    *tools = simulation->tools;
     return LAR_OK;
 }
 
@@ -50,7 +54,7 @@ lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *s
     copy_state(state, &simulation->state);
     memset(simulation->state.force, 0,
            4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
-    memcpy(&simulation->tools, tools, lar_tools_bytes(tools));
+    simulation->tools = *tools;
     lar_acting_forget(&simulation->domain.acting);
     return lar_simulation_take_up(simulation, error);
 }
