@@ -240,9 +240,10 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_limits *limits = &list->limits[i];
         lar_tool_follower *follower = &tools->follower[i];
-        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
-        mean_load mean = mean_of(&follower->felt, limits, unit, &follower->load);
+        lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
+        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
+        mean_load mean = mean_of(&felt, limits, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;
