@@ -12,9 +12,11 @@
 static const double FORCE_MOST = 8;
 /* Pressure that tissue bears under a tool, in shear moduli; on the tool's cross-section and half an
  * element around it. */
-static const double PRESSURE_MOST = 20;
+static const double PRESSURE_MOST = 6;
 /* Contact must bear the limit at a depth at which the tool's middle is well outside. */
-static const double DEPTH_MOST = 0.5, BEARS = 0.3;
+static const double DEPTH_MOST = 0.5, BEARS = 0.45;
+/* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
+static const double NEED_MOST = 100;
 static const double GRASP_SHARE = 0.5;
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
@@ -66,8 +68,8 @@ typedef struct mean_load {
     double excess;              /* how many times more than may be, at least 1 */
 } mean_load;
 
-static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double unit,
-                         double *load) {
+static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double need,
+                         double unit, double *load) {
     mean_load mean = {.excess = 1};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
@@ -80,8 +82,9 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     double grasp = mean.squeeze / limits->grasp;
     double depth = felt->depth / limits->depth;
     double most = fmax(fmax(force, turn), grasp);
-    *load = fmax(most, depth);
-    if (depth > 1 && depth > most && most > 0) mean.excess = depth / most;
+    double other = fmax(depth, most > 0 ? need / NEED_MOST : 0);
+    *load = fmax(most, other);
+    if (other > 1 && other > most && most > 0) mean.excess = other / most;
     return mean;
 }
 
@@ -199,38 +202,45 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     return true;
 }
 
-/* Tissue that is deeper in a tool than SOFT radii makes tools harder, interval by interval, as long
- * as no more parts are needed than there may be. */
-static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness) {
-    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4, SLOWER = 0.9;
+/* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
+ * harder, interval by interval, as long as no more parts are needed than there may be. */
+static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
+                     double fading, double unit) {
+    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4;
     double deepest = 0;
-    for (int32_t i = 0; i < tools->count; i++)
-        deepest = fmax(deepest, tools->follower[i].felt.depth / list->tool[i].radius);
-    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_PARTS_MOST * LAR_PARTS_MOST);
-    return deepest < HARD ? fmax(1, SLOWER * hardness) : hardness;
+    for (int32_t i = 0; i < tools->count; i++) {
+        const lar_tool_felt *felt = &tools->follower[i].felt;
+        double load, depth = felt->depth / list->tool[i].radius;
+        if (!(depth > 0)) continue;
+        mean_load mean = mean_of(felt, &list->limits[i], 0, unit, &load);
+        /* One that presses too hard gives way before it is made harder. */
+        if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
+            depth = fmin(depth, SOFT);
+        deepest = fmax(deepest, depth);
+    }
+    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_HARDNESS_MOST);
+    return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most) {
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
+                      double most, double unit) {
+    /* What was needed lately counts for some time: strained tissue trembles [s]. */
+    static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
-    double hardness = harden(list, tools, d->hardness), need = d->need;
-    int32_t parts = d->parts, wanted = 1;
+    double fading = fmax(0.5, 1 - seconds / MEMORY);
+    double hardness = harden(list, tools, d->hardness, fading, unit);
+    d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;
-    while (wanted < LAR_PARTS_MOST && (need > most * wanted * wanted || hardness > wanted * wanted))
+    int32_t wanted = 1;
+    while (wanted < LAR_PARTS_MOST &&
+           (d->lately > most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
-    d->calm = wanted >= parts ? 0 : d->calm < LAR_CALM_MOST ? d->calm + 1 : LAR_CALM_MOST;
-    /* Fewer parts one by one, and not before there is some room. */
-    if (wanted < parts) {
-        double half = 0.25 * parts * parts;
-        bool room = need < 0.85 * most * half && hardness <= half;
-        wanted = room && d->calm >= LAR_CALM_MOST ? parts / 2 : parts;
-    }
-    bool changed = hardness != d->hardness || wanted != parts;
+    bool changed = hardness != d->hardness || wanted != d->parts;
     d->hardness = hardness;
-    if (wanted == parts) return changed;
-    d->before = parts;
+    if (wanted == d->parts) return changed;
+    d->before = d->parts;
     d->parts = wanted;
     d->since = step;
-    d->calm = 0;
     return true;
 }
 
@@ -243,7 +253,7 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
         if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
-        mean_load mean = mean_of(&felt, limits, unit, &follower->load);
+        mean_load mean = mean_of(&felt, limits, tools->division.lately, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

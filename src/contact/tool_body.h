@@ -38,8 +38,9 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
 enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
-/* Intervals in which fewer parts would do before there are fewer; not counted further. */
-enum { LAR_CALM_MOST = 8 };
+/* How hard tools become, and up to what elements' need is remembered: more than any number of parts
+ * bears makes no difference, and must be over some time. */
+enum { LAR_HARDNESS_MOST = 64, LAR_NEED_MOST = LAR_PARTS_MOST * LAR_PARTS_MOST };
 uint64_t lar_tool_interval(double time_step);
 /* Of models without tools: four times that. */
 uint64_t lar_idle_interval(double time_step);
@@ -49,8 +50,10 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 
 /* Divides steps, or no longer, at the beginning of an interval. Elements: `division->need` against
  * `most`, which the undivided step bears. Tools: where tissue is deep in one, all become harder,
- * which takes parts of a step. True when something changes. */
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double most);
+ * which takes parts of a step. `seconds`: of an interval; `unit`: newtons of a force unit. True
+ * when something changes. */
+bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
+                      double most, double unit);
 
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
  * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where

@@ -48,7 +48,7 @@ typedef struct lar_tool_felt {
 
 /* Forces on tools are summed in shares of a step, so that a part of a divided one counts for what
  * it is: as many as parts, at most. */
-enum { LAR_STEP_SHARES = 8 };
+enum { LAR_STEP_SHARES = 32 };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
@@ -56,9 +56,8 @@ typedef struct lar_step_division {
     int32_t before;  /* as many until `since` */
     uint64_t since;  /* step */
     double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
-    double need;  /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
-    int32_t calm; /* intervals in which fewer parts would have done */
-    int32_t padding;
+    double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
+    double lately; /* the largest `need`, fading */
 } lar_step_division;
 
 /* The hand of a tool, and how far the tool is from following it. */

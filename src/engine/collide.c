@@ -12,10 +12,11 @@ static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
 /* ---- one group ------------------------------------------------------------------------------ */
 
 typedef struct touching {
-    int32_t face;     /* contact face */
-    double weight[4]; /* of its corners */
-    double force[3];  /* on the node [N] */
-    double depth;     /* [m] */
+    int32_t count;
+    int32_t face[LAR_CONTACT_FACES];     /* contact faces, */
+    double weight[LAR_CONTACT_FACES][4]; /* and of their corners; all together 1 */
+    double force[3];                     /* on the node [N] */
+    double depth;                        /* [m] */
 } touching;
 
 static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
@@ -57,6 +58,7 @@ static double nearest_possible(const double x[3], const double corner[4][3]) {
 /* Distances of a group's faces: where one need not be known, at least so much. */
 typedef struct survey {
     double reach; /* of the faces for the node [m] */
+    double fade;  /* by how much others than the closest may be farther away and still count [m] */
     double distance[LAR_GROUP_FACES_MOST];
     double least;         /* of those within reach; INFINITY: none is */
     int32_t at;           /* the entry that it belongs to, */
@@ -69,12 +71,19 @@ static double tie_of(const lar_collide *collide, int32_t face) {
     return LAR_FACE_TIE * collide->surface->face[face].size;
 }
 
+/* Of the contact distance, that part; 0 within a body. */
+static double fade_of(const lar_collide *collide, int32_t node, int32_t face) {
+    static const double FADE = 0.25;
+    const lar_contact_surface *surface = collide->surface;
+    return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+}
+
 static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
                         int32_t i, survey *s) {
     double corner[4][3], tie = tie_of(collide, f), *distance = &s->distance[i];
     corners_of(collide, state, f, corner, NULL);
     *distance = nearest_possible(x, (const double(*)[3])corner);
-    if (*distance <= s->least + tie && *distance <= s->reach + tie) {
+    if (*distance <= s->least + s->fade + tie && *distance <= s->reach + tie) {
         lar_face_point point;
         collide->info.tested++;
         lar_face_closest(x, (const double(*)[3])corner, tie, &point);
@@ -92,7 +101,7 @@ static void survey_face(lar_collide *collide, const lar_state *state, const doub
  * farther away than the closest, whose distance changes as well. */
 static double away_until(double travel, double distance, double tie, const survey *s) {
     double reach = (distance - tie - s->reach) / APPROACH;
-    double least = (distance - 8 * tie - s->least) / (2 * APPROACH);
+    double least = (distance - 8 * tie - s->fade - s->least) / (2 * APPROACH);
     return travel + 0.999 * (reach > least ? reach : least);
 }
 
@@ -105,6 +114,7 @@ static void survey_group(lar_collide *collide, const lar_state *state, int32_t g
     int32_t first = collide->last[g];
     s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
                                  &collide->surface->face[face[0]]);
+    s->fade = fade_of(collide, group->node, face[0]);
     s->least = s->gap = s->next = INFINITY;
     survey_face(collide, state, x, face[first], first, s);
     for (int32_t i = 0; i < group->count; i++) {
@@ -176,57 +186,157 @@ static double follow_level(lar_collide *collide, const lar_state *state, int32_t
 
 /* ---- one node and one face ------------------------------------------------------------------ */
 
-/* The force of a face on a node behind it. False: they do not touch, or no longer push. */
-static bool push(lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
-                 const lar_face_point *point, touching *t) {
+/* Where the surface is that touches a node, and how that moves. */
+typedef struct contact_point {
+    double at[3], velocity[3]; /* [m], [m/s] */
+    double mass;               /* [kg] */
+} contact_point;
+
+/* The point of t->count faces with the weights of t. */
+static void point_of(const lar_collide *collide, const lar_state *state, const touching *t,
+                     contact_point *point) {
+    double compliance = 0;
+    *point = (contact_point){0};
+    for (int32_t f = 0; f < t->count; f++) {
+        const int32_t *corner = collide->surface->face[t->face[f]].corner;
+        double x[4][3], v[4][3], at[3], velocity[3];
+        corners_of(collide, state, t->face[f], x, v);
+        lar_face_mean((const double(*)[3])x, t->weight[f], at);
+        lar_face_mean((const double(*)[3])v, t->weight[f], velocity);
+        for (int i = 0; i < 3; i++) {
+            point->at[i] += at[i];
+            point->velocity[i] += velocity[i];
+        }
+        for (int a = 0; a < 4; a++)
+            compliance += t->weight[f][a] / collide->surface->node[corner[a]].mass;
+    }
+    point->mass = 1 / compliance;
+}
+
+/* Above a hollow the closest point jumps from face to face, and so would the direction of the
+ * force: there the faces that are about as close as the closest one push together. */
+static void blend(const lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
+                  const lar_face_point *closest, const survey *s, touching *t) {
+    const lar_contact_group *group = &collide->list.group[g];
+    const lar_contact_surface *surface = collide->surface;
+    /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
+     * smoothly. */
+    double upright = 1 - 50 * (1 - closest->height / closest->distance);
+    double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
+    touching blended = {0};
+    for (int32_t i = 0; i < group->count && fade > 0; i++) {
+        int32_t f = collide->list.face[group->first + i];
+        double corner[4][3], sum[4] = {0};
+        if (!(s->distance[i] < s->least + fade) ||
+            !lar_contact_active(&surface->node[group->node], &surface->face[f]))
+            continue;
+        corners_of(collide, state, f, corner, NULL);
+        double counts = lar_face_blend(x, (const double(*)[3])corner, s->least, fade, sum);
+        if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
+        all += counts;
+        blended.face[blended.count] = f;
+        memcpy(blended.weight[blended.count++], sum, sizeof sum);
+    }
+    if (!(all > 0)) return;
+    for (int32_t f = 0; f < blended.count; f++)
+        for (int a = 0; a < 4; a++) blended.weight[f][a] /= all;
+    *t = blended;
+}
+
+/* The way out of the body for a node, of unit length, and how deep it is (negative: how far above).
+ * Too close to the surface for a direction of its own it takes that of the face; NAN: there is none
+ * either. */
+static double outward(const double x[3], const contact_point *point, double sign, double tie,
+                      const double corner[4][3], double way[3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) square += (point->at[i] - x[i]) * (point->at[i] - x[i]);
+    double depth = sqrt(square);
+    if (depth > tie) {
+        for (int i = 0; i < 3; i++) way[i] = sign * (point->at[i] - x[i]) / depth;
+        return sign * depth;
+    }
+    lar_face_normal(corner, way);
+    double length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    if (!(length > 0)) return NAN;
+    for (int i = 0; i < 3; i++) way[i] /= length;
+    return sign * depth;
+}
+
+/* What part of its stiffness a spring has: it must not hurl a light node away with what it stores
+ * while it keeps the contact distance. */
+static double softness(const lar_collide *collide, double standoff) {
+    static const double SPEED = 3; /* [m/s] */
+    double most = SPEED / standoff;
+    return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
+}
+
+/* The force on the node of group g by a face which it is behind, or before it by less than the
+ * contact distance. False: they do not touch, or no longer push. */
+static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_t face,
+                 const lar_face_point *closest, const survey *s, touching *t) {
     const lar_contact_surface *surface = collide->surface;
     const lar_contact_face *f = &surface->face[face];
-    double x[3], v[3], corner[4][3], speed[4][3], mass[4], p[3], vp[3], square = 0, rate = 0;
+    int32_t node = collide->list.group[g].node;
+    double x[3], v[3], corner[4][3], way[3], rate = 0;
+    contact_point point;
     place_of(collide, state, node, x, v);
-    corners_of(collide, state, face, corner, speed);
-    lar_face_mean((const double(*)[3])corner, point->weight, p);
-    lar_face_mean((const double(*)[3])speed, point->weight, vp);
-    for (int i = 0; i < 3; i++) square += (p[i] - x[i]) * (p[i] - x[i]);
-    double depth = sqrt(square);
+    corners_of(collide, state, face, corner, NULL);
+    *t = (touching){.count = 1, .face = {face}};
+    memcpy(t->weight[0], closest->weight, sizeof closest->weight);
+    bool before = !(closest->height < 0);
+    if (before && lar_contact_active(&surface->node[node], f))
+        blend(collide, state, g, x, closest, s, t);
+    point_of(collide, state, t, &point);
+    double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
+                           (const double(*)[3])corner, way);
     /* Without a length there is no direction. */
-    if (!(depth > LAR_FACE_TIE * f->size)) return false;
-    for (int i = 0; i < 3; i++) rate += (vp[i] - v[i]) * (p[i] - x[i]) / depth;
+    if (isnan(depth)) return false;
+    for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
     double level =
         same_body(collide, node, face) ? follow_level(collide, state, node, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
-    for (int a = 0; a < 4; a++) mass[a] = surface->node[f->corner[a]].mass;
-    double moved =
-        lar_contact_pair_mass(surface->node[node].mass, lar_contact_face_mass(mass, point->weight));
-    double force = lar_contact_force(&collide->law, moved, depth - level, rate);
-    *t = (touching){.face = face, .depth = depth};
-    memcpy(t->weight, point->weight, sizeof t->weight);
-    for (int i = 0; i < 3; i++) t->force[i] = force * (p[i] - x[i]) / depth;
+    double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
+    double standoff = lar_contact_standoff(surface, &surface->node[node], f);
+    double from = standoff - level;
+    moved *= softness(collide, standoff);
+    double force = lar_contact_force(&collide->law, moved, depth + from, rate);
+    t->depth = fmax(depth, 0);
+    for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
     return true;
 }
 
 /* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
-static int32_t closest(lar_collide *collide, const lar_state *state, int32_t g,
+static int32_t closest(lar_collide *collide, const lar_state *state, int32_t g, survey *s,
                        lar_face_point *point) {
     const lar_contact_group *group = &collide->list.group[g];
     double x[3];
-    survey s;
     place_of(collide, state, group->node, x, NULL);
-    survey_group(collide, state, g, x, &s);
+    survey_group(collide, state, g, x, s);
     /* A little earlier, for rounding. */
-    collide->due[g] = s.gap > 0 ? fmin(collide->travel + 0.999 * s.gap / APPROACH, s.next) : 0;
-    if (!(s.least < INFINITY)) return -1;
-    int32_t chosen = choose_face(collide, state, g, x, &s, point);
+    collide->due[g] = s->gap > 0 ? fmin(collide->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
+    if (!(s->least < INFINITY)) return -1;
+    int32_t chosen = choose_face(collide, state, g, x, s, point);
     if (chosen < 0) return -1;
     collide->last[g] = chosen;
     return collide->list.face[group->first + chosen];
+}
+
+static bool touches(const lar_collide *collide, int32_t node, int32_t face,
+                    const lar_face_point *point) {
+    const lar_contact_surface *surface = collide->surface;
+    return point->height < 0 ||
+           point->distance <
+               lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
 /* Contact of group g. */
 static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
     const lar_contact_group *group = &collide->list.group[g];
     lar_face_point point;
-    int32_t face = closest(collide, state, g, &point);
-    if (face >= 0 && point.height < 0) return push(collide, state, group->node, face, &point, t);
+    survey s;
+    int32_t face = closest(collide, state, g, &s, &point);
+    if (face >= 0 && touches(collide, group->node, face, &point))
+        return push(collide, state, g, face, &point, &s, t);
     if (same_body(collide, group->node, collide->list.face[group->first]))
         set_level(collide, state, group->node, 0);
     return false;
@@ -234,43 +344,42 @@ static bool contact(lar_collide *collide, const lar_state *state, int32_t g, tou
 
 /* ---- forces --------------------------------------------------------------------------------- */
 
-/* Notes a force that this thread adds, for its work. */
-static void note(lar_collide_part *part, int32_t value, const int64_t sum[3], double scale) {
+/* Adds a force, and notes it for its work. */
+static void add_part(lar_collide_part *part, lar_state *state, int32_t value, const int64_t sum[3],
+                     double scale) {
     part->value[part->count] = value;
-    for (int i = 0; i < 3; i++) part->force[part->count][i] = -(double)sum[i] / scale;
+    for (int i = 0; i < 3; i++) {
+        state->force[value + i] += sum[i];
+        part->force[part->count][i] = -(double)sum[i] / scale;
+    }
     part->count++;
 }
 
-/* Force sums are internal minus external forces. Who adds only some of the five parts rounds the
- * same numbers as who adds the others. */
+/* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
+ * numbers as who adds the others. */
 static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
                        int32_t node, const touching *t) {
     static const double MOST = 0x1p58; /* of a force in force units */
-    const lar_contact_face *face = &collide->surface->face[t->face];
     const int32_t *value = collide->view.value;
     lar_collide_part *part = &collide->part[collide->part_count];
-    int64_t corner[4][3], sum[3] = {0};
+    int64_t corner[4 * LAR_CONTACT_FACES][3], sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
         if (!(fabs(force) < MOST)) return;
-        for (int a = 0; a < 4; a++) {
-            corner[a][i] = llrint(t->weight[a] * force);
+        for (int a = 0; a < 4 * t->count; a++) {
+            corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
             sum[i] -= corner[a][i];
         }
     }
     part->count = 0;
     if (!collide->adds_node || collide->adds_node[node])
-        note(part, value[node], sum, context->scale);
-    if (!collide->adds_corner || collide->adds_corner[t->face])
-        for (int a = 0; a < 4; a++) note(part, value[face->corner[a]], corner[a], context->scale);
-    if (!part->count) return;
-    if (!collide->adds_node || collide->adds_node[node])
-        for (int i = 0; i < 3; i++) state->force[value[node] + i] += sum[i];
-    if (!collide->adds_corner || collide->adds_corner[t->face])
-        for (int a = 0; a < 4; a++)
-            for (int i = 0; i < 3; i++) state->force[value[face->corner[a]] + i] += corner[a][i];
-    collide->part_count++;
+        add_part(part, state, value[node], sum, context->scale);
+    for (int32_t f = 0; f < t->count; f++)
+        for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->face[f]]); a++)
+            add_part(part, state, value[collide->surface->face[t->face[f]].corner[a]],
+                     corner[4 * f + a], context->scale);
+    if (part->count) collide->part_count++;
 }
 
 /* The groups that are due within the next part of the way that the list is good for. */
@@ -283,6 +392,7 @@ static void look_ahead(lar_collide *collide) {
 }
 
 void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
+    collide->time_step = context->time_step; /* of a part, where steps are divided */
     collide->part_count = collide->level_count = 0;
     collide->info.touching = 0;
     collide->info.deepest = 0;
@@ -468,7 +578,9 @@ lar_status lar_collide_create(const lar_model *model, const double *mass, const 
         return lar_fail_memory(error, sizeof *motion->search, "contact of bodies");
     }
     lar_status status = lar_contact_search_create(model, mass, local, motion->search, error);
-    const lar_contact_surface *surface = &motion->search->surface;
+    lar_contact_surface *surface = &motion->search->surface;
+    if (!status && surface->node_count > 0)
+        status = lar_contact_surface_fit(model, time_step, stable_step, surface, error);
     if (status || surface->node_count == 0) {
         lar_collide_destroy(collide);
         return status;

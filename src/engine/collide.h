@@ -12,6 +12,10 @@
  * when it was made, so searching in every step gives the same bits. Forces are rounded at the
  * corners, and the node gets minus their sum: momentum is kept to the last bit.
  *
+ * Different bodies push from a contact distance on, before they touch (contact_surface.h). Above a
+ * hollow several faces are about as close and the closest point jumps: up to LAR_CONTACT_FACES of
+ * them push together, through a mean of their points that does not jump. docs/theory.md, contact.
+ *
  * Levels. A node of a body may come to lie below that body's own faces without having come through
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
  * rest. Pushed from there it would get energy that contact never took. So the depth at which it
@@ -54,11 +58,14 @@ typedef struct lar_contact_view {
     const int32_t *slot;                     /* [contact nodes] with `place` */
 } lar_contact_view;
 
+/* Faces of a body that push a node together, at most, and whom they push. */
+enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 1 + 4 * LAR_CONTACT_FACES };
+
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_collide_part {
     int32_t count;
-    int32_t value[5]; /* 4 * local node */
-    double force[5][3];
+    int32_t value[LAR_CONTACT_PARTS]; /* 4 * local node */
+    double force[LAR_CONTACT_PARTS][3];
 } lar_collide_part;
 
 /* The level of a node that came through the face: nothing that can be measured, but not 0. */

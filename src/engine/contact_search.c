@@ -339,6 +339,24 @@ static void find_overlap(const lar_contact_surface *s, const lar_contact_list *l
     *deepest = (overlap){group->node, at, chosen.distance};
 }
 
+/* How far bodies are from others at rest: from there on nothing may push them. What touches but for
+ * rounding touches. */
+static void measure_clearance(lar_contact_surface *s, const lar_contact_list *list,
+                              double rounding) {
+    for (int32_t g = 0; g < list->group_count; g++) {
+        const lar_contact_group *group = &list->group[g];
+        int32_t own = s->node[group->node].body, other = s->face[list->face[group->first]].body;
+        if (own == other) continue;
+        for (int32_t i = 0; i < group->count; i++) {
+            lar_face_point point;
+            stand_at_rest(s, group->node, list->face[group->first + i], &point);
+            double clear = point.distance > rounding ? 0.999 * point.distance : 0;
+            s->body[own].clear = lesser(s->body[own].clear, clear);
+            s->body[other].clear = lesser(s->body[other].clear, clear);
+        }
+    }
+}
+
 /* Contact would throw the two apart, with energy from nowhere. */
 static lar_status refuse_overlap(const lar_model *model, const lar_contact_search *search,
                                  lar_error *error) {
@@ -372,6 +390,7 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
                         LAR_PAIRS_PER_NODE);
     lar_status status = refuse_overlap(model, search, error);
     if (status) return status;
+    measure_clearance(s, list, lar_overlap_rounding(&model->mesh));
     int32_t(*pair)[2] = lar_calloc((size_t)list->face_count, sizeof *pair), count = 0;
     if (!pair) return lar_fail_memory(error, 8 * (size_t)list->face_count, "pairs at rest");
     for (int32_t g = 0; g < list->group_count; g++) {

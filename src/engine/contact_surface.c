@@ -6,6 +6,8 @@
 
 #include "base/union_find.h"
 #include "divide/incidence.h"
+#include "mechanics/contact.h"
+#include "mechanics/hex8.h"
 
 /* While it is put together. */
 typedef struct draft {
@@ -151,7 +153,8 @@ static lar_status list_nodes(draft *d, const double *mass, const int32_t *local,
     for (int32_t n = 0; n < mesh->node_count; n++) {
         int32_t i = d->index_of[n];
         if (i < 0) continue;
-        s->node[i] = (lar_contact_node){n, d->body[n], d->passes[n], mass[local[n]]};
+        s->node[i] = (lar_contact_node){
+            .node = n, .body = d->body[n], .passes = d->passes[n], .mass = mass[local[n]]};
         memcpy(s->rest[i], mesh->position[n], sizeof s->rest[i]);
         s->slave_count += d->passes[n] != 0;
     }
@@ -192,7 +195,7 @@ static lar_status number_bodies(draft *d, lar_error *error) {
     s->body = lar_calloc((size_t)s->body_count, sizeof *s->body);
     if (!s->body) return lar_fail_memory(error, (size_t)s->body_count * sizeof *s->body, "bodies");
     for (int32_t b = 0; b < s->body_count; b++)
-        s->body[b] = (lar_contact_body){{INFINITY, INFINITY}};
+        s->body[b] = (lar_contact_body){{INFINITY, INFINITY}, INFINITY, 0};
     for (int32_t f = 0; f < d->model->surface.face_count; f++) {
         if (d->face_of[f] < 0) continue;
         lar_contact_face *face = &s->face[d->face_of[f]];
@@ -231,6 +234,51 @@ static void count_possible(lar_contact_surface *s) {
         for (int32_t f = 0; f < s->face_count; f++) faces[pass] += s->face[f].active >> pass & 1;
         s->possible += nodes[pass] * faces[pass];
     }
+}
+
+/* ---- springs -------------------------------------------------------------------------------- */
+
+/* The springs at a node take what its own elements leave of the step, those at the body's worst
+ * element the least (docs/theory.md, contact). */
+static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
+                             lar_contact_surface *s, lar_error *error) {
+    const lar_mesh *mesh = &model->mesh;
+    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), most = 0;
+    if (!fastest) return lar_fail_memory(error, 8 * (size_t)mesh->node_count, "springs of contact");
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        double corner[8][3];
+        lar_hex8 hex8;
+        const lar_material *material = lar_model_material_of(model, e);
+        lar_mesh_corners(mesh, e, corner);
+        lar_hex8_prepare(corner, material, &hex8);
+        double frequency = lar_hex8_frequency(&hex8, material);
+        most = fmax(most, frequency);
+        for (int a = 0; a < 8; a++) {
+            double *of = &fastest[mesh->element[e][a]];
+            *of = fmax(*of, frequency);
+        }
+    }
+    double body = lar_contact_law_for(time_step, stable_step).stiffness;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        double stable = stable_step * most / fastest[s->node[n].node];
+        s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
+    }
+    free(fastest);
+    return LAR_OK;
+}
+
+lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
+                                   lar_contact_surface *s, lar_error *error) {
+    /* What comes at this speed [m/s] is noticed a step before it touches, from no nearer and no
+     * farther than these parts of the thinnest element. */
+    static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
+    for (int32_t b = 0; b < s->body_count; b++) {
+        lar_contact_body *body = &s->body[b];
+        double least = NEAREST * body->reach[1], most = FARTHEST * body->reach[1];
+        double wanted = fmin(fmax(SPEED * time_step, least), most);
+        body->standoff = fmin(wanted, body->clear);
+    }
+    return fit_masses(model, time_step, stable_step, s, error);
 }
 
 /* ---- never together ------------------------------------------------------------------------- */

@@ -37,6 +37,9 @@ typedef struct lar_contact_face {
 typedef struct lar_contact_body {
     double reach[2]; /* thickness of the virtual body below its faces (T 2.2.8) for its own nodes,
                         half that of its thinnest element, and for others, all of it [m] */
+    double clear;    /* to the nearest other body at rest; INFINITY: none is within a layer [m] */
+    double standoff; /* the contact distance: how far apart it and others push each other already,
+                        at most [m] */
 } lar_contact_body;
 
 /* Nodes of the faces below: "contact nodes". */
@@ -44,7 +47,7 @@ typedef struct lar_contact_node {
     int32_t node; /* of the model */
     int32_t body;
     uint64_t passes; /* in which it is looked at against faces */
-    double mass;     /* [kg] */
+    double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
 } lar_contact_node;
 
 typedef struct lar_contact_surface {
@@ -83,6 +86,19 @@ static inline double lar_contact_reach(const lar_contact_surface *surface,
                                        const lar_contact_node *node, const lar_contact_face *face) {
     return surface->body[face->body].reach[node->body != face->body];
 }
+
+/* How far above a face the node is pushed already: 0 within a body, and for all nodes and faces of
+ * two bodies the same. */
+static inline double lar_contact_standoff(const lar_contact_surface *surface,
+                                          const lar_contact_node *node,
+                                          const lar_contact_face *face) {
+    double one = surface->body[node->body].standoff, other = surface->body[face->body].standoff;
+    return node->body == face->body ? 0 : one < other ? one : other;
+}
+
+/* Fits masses and contact distances to a time step. Once, after `clear` is known. */
+lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
+                                   lar_contact_surface *surface, lar_error *error);
 
 /* Whether a node and a face are never together. */
 bool lar_contact_apart(const lar_contact_surface *surface, int32_t node, int32_t face);

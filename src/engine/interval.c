@@ -54,7 +54,8 @@ static double most_of(const lar_domain *whole, const lar_tools *tools) {
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
     const lar_tool_list *list = whole->acting.touch.list;
     if (!list || step % whole->interval != 0) return false;
-    bool changed = lar_tools_divide(list, tools, step, most_of(whole, tools));
+    bool changed = lar_tools_divide(list, tools, step, (double)whole->interval * whole->time_step,
+                                    most_of(whole, tools), 1 / whole->scale);
     return lar_tools_follow(list, tools, step, step + whole->interval, whole->time_step,
                             1 / whole->scale) ||
            changed;

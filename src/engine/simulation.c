@@ -90,7 +90,7 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     state->parts = 1;
     state->listed = false;
     state->damped = state->external = state->contact = 0;
-    simulation->measured = 0;
+    simulation->measured = simulation->taken = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
     lar_acting_forget(&simulation->domain.acting);
     set_initial_displacements(simulation);
@@ -222,16 +222,19 @@ static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch 
 /* Contact may keep or lose energy, but must not have given more than it took: then the bodies would
  * have more than they began with. Surfaces that fold over themselves do that to it. What counts as
  * nothing is measured by the energy of the bodies, which is asked for only when contact is behind
- * by more than it was the last time. */
+ * by more than it was the last time, or may be: what a report has lacks half of its last step,
+ * which is taken for as much as all steps since the last report. */
 static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3;
-    double given = -simulation->report.taken;
-    if (!(given > NOTHING * simulation->measured)) return LAR_OK;
+    double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
+    simulation->taken = taken;
+    if (!(change - taken > NOTHING * simulation->measured)) return LAR_OK;
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
     lar_energy e;
     lar_simulation_energy(simulation, &e);
     simulation->measured = fmax(simulation->measured, e.kinetic + e.strain + e.hourglass);
+    double given = -e.contact;
     if (!(given > NOTHING * simulation->measured)) return LAR_OK;
     simulation->trip =
         (lar_trip){.kind = LAR_TRIP_GAIN, .step = simulation->state.step, .given = given};
@@ -271,7 +274,7 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
     simulation->trip = (lar_trip){0};
     simulation->report = (lar_report){0};
     simulation->report_steps = 0;
-    simulation->measured = 0;
+    simulation->measured = simulation->taken = 0;
     simulation->gathered = true;
     return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
 }

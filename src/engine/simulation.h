@@ -21,6 +21,7 @@ struct lar_simulation {
     lar_report report;            /* of the last advance, of all processors */
     uint64_t report_steps;        /* how many steps that was */
     double measured;              /* the most energy of the bodies when that was asked [J] */
+    double taken;                 /* by contacts, as of the last report [J] */
     struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
 };
 

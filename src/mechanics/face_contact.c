@@ -236,3 +236,23 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
         offer_crossing(segment, corner, middle, t, closest);
     }
 }
+
+double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
+                      double sum[4]) {
+    double middle[3], weight[4], all = 0;
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        closest_of_part(x, corner, middle, t, weight);
+        double distance = distance_to(x, corner, weight);
+        double count = 1 - (distance - least) / fade;
+        if (!(count > 0) || !(distance > 0)) continue;
+        double upright = height_over(x, corner, middle, t, weight) / distance;
+        if (!(upright > 0)) continue;
+        /* To the 256th. */
+        for (int i = 0; i < 8; i++) upright *= upright;
+        count *= upright < 1 ? upright : 1;
+        for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
+        all += count;
+    }
+    return all;
+}

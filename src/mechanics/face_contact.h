@@ -60,6 +60,14 @@ typedef struct lar_face_segment {
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
                               lar_face_segment *closest);
 
+/* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
+ * points of all triangles that are about as close to x as the closest of all, `least` away. Adds
+ * those of one face: to sum[] their weights of its corners, times how much each of them counts, all
+ * of which is returned. A triangle counts 1 - (distance - least) / fade, and next to nothing where
+ * x is not straight above it. */
+double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
+                      double sum[4]);
+
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
     double more = a->toward - b->toward;

@@ -38,43 +38,65 @@ static void barrier(double j, double *energy, double *slope, double *curvature) 
     *slope += *curvature * beyond;
 }
 
-/* The forces on a corner and its neighbours, and the sum of the squares of their directions. */
-static double push_corner(int a, const double edge[3][3], double volume, double slope,
-                          double force[8][3]) {
-    double square = 0, sum[3] = {0};
+/* A corner and the directions in which its volume grows. */
+typedef struct corner_span {
+    double volume;     /* at rest [m^3] */
+    double j;          /* of that, now */
+    double grad[4][3]; /* dj/dx of the corner itself and of its neighbours [1/m] */
+} corner_span;
+
+static void span_corner(const double rest[8][3], const double now[8][3], int a, corner_span *c) {
+    double edge[3][3];
+    c->volume = span(rest, a, edge);
+    c->j = span(now, a, edge) / c->volume;
+    if (!(c->j < LAR_GUARD_START)) return;
+    memset(c->grad[0], 0, sizeof c->grad[0]);
     for (int k = 0; k < 3; k++) {
-        double area[3];
-        lar_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], area);
+        lar_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], c->grad[1 + k]);
         for (int i = 0; i < 3; i++) {
-            area[i] /= volume;
-            sum[i] += area[i];
-            if (force) force[neighbour[a][k]][i] += slope * area[i];
+            c->grad[1 + k][i] /= c->volume;
+            c->grad[0][i] -= c->grad[1 + k][i];
         }
-        square += lar_dot(area, area);
     }
-    for (int i = 0; i < 3; i++)
-        if (force) force[a][i] -= slope * sum[i];
-    return square + lar_dot(sum, sum);
+}
+
+static int node_of(int a, int k) {
+    return k == 0 ? a : neighbour[a][k - 1];
 }
 
 static double wave_modulus(const lar_material *material) {
     return lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
 }
 
-void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
-                    double force[8][3], lar_guard *guard) {
-    double before[3][3], after[3][3], modulus = KAPPA * wave_modulus(material) / 8;
+void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
+                          const lar_material *material, double lead, double force[8][3],
+                          lar_guard *guard) {
+    double modulus = KAPPA * wave_modulus(material) / 8;
     *guard = (lar_guard){.least = INFINITY};
     for (int a = 0; a < 8; a++) {
-        double volume = span(rest, a, before), j = span(now, a, after) / volume;
-        if (!(j >= guard->least)) guard->least = j;
-        if (!(j < LAR_GUARD_START)) continue;
-        double energy, slope, curvature, weight = modulus * volume;
-        barrier(j, &energy, &slope, &curvature);
-        double square = push_corner(a, (const double(*)[3])after, volume, weight * slope, force);
+        corner_span c = {0};
+        span_corner(rest, now, a, &c);
+        if (!(c.j >= guard->least)) guard->least = c.j;
+        if (!(c.j < LAR_GUARD_START) || !(c.volume > 0)) continue;
+        double energy, slope, curvature, weight = modulus * c.volume, square = 0, rate = 0;
+        barrier(c.j, &energy, &slope, &curvature);
+        for (int k = 0; k < 4; k++) {
+            square += lar_dot(c.grad[k], c.grad[k]);
+            if (v) rate += lar_dot(c.grad[k], v[node_of(a, k)]);
+        }
         guard->energy += weight * energy;
         guard->stiffness += weight * curvature * square;
+        if (!force) continue;
+        double damped = fmin(slope + lead * curvature * rate, 0);
+        guard->taken -= weight * (damped - slope) * rate;
+        for (int k = 0; k < 4; k++)
+            for (int i = 0; i < 3; i++) force[node_of(a, k)][i] += weight * damped * c.grad[k][i];
     }
+}
+
+void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
+                    lar_guard *guard) {
+    lar_hex8_guard_force(rest, now, NULL, material, 0, NULL, guard);
 }
 
 /* Signs of the seven modes at node a (hex8.h). */

@@ -15,6 +15,9 @@
  * Irving, Teran, Fedkiw 2004). Above START it is zero, exactly; a body whose corners keep START of
  * their volume has the same bits with and without it.
  *
+ * A corner that is pressed together is damped as well, by the barrier's stiffness times a lead in
+ * time as in contact (mechanics/contact.h): without that corners rattle. The barrier never pulls.
+ *
  * kappa is a part of the modulus of the pressure wave, so that a barrier at work is not faster than
  * the element itself by more than its 1/x^3; divided steps (contact/tool_body.h) take that.
  */
@@ -28,13 +31,19 @@
 typedef struct lar_guard {
     double least;     /* the least j of the corners */
     double energy;    /* [J] */
+    double taken;     /* power of the damping, at most 0 [W] */
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
 } lar_guard;
 
-/* Looks at an element with corners `rest` and `now` [m]. Adds the barrier's forces dw/dx [N] to
- * `force` where that is not NULL. */
+/* Looks at an element with corners `rest` and `now` [m]. */
 void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
-                    double force[8][3], lar_guard *guard);
+                    lar_guard *guard);
+
+/* The same, and adds the barrier's forces dw/dx [N] to `force`, for corners with the velocities `v`
+ * [m/s] and a damping of `lead` seconds times the barrier's stiffness. */
+void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
+                          const lar_material *material, double lead, double force[8][3],
+                          lar_guard *guard);
 
 /* The sum of the squares of the hourglass forces c_m |q_m| [N^2] up to which the gradient in every
  * corner is the mean one but for a matrix of norm 1: so much of it is what corners may be off, in

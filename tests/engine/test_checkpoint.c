@@ -391,7 +391,7 @@ static void forged_files_are_refused(void **unused) {
         {140, 4, 300, "sizes"},           /* holds */
         {DIVISION, 4, 0, "tool"},         /* parts of a step */
         {DIVISION, 4, 3, "tool"},
-        {DIVISION, 4, 16, "tool"},
+        {DIVISION, 4, 64, "tool"},
         {DIVISION, 4, -2, "tool"},
         {DIVISION + 4, 4, 6, "tool"},     /* and before */
         {DIVISION + 8, 8, 1e300, "tool"}, /* since when */
@@ -401,9 +401,9 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 16, 8, INFINITY, "tool"},
         {DIVISION + 24, 8, NAN, "tool"}, /* need */
         {DIVISION + 24, 8, -1, "tool"},
-        {DIVISION + 32, 4, -1, "tool"}, /* calm */
-        {DIVISION + 32, 4, 9, "tool"},
-        {DIVISION + 36, 4, 1, "tool"},
+        {DIVISION + 32, 8, -1, "tool"}, /* and lately */
+        {DIVISION + 32, 8, 1025, "tool"},
+        {DIVISION + 32, 8, NAN, "tool"},
         {TOOL, 8, INFINITY, "tool"}, /* a position */
         {TOOL, 8, -1e200, "tool"},
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */

@@ -97,7 +97,15 @@ static void empty_lane(load *l, int n) {
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
                     int64_t *force, const lar_hex8_limits *limits, bool watch) {
     lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, count, blocks};
-    return kernels[k]->recover(&run, u, force, limits, watch);
+    enum { MOST = 64 };
+    static int32_t lane[MOST * LAR_BLOCK];
+    static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
+    assert_true(count <= MOST);
+    for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
+    lar_hex8_watch listed = {.limit = limit, .lane = lane};
+    int64_t found = kernels[k]->recover(&run, u, force, limits, watch ? &listed : NULL);
+    /* The first lane of those of the block that is named. */
+    return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
 static int64_t recover(const load *l, int k, bool watch, const lar_hex8_limits *limits, forces *f) {

@@ -120,7 +120,8 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     for (int n = 0; n < NODES; n++) w->push[n] = w->mass[n] > 0 ? DT / (w->mass[n] * SCALE) : 0;
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
-    const lar_motion motion = {.keep = 0.9999, .dt = DT, .speed = 100, .push = 1, .drift = {0, 0, -9.81 * DT}};
+    const lar_motion motion = {
+        .keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}, .push = 1};
     bool boxes = as->shape == LAR_SHAPE_BOX;
     const lar_block_run run = {.law = law,
                                .shape = as->shape,
@@ -129,10 +130,15 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
                                .streamed = as->turn == 1,
                                .count = BLOCKS,
                                .blocks = boxes ? (const void *)w->box : w->general};
+    static int32_t lane[BLOCKS * LAR_BLOCK];
+    static double limit[BLOCKS * LAR_BLOCK] __attribute__((aligned(64)));
+    for (int i = 0; i < BLOCKS * LAR_BLOCK; i++) limit[i] = INFINITY;
     bool good = true;
     double damped = 0, fastest = 0;
     for (int step = 0; step < STEPS && good; step++) {
-        good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, step % 10 == 0) < 0 &&
+        lar_hex8_watch watch = {.limit = limit, .lane = lane};
+        good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits,
+                                step % 10 == 0 ? &watch : NULL) < 0 &&
                kernels->update(&motion, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
                                w->push, step % 10 ? NULL : w->mass, &damped, &fastest);
     }
