@@ -1,6 +1,5 @@
 #include "contact/tool_body.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -201,7 +200,7 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
  * harder, interval by interval, as long as no more parts are needed than there may be. */
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
                      double fading, double unit) {
-    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4, HARDEST = 64;
+    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4;
     double deepest = 0;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
@@ -213,7 +212,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
             depth = fmin(depth, SOFT);
         deepest = fmax(deepest, depth);
     }
-    if (deepest > SOFT) return fmin(FASTER * hardness, HARDEST);
+    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_HARDNESS_MOST);
     return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
@@ -224,7 +223,7 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness = harden(list, tools, d->hardness, fading, unit);
-    d->lately = fmax(fmin(d->need, DBL_MAX), fading * d->lately);
+    d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;
     int32_t wanted = 1;
     while (wanted < LAR_PARTS_MOST &&
@@ -245,10 +244,10 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_limits *limits = &list->limits[i];
         lar_tool_follower *follower = &tools->follower[i];
-        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
-        mean_load mean =
-            mean_of(&follower->felt, limits, tools->division.lately, unit, &follower->load);
+        lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
+        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
+        mean_load mean = mean_of(&felt, limits, tools->division.lately, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

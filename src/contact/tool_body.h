@@ -38,6 +38,9 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
 enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
+/* How hard tools become, and up to what elements' need is remembered: more than any number of parts
+ * bears makes no difference, and must be over some time. */
+enum { LAR_HARDNESS_MOST = 64, LAR_NEED_MOST = LAR_PARTS_MOST * LAR_PARTS_MOST };
 uint64_t lar_tool_interval(double time_step);
 
 /* Asks a tool to go where `motion` says; it does when nothing keeps it. */

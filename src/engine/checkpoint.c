@@ -11,12 +11,13 @@
 
 #include "base/folder.h"
 #include "base/hash.h"
+#include "contact/tool_body.h"
 #include "engine/identity.h"
 
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
 static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
     char magic[8];
@@ -32,13 +33,17 @@ typedef struct file_head {
 /* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
 _Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
 _Static_assert(sizeof(file_head) == 144, "the format");
+_Static_assert(sizeof(lar_step_division) == 40, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
+_Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 
 typedef double node_vector[3];
 
 static size_t file_bytes(size_t tools, size_t holds, size_t nodes) {
-    return sizeof(file_head) + tools * sizeof(lar_tool_motion) + holds * sizeof(lar_hold) +
-           nodes * (sizeof(double) + 2 * sizeof(node_vector)) + sizeof(uint64_t);
+    return sizeof(file_head) + sizeof(lar_step_division) +
+           tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+           holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
+           sizeof(uint64_t);
 }
 
 uint64_t lar_checkpoint_sum(const void *data, size_t words) {
@@ -82,17 +87,26 @@ static lar_status check_finite(const char *path, const lar_domain *whole, const 
                     path);
 }
 
+static unsigned char *append(unsigned char *at, const void *from, size_t bytes) {
+    memcpy(at, from, bytes);
+    return at + bytes;
+}
+
+/* Returns where the nodes begin. */
+static unsigned char *fill_tools(unsigned char *at, const lar_tools *tools) {
+    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    at = append(at, &tools->division, sizeof tools->division);
+    at = append(at, tools->motion, count * sizeof tools->motion[0]);
+    at = append(at, tools->follower, count * sizeof tools->follower[0]);
+    return append(at, tools->hold, holds * sizeof tools->hold[0]);
+}
+
 static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
                            size_t bytes) {
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    unsigned char *at = data + sizeof(file_head);
-    size_t motions = (size_t)tools->count * sizeof tools->motion[0];
-    size_t holds = (size_t)tools->hold_count * sizeof tools->hold[0];
-    memcpy(at, tools->motion, motions);
-    memcpy(at + motions, tools->hold, holds);
-    double *level = (double *)(void *)(at + motions + holds);
+    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), tools);
     node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
     for (lar_gid g = 0; g < nodes; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
@@ -340,19 +354,59 @@ static bool good_hold(const lar_hold *hold, const file_head *head, const lar_mod
            hold->stiffness >= 0;
 }
 
-/* Tools and holds; *at moves behind them. */
-static bool take_tools(const file_head *head, const lar_model *model, const unsigned char **at,
+static bool power_of_two(int32_t parts) {
+    return parts >= 1 && parts <= LAR_PARTS_MOST && (parts & (parts - 1)) == 0;
+}
+
+static bool good_division(const lar_step_division *d, const file_head *head) {
+    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
+           d->hardness >= 1 && d->hardness <= (double)d->parts * d->parts &&
+           d->hardness <= LAR_HARDNESS_MOST && d->need >= 0 && d->lately >= 0 &&
+           d->lately <= LAR_NEED_MOST;
+}
+
+/* A way between two places is a number. Empty hands, which go no way, may be anywhere. */
+static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
+    static const double FARTHEST = 1e100;
+    bool near = true;
+    for (int i = 0; i < 3 && tool->shape != LAR_TOOL_HAND; i++)
+        near = near && fabs(motion->from.position[i]) <= FARTHEST &&
+               fabs(motion->to.position[i]) <= FARTHEST;
+    return near;
+}
+
+/* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
+static bool good_follower(const lar_tool *tool, const lar_tool_follower *follower) {
+    const lar_tool_felt *felt = &follower->felt;
+    int32_t lagging_most = tool->shape != LAR_TOOL_HAND;
+    return good_motion(&follower->hand) && follower->hand.holding == 0 &&
+           near_enough(tool, &follower->hand) && felt->depth >= 0 && felt->depth <= tool->radius &&
+           felt->steps <= STEPS_MOST && follower->load >= 0 && isfinite(follower->load) &&
+           follower->lagging >= 0 && follower->lagging <= lagging_most && follower->padding == 0;
+}
+
+static const unsigned char *extract(const unsigned char *at, void *to, size_t bytes) {
+    memcpy(to, at, bytes);
+    return at + bytes;
+}
+
+/* What fill_tools writes; *at moves behind it. */
+static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
-    bool good = true;
+    const lar_tool_list *list = whole->acting.touch.list;
     *tools = (lar_tools){.count = head->tools, .hold_count = head->holds};
-    for (int32_t i = 0; i < tools->count; i++, *at += sizeof tools->motion[i]) {
-        memcpy(&tools->motion[i], *at, sizeof tools->motion[i]);
-        good = good && good_motion(&tools->motion[i]);
-    }
-    for (int32_t i = 0; i < tools->hold_count; i++, *at += sizeof tools->hold[i]) {
-        memcpy(&tools->hold[i], *at, sizeof tools->hold[i]);
-        good = good && good_hold(&tools->hold[i], head, model);
-    }
+    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    *at = extract(*at, &tools->division, sizeof tools->division);
+    *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
+    *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
+    *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
+    bool good = good_division(&tools->division, head);
+    for (int32_t i = 0; i < tools->count; i++)
+        good = good && good_motion(&tools->motion[i]) &&
+               near_enough(&list->tool[i], &tools->motion[i]) &&
+               good_follower(&list->tool[i], &tools->follower[i]);
+    for (int32_t i = 0; i < tools->hold_count; i++)
+        good = good && good_hold(&tools->hold[i], head, whole->model);
     return good;
 }
 
@@ -373,8 +427,8 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
                             .damped = head.damped,
                             .contact = head.contact};
     const unsigned char *at = bytes->data + sizeof head;
-    if (!take_tools(&head, model, &at, &found.tools))
-        return refuse(error, path, "has a tool at no place; take another checkpoint");
+    if (!take_tools(&head, whole, &at, &found.tools))
+        return refuse(error, path, "has a tool that cannot be so; take another checkpoint");
     found.level = (const double *)(const void *)at;
     found.u = (const node_vector *)(const void *)(found.level + nodes);
     found.v = found.u + nodes;

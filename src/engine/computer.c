@@ -262,7 +262,7 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
         lar_trip_examine(&p->domain, &worker->state, &worker->trip);
         lar_processor_ask_stop(p, stop);
     }
-    if (seat == 0 && computer->first == 0 && computer->watch &&
+    if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
         !computer->watch(computer->watch_context, done)) {
         computer->called_off = true;
         lar_processor_ask_stop(p, stop);
@@ -373,6 +373,7 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     /* A trip before the first stretch leaves no step over which these could be a mean. */
     memset(computer->report.tool, 0, sizeof computer->report.tool);
     lar_interval_restart(&computer->interval);
+    if (steps == 0) return LAR_OK; /* what is decided before a step is decided once */
     for (bool first = true; first || *step < end; first = false) {
         uint64_t begin = *step;
         status = lar_contact_refresh(computer, trip, error);

@@ -25,7 +25,8 @@ static double need_of(const lar_domain *domain, lar_gid e, const double rest[8][
     const lar_element_rate *rate = &domain->rate[e];
     double growth = lar_hex8_growth(rest, now, lar_model_material_of(domain->model, e));
     double square = rate->square * growth + (1 + 2 * LEAD) * guard->stiffness / rate->mass;
-    return 0.25 * domain->time_step * domain->time_step * square;
+    double need = 0.25 * domain->time_step * domain->time_step * square;
+    return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
 
 void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,

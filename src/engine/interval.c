@@ -5,12 +5,6 @@
 
 #include "contact/tool_body.h"
 
-static bool has_bodies(const lar_tool_list *list) {
-    for (int32_t i = 0; list && i < list->count; i++)
-        if (list->tool[i].shape != LAR_TOOL_HAND && list->limits[i].drag > 0) return true;
-    return false;
-}
-
 void lar_interval_restart(lar_interval *interval) {
     memset(interval->seen, 0, sizeof interval->seen);
 }
@@ -34,10 +28,10 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
         lar_tool_sum *before = &interval->seen[t];
         lar_tool_felt *felt = &tools->follower[t].felt;
         for (int k = 0; k < 3; k++) {
-            felt->force[k] += whole_number(now->force[k] - before->force[k]);
-            felt->torque[k] += whole_number(now->torque[k] - before->torque[k]);
+            felt->force[k] = whole_number(felt->force[k] + now->force[k] - before->force[k]);
+            felt->torque[k] = whole_number(felt->torque[k] + now->torque[k] - before->torque[k]);
         }
-        felt->squeeze += now->squeeze - before->squeeze;
+        felt->squeeze = whole_number(felt->squeeze + now->squeeze - before->squeeze);
         felt->depth = now->depth > felt->depth ? now->depth : felt->depth;
         felt->steps += steps;
         *before = *now;
@@ -67,7 +61,6 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     division->decided = step;
     bool changed =
         lar_tools_divide(list, tools, step, seconds, most_of(whole, tools), 1 / whole->scale);
-    if (!has_bodies(list)) return changed;
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, 1 / whole->scale) ||
            changed;

@@ -17,7 +17,8 @@ lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
     return lar_simulation_take_up(simulation, error);
 }
 
-/* Only what carries the state from one step to the next. */
+/* Only what carries the state from one step to the next. A run that breaks off may do so between
+ * the parts of a step; copies are made between steps. */
 static void copy_state(const lar_state *from, lar_state *to) {
     to->step = from->step;
     to->part = 0;

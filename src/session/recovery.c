@@ -129,6 +129,7 @@ static void open_hands(const lar_session *session, lar_tools *tools) {
         if (!is_hand(session, i)) continue;
         motion->holding = 0;
         motion->from.opening = motion->to.opening = 1;
+        tools->follower[i].hand = *motion;
     }
 }
 

@@ -378,20 +378,55 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
+    enum { DIVISION = 144, TOOL = 184, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
+    enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
         size_t at, size;
         double value; /* as a double, or as a 32-bit integer */
         const char *why;
     } forged[] = {
-        {96, 8, 1e300, "numbers beyond"},     /* the step */
-        {104, 8, NAN, "numbers beyond"},      /* work */
-        {136, 4, 3, "sizes"},                 /* tools */
-        {140, 4, 300, "sizes"},               /* holds */
-        {144, 8, INFINITY, "tool"},           /* a position */
-        {144 + 24, 8, 0.5, "tool"},           /* an orientation */
-        {144 + 56, 8, 1.5, "tool"},           /* an opening */
-        {144 + 128, 8, 1e300, "tool"},        /* the step at which it began */
-        {144 + 144, 4, 2, "tool"},            /* whether it holds */
+        {96, 8, 1e300, "numbers beyond"}, /* the step */
+        {104, 8, NAN, "numbers beyond"},  /* work */
+        {136, 4, 3, "sizes"},             /* tools */
+        {140, 4, 300, "sizes"},           /* holds */
+        {DIVISION, 4, 0, "tool"},         /* parts of a step */
+        {DIVISION, 4, 3, "tool"},
+        {DIVISION, 4, 64, "tool"},
+        {DIVISION, 4, -2, "tool"},
+        {DIVISION + 4, 4, 6, "tool"},     /* and before */
+        {DIVISION + 8, 8, 1e300, "tool"}, /* since when */
+        {DIVISION + 16, 8, NAN, "tool"},  /* hardness */
+        {DIVISION + 16, 8, 0.5, "tool"},
+        {DIVISION + 16, 8, 65, "tool"},
+        {DIVISION + 16, 8, INFINITY, "tool"},
+        {DIVISION + 24, 8, NAN, "tool"}, /* need */
+        {DIVISION + 24, 8, -1, "tool"},
+        {DIVISION + 32, 8, -1, "tool"}, /* and lately */
+        {DIVISION + 32, 8, 1025, "tool"},
+        {DIVISION + 32, 8, NAN, "tool"},
+        {TOOL, 8, INFINITY, "tool"}, /* a position */
+        {TOOL, 8, -1e200, "tool"},
+        {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */
+        {TOOL + 56, 8, 1.5, "tool"},    /* an opening */
+        {TOOL + 128, 8, 1e300, "tool"}, /* the step at which it began */
+        {TOOL + 144, 4, 2, "tool"},     /* whether it holds */
+        {FOLLOWER, 8, NAN, "tool"},     /* where it was asked to go */
+        {FOLLOWER + 64, 8, 1e200, "tool"},
+        {FOLLOWER + 24, 8, 0.5, "tool"},
+        {FOLLOWER + 64 + 56, 8, -1, "tool"},
+        {FOLLOWER + 136, 8, -1, "tool"},
+        {FOLLOWER + 144, 4, 1, "tool"}, /* the hand itself does not hold */
+        {FOLLOWER + 148, 4, 1, "tool"},
+        {FELT + 56, 8, NAN, "tool"}, /* depth */
+        {FELT + 56, 8, -1e-3, "tool"},
+        {FELT + 56, 8, 1, "tool"},
+        {FELT + 64, 8, 1e300, "tool"},    /* steps */
+        {FELT + 72, 8, INFINITY, "tool"}, /* load */
+        {FELT + 72, 8, -1, "tool"},
+        {FELT + 80, 4, 2, "tool"}, /* lagging */
+        {FELT + 80, 4, -1, "tool"},
+        {FELT + 84, 4, 1, "tool"},
+        {HAND + 152 + 80, 4, 1, "tool"},      /* hands do not lag */
         {bytes.size - 16, 8, NAN, "numbers"}, /* a velocity */
         {bytes.size - 16, 8, 3, "hash"},
         {level, 8, -1e-3, "numbers"}, /* from the side, outside */

@@ -20,7 +20,7 @@ enum {
     AT_STEP = 96,
     AT_HASH = 128,
     AT_COUNTS = 136,
-    AT_TOOLS = 144
+    AT_DIVISION = 144
 };
 
 static void load(const lar_bytes *bytes) {
@@ -55,8 +55,9 @@ static void repair(lar_bytes *bytes) {
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
     size_t levels = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
     if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_HOLDS_MOST &&
-        last == AT_TOOLS + 3 * sizeof(lar_tool_motion) + (size_t)counts[1] * sizeof(lar_hold) +
-                    levels + values) {
+        last == AT_DIVISION + sizeof(lar_step_division) +
+                    3 * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+                    (size_t)counts[1] * sizeof(lar_hold) + levels + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));
         for (size_t n = 0; n < NODES; n++) {
             uint64_t level = word_at(bytes, last - values - levels + 8 * n);
@@ -78,7 +79,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bytes.data[size] = 0;
     load(&bytes);
     bytes.size -= bytes.size % 8;
-    if (bytes.size >= AT_TOOLS + 8) {
+    if (bytes.size >= AT_DIVISION + 8) {
         repair(&bytes);
         load(&bytes);
     }
