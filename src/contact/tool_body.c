@@ -13,9 +13,11 @@
 static const double FORCE_MOST = 8;
 /* Pressure that tissue bears under a tool, in shear moduli; on the tool's cross-section and half an
  * element around it. */
-static const double PRESSURE_MOST = 20;
+static const double PRESSURE_MOST = 6;
 /* Contact must bear the limit at a depth at which the tool's middle is well outside. */
-static const double DEPTH_MOST = 0.5, BEARS = 0.3;
+static const double DEPTH_MOST = 0.5, BEARS = 0.45;
+/* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
+static const double NEED_MOST = 100;
 static const double GRASP_SHARE = 0.5;
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
@@ -67,8 +69,8 @@ typedef struct mean_load {
     double excess;              /* how many times more than may be, at least 1 */
 } mean_load;
 
-static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double unit,
-                         double *load) {
+static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double need,
+                         double unit, double *load) {
     mean_load mean = {.excess = 1};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
@@ -81,8 +83,9 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     double grasp = mean.squeeze / limits->grasp;
     double depth = felt->depth / limits->depth;
     double most = fmax(fmax(force, turn), grasp);
-    *load = fmax(most, depth);
-    if (depth > 1 && depth > most && most > 0) mean.excess = depth / most;
+    double other = fmax(depth, most > 0 ? need / NEED_MOST : 0);
+    *load = fmax(most, other);
+    if (other > 1 && other > most && most > 0) mean.excess = other / most;
     return mean;
 }
 
@@ -204,19 +207,19 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
  * harder, interval by interval, as long as no more parts are needed than there may be. */
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
                      double fading, double unit) {
-    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4;
+    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4, HARDEST = 64;
     double deepest = 0;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
         double load, depth = felt->depth / list->tool[i].radius;
         if (!(depth > 0)) continue;
-        mean_load mean = mean_of(felt, &list->limits[i], unit, &load);
+        mean_load mean = mean_of(felt, &list->limits[i], 0, unit, &load);
         /* One that presses too hard gives way before it is made harder. */
         if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
             depth = fmin(depth, SOFT);
         deepest = fmax(deepest, depth);
     }
-    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_PARTS_MOST * LAR_PARTS_MOST);
+    if (deepest > SOFT) return fmin(FASTER * hardness, HARDEST);
     return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
@@ -249,7 +252,8 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         const lar_tool_limits *limits = &list->limits[i];
         lar_tool_follower *follower = &tools->follower[i];
         if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
-        mean_load mean = mean_of(&follower->felt, limits, unit, &follower->load);
+        mean_load mean =
+            mean_of(&follower->felt, limits, tools->division.lately, unit, &follower->load);
         follower->felt = (lar_tool_felt){0};
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }

@@ -48,7 +48,7 @@ typedef struct lar_tool_felt {
 
 /* Forces on tools are summed in shares of a step, so that a part of a divided one counts for what
  * it is: as many as parts, at most. */
-enum { LAR_STEP_SHARES = 8 };
+enum { LAR_STEP_SHARES = 32 };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {

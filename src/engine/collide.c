@@ -283,6 +283,7 @@ static void look_ahead(lar_collide *collide) {
 }
 
 void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
+    collide->time_step = context->time_step; /* of a part, where steps are divided */
     collide->part_count = collide->level_count = 0;
     collide->info.touching = 0;
     collide->info.deepest = 0;
