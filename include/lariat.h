@@ -457,7 +457,7 @@ LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, i
                                              lar_tool_force *force, lar_error *error);
 
 /* Strained elements and tools that press hard need shorter steps: for as long as they do, every
- * step is computed in 2, 4 or 8 parts. Now; 1: steps are not divided. */
+ * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
 LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
  * (`most`; may be NULL). Going back, loading and a reset do not change these. */
