@@ -211,6 +211,11 @@ typedef struct lar_tool_force {
     double torque[3]; /* about the tip [N m], likewise */
     int32_t touching; /* surface points that it touched in the last step */
     int32_t held;     /* surface points that it has hold of */
+    double limit;     /* what it bears before it stays behind its hand [N]; 0 for hands: none */
+    double depth;     /* the deepest tissue point in it in the last advance [m]; 0: none */
+    double apart;     /* from its tip to where its hand asks the tip to be, now [m] */
+    int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
+                         back to it; else 0 */
 } lar_tool_force;
 
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
@@ -451,6 +456,13 @@ LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, in
 LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                              lar_tool_force *force, lar_error *error);
 
+/* Strained elements and tools that press hard need shorter steps: for as long as they do, every
+ * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
+LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
+/* How many steps were divided since the simulation was created, and into how many parts at most
+ * (`most`; may be NULL). Going back, loading and a reset do not change these. */
+LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most);
+
 /* What the search for contact did since the start, in pairs of a node and a face. */
 typedef struct lar_contact_info {
     uint64_t possible; /* every node against every face in every step */
@@ -553,10 +565,21 @@ LAR_API lar_status lar_session_record(lar_session *session, const char *path, la
  * has a device (lar_session_attach) does not listen. */
 LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
                                          const lar_tool_pose *pose, lar_error *error);
-/* Of the last tick: pose and force, either may be NULL. */
+/* Of the last tick: pose and force, either may be NULL. The pose is where the tool is: tissue may
+ * keep it from where its hand asks it to be. */
 LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
                                           lar_tool_pose *pose, lar_tool_force *force,
                                           lar_error *error);
+
+/* What a tool had to bear since the session was opened. */
+typedef struct lar_tool_load {
+    double force; /* the largest of all ticks [N] */
+    double limit; /* lar_tool_force.limit [N] */
+    int reached;  /* not 0: it was kept from following its hand (lar_tool_force.limited) */
+} lar_tool_load;
+
+LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t tool,
+                                         lar_tool_load *load, lar_error *error);
 
 /* Connects a tool with a device for as long as the session lives (docs/devices.md):
  *     "script:FILE.csv"     positions at times
@@ -608,14 +631,16 @@ typedef struct lar_session_status {
                                                        given up, and counted in `skipped` */
     double skipped;
     int recording;
-    lar_status error;    /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
-                            broke and did not go back (stop_when_unstable, or nobody has moved a
-                            tool since the start), reset or load takes it up again;
-                            LAR_ERROR_PEER: a processor is lost, nothing but closing is left */
-    char message[1016];  /* the same as a sentence; "" */
-    uint64_t recoveries; /* how often the run broke and went back to a sound state by itself,
-                            since the session was opened */
-    char recovery[1016]; /* the last time: "went back 0.62 s to step 15800: " and why; "" */
+    lar_status error;       /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
+                               broke and did not go back (stop_when_unstable, or nobody has moved a
+                               tool since the start), reset or load takes it up again;
+                               LAR_ERROR_PEER: a processor is lost, nothing but closing is left */
+    char message[1016];     /* the same as a sentence; "" */
+    uint64_t recoveries;    /* how often the run broke and went back to a sound state by itself,
+                               since the session was opened */
+    char recovery[1016];    /* the last time: "went back 0.62 s to step 15800: " and why; "" */
+    int32_t step_parts;     /* lar_simulation_step_parts at the end of the last tick */
+    uint64_t divided_steps; /* steps that were divided, since the session was opened */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);

@@ -60,6 +60,8 @@ static void write_contact(json_writer *json, const lar_simulation *simulation) {
 
 void run_report_json(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
+    int32_t most_parts;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &most_parts);
     char hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
     json_writer json = json_begin(out);
@@ -85,6 +87,8 @@ void run_report_json(const run_report *report, FILE *out) {
     json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     write_contact(&json, simulation);
+    json_integer(&json, "divided_steps", (int64_t)divided);
+    json_integer(&json, "most_parts", most_parts);
     json_text(&json, "state_hash", hash);
     json_boolean(&json, "verify", report->verify);
     json_integer(&json, "frames", report->frames);
@@ -122,6 +126,15 @@ static void print_contact(const lar_simulation *simulation, FILE *out) {
             fmax(tested, LEAST));
 }
 
+/* Nothing where steps stayed whole. */
+static void print_parts(const lar_simulation *simulation, FILE *out) {
+    int32_t most;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &most);
+    if (divided > 0)
+        fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", divided,
+                (int)most);
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
@@ -130,6 +143,7 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     fprintf(out, "; external %.4g\n", energy.external);
     print_contact(report->simulation, out);
+    print_parts(report->simulation, out);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
 }
 

@@ -248,6 +248,21 @@ static void announce(view *v, const lar_session_status *s, double at) {
     v->state = s->state;
 }
 
+/* At most VIEW_TOOLS: as many as there can be. */
+static void note_tools(view *v) {
+    view_report *r = &v->report;
+    for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation) && r->tools < VIEW_TOOLS;
+         i++) {
+        view_tool *tool = &r->tool[r->tools];
+        lar_tool_info info;
+        if (lar_simulation_tool(v->simulation, i, &info, NULL) || info.shape == LAR_TOOL_HAND ||
+            lar_session_tool_load(v->session, i, &tool->load, NULL))
+            continue;
+        tool->name = info.name;
+        r->tools++;
+    }
+}
+
 /* At most VIEW_DEVICES: as many as there can be tools. */
 static void note_devices(view *v) {
     view_report *r = &v->report;
@@ -288,6 +303,7 @@ static void look_after(view *v) {
     clear_progress(v);
     v->report.elapsed = now() - begin;
     lar_session_status_get(v->session, &v->report.status);
+    note_tools(v);
     note_devices(v);
 }
 

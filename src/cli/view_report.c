@@ -17,6 +17,35 @@ static void write_times(json_writer *json, const char *name, double p50, double 
     json_close(json);
 }
 
+static int32_t most_parts(const view_report *report) {
+    int32_t most;
+    lar_simulation_divided_steps(report->simulation, &most);
+    return most;
+}
+
+static void write_tools(json_writer *json, const view_report *report) {
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; i < report->tools; i++) {
+        const lar_tool_load *load = &report->tool[i].load;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", report->tool[i].name);
+        json_number(json, "largest_force", load->force);
+        json_number(json, "limit", load->limit);
+        json_boolean(json, "limit_reached", load->reached != 0);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void print_tools(const view_report *report, FILE *out) {
+    for (int32_t i = 0; i < report->tools; i++) {
+        const lar_tool_load *load = &report->tool[i].load;
+        fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s\n", "tool",
+                report->tool[i].name, load->force, load->limit,
+                load->reached ? "; the limit was reached" : "");
+    }
+}
+
 /* VIEW_DEVICES at most. Packets are counted for devices on the network only. */
 static void write_devices(json_writer *json, const view_report *report) {
     json_open(json, "devices", '[');
@@ -88,7 +117,10 @@ void view_report_json(const view_report *report, FILE *out) {
     json_number(&json, "skipped", s->skipped);
     json_integer(&json, "recoveries", (int64_t)s->recoveries);
     json_text(&json, "recovery", s->recovery);
+    json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
+    json_integer(&json, "most_parts", most_parts(report));
     json_integer(&json, "viewers", report->viewers_most);
+    write_tools(&json, report);
     write_devices(&json, report);
     json_text(&json, "state_hash", hash);
     json_end(&json);
@@ -121,6 +153,10 @@ void view_report_table(const view_report *report, FILE *out) {
     if (s->recoveries > 0)
         fprintf(out, "%-17s%" PRIu64 "; the last time it %s\n", "recoveries", s->recoveries,
                 s->recovery);
+    if (s->divided_steps > 0)
+        fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", s->divided_steps,
+                (int)most_parts(report));
+    print_tools(report, out);
     print_devices(report, out);
     fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));

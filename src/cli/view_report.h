@@ -8,7 +8,13 @@
 #include "lariat.h"
 #include "study/parallel.h"
 
-enum { VIEW_DEVICES = 16 };
+enum { VIEW_DEVICES = 16, VIEW_TOOLS = 16 };
+
+/* A tool that is no hand, and what it had to bear. */
+typedef struct view_tool {
+    const char *name; /* the simulation's */
+    lar_tool_load load;
+} view_tool;
 
 /* A tool that has a device. */
 typedef struct view_device {
@@ -26,6 +32,8 @@ typedef struct view_report {
     double pace, elapsed;             /* asked for at the start; [s] */
     int64_t slow_times;               /* that slow motion began */
     int32_t viewers_most;             /* at once */
+    int32_t tools;
+    view_tool tool[VIEW_TOOLS];
     int32_t devices;
     view_device device[VIEW_DEVICES];
 } view_report;

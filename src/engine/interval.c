@@ -7,6 +7,7 @@
 
 void lar_interval_restart(lar_interval *interval) {
     memset(interval->seen, 0, sizeof interval->seen);
+    memset(interval->depth, 0, sizeof interval->depth);
 }
 
 /* Far beyond what a tool may bear; then the exact number does not matter. */
@@ -22,6 +23,9 @@ static double larger(double a, double b) {
 
 void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
                           lar_tools *tools) {
+    int32_t parts = tools->division.parts;
+    if (parts > 1) interval->divided += steps;
+    if (steps > 0 && parts > interval->parts) interval->parts = parts;
     tools->division.need = larger(tools->division.need, report->need);
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_sum *now = &report->tool[t];
@@ -34,6 +38,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
         felt->squeeze = whole_number(felt->squeeze + now->squeeze - before->squeeze);
         felt->depth = now->depth > felt->depth ? now->depth : felt->depth;
         felt->steps += steps;
+        interval->depth[t] = fmax(interval->depth[t], now->depth);
         *before = *now;
     }
 }

@@ -39,6 +39,9 @@ lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error);
 
+/* Where a tool's hand asks it to be now; lar_simulation_tool_pose says where it is. */
+void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, lar_tool_pose *pose);
+
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 

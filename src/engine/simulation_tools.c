@@ -1,6 +1,8 @@
 /* Tools and contact of a simulation, as the public header has them. */
 #include <math.h>
+#include <string.h>
 
+#include "base/vector.h"
 #include "contact/tool_body.h"
 #include "engine/hold.h"
 #include "engine/simulation.h"
@@ -46,6 +48,14 @@ lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t to
         lar_tool_at(&simulation->tools.motion[tool], lar_simulation_steps(simulation),
                     simulation->domain.time_step, pose, NULL);
     return status;
+}
+
+void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
+                               lar_tool_pose *pose) {
+    const lar_tools *tools = &simulation->tools;
+    const lar_tool_follower *follower = &tools->follower[tool];
+    lar_tool_at(follower->lagging ? &follower->hand : &tools->motion[tool],
+                lar_simulation_steps(simulation), simulation->domain.time_step, pose, NULL);
 }
 
 /* ---- moving -------------------------------------------------------------------------------- */
@@ -140,6 +150,14 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
 
 /* ---- what came of it ----------------------------------------------------------------------- */
 
+static const lar_interval *interval_of(const lar_simulation *simulation) {
+    return simulation->computer ? &simulation->computer->interval : &simulation->interval;
+}
+
+static double limit_of(const lar_tool_list *list, int32_t tool) {
+    return list->tool[tool].shape == LAR_TOOL_HAND ? 0 : list->limits[tool].force;
+}
+
 lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                      lar_tool_force *force, lar_error *error) {
     lar_status status = check_tool(simulation, tool, force, error);
@@ -147,8 +165,20 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     const lar_tool_sum *sum = &simulation->report.tool[tool];
     double steps = simulation->report_steps ? (double)simulation->report_steps : 1;
     double unit = 1 / (LAR_STEP_SHARES * simulation->domain.scale * steps);
-    *force =
-        (lar_tool_force){.touching = sum->touching, .held = holds_of(&simulation->tools, tool)};
+    const lar_tools *tools = &simulation->tools;
+    const lar_interval *interval = interval_of(simulation);
+    lar_tool_pose now, hand;
+    double apart[3];
+    lar_simulation_tool_pose(simulation, tool, &now, NULL);
+    lar_simulation_tool_asked(simulation, tool, &hand);
+    lar_minus(hand.position, now.position, apart);
+    memset(force, 0, sizeof *force); /* gaps, too */
+    force->touching = sum->touching;
+    force->held = holds_of(tools, tool);
+    force->limit = limit_of(&simulation->list, tool);
+    force->depth = simulation->report_steps ? interval->depth[tool] : 0;
+    force->apart = lar_length(apart);
+    force->limited = tools->follower[tool].lagging != 0;
     for (int i = 0; i < 3; i++) {
         force->force[i] = (double)sum->force[i] * unit;
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
@@ -158,4 +188,17 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
 
 void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {
     *info = simulation->report.contact;
+}
+
+/* ---- divided steps ------------------------------------------------------------------------- */
+
+int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
+    int32_t parts = simulation->tools.division.parts;
+    return parts > 1 ? parts : 1;
+}
+
+uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
+    const lar_interval *interval = interval_of(simulation);
+    if (most) *most = interval->parts > 1 ? interval->parts : 1;
+    return interval->divided;
 }

@@ -72,6 +72,18 @@ lar_status lar_session_tool_force(const lar_session *session, int32_t tool, lar_
     return LAR_OK;
 }
 
+lar_status lar_session_tool_load(const lar_session *session, int32_t tool, lar_tool_load *load,
+                                 lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !load)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_tool_load needs a place for the answer");
+    if (status) return status;
+    *load = look_at_view(session)->tool[tool].load;
+    end_look(session);
+    return LAR_OK;
+}
+
 lar_status lar_session_device(const lar_session *session, int32_t tool, lar_device_status *out,
                               lar_error *error) {
     lar_status status = lar_session_check_tool(session, tool, error);

@@ -160,6 +160,8 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
     lar_json_text(json, "recovery", s->recovery);
+    lar_json_integer(json, "step_parts", s->step_parts);
+    lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
 }
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
@@ -181,6 +183,10 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
         lar_json_vector(json, "torque", force->torque, 3);
         lar_json_integer(json, "touching", force->touching);
         lar_json_integer(json, "held", force->held);
+        lar_json_number(json, "limit", force->limit);
+        lar_json_number(json, "depth", force->depth);
+        lar_json_number(json, "apart", force->apart);
+        lar_json_boolean(json, "limited", force->limited != 0);
         lar_json_text(json, "by", lar_hands_by(&server->hands, i, viewer->number, now));
         lar_json_close(json, '}');
     }

@@ -36,6 +36,7 @@ typedef struct lar_session_view {
     struct {
         lar_tool_pose pose;
         lar_tool_force force;
+        lar_tool_load load;
         lar_device_status device; /* summed up from time to time only */
     } tool[LAR_TOOLS_MOST];
 } lar_session_view;
@@ -51,9 +52,11 @@ typedef struct lar_session_tool {
     lar_device_status device_status; /* as last summed up */
     lar_coupling coupling;           /* between the hand and it */
     lar_tool_pose target;            /* where its hand is */
-    lar_tool_pose pose;              /* where it is at the tick's end */
+    lar_tool_pose pose;              /* where the coupling asks it to be at the tick's end */
     lar_tool_pose sent;              /* where the simulation was told to move it */
+    lar_tool_pose place;             /* where it is at the tick's end: tissue may keep it */
     lar_tool_force force;            /* what the tissue does to it */
+    lar_tool_load load;              /* since the session was opened */
     lar_tool_force felt;             /* what its device is told, behind the coupling */
 } lar_session_tool;
 
@@ -62,6 +65,7 @@ struct lar_session {
     lar_session_options options; /* with no zeros left */
     uint64_t tick_steps;
     double time_step;
+    uint64_t divided; /* steps of the simulation that were divided before the session */
     int32_t tools;
     lar_session_tool tool[LAR_TOOLS_MOST];
 

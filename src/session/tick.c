@@ -17,12 +17,16 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_session_status *status = &session->status;
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
+    status->step_parts = lar_simulation_step_parts(session->simulation);
+    status->divided_steps =
+        lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
     for (int32_t i = 0; i < session->tools; i++) {
-        view->tool[i].pose = session->tool[i].pose;
+        view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;
+        view->tool[i].load = session->tool[i].load;
         if (quantiles && session->tool[i].device)
             lar_device_status_get(session->tool[i].device, &session->tool[i].device_status);
         view->tool[i].device = session->tool[i].device_status;

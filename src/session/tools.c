@@ -1,4 +1,5 @@
 /* From hands to tools and back, once in a tick. */
+#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -16,10 +17,16 @@ static lar_device_tick tick_of(const lar_session *session) {
 void lar_session_take_tools(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
+        lar_tool_force now;
         lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
-        lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
+        lar_simulation_tool_asked(session->simulation, i, &tool->pose);
+        lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
         tool->sent = tool->target = tool->pose;
         tool->force = tool->felt = (lar_tool_force){0};
+        lar_simulation_tool_force(session->simulation, i, &now, NULL);
+        tool->force.limit = tool->load.limit = now.limit;
+        tool->force.apart = now.apart;
+        tool->force.limited = now.limited;
         tool->led = false;
         lar_coupling_reset(&tool->coupling, &tool->pose);
         if (tool->device) lar_device_reset(tool->device);
@@ -56,7 +63,7 @@ static lar_status send_tool(lar_session *session, int32_t i, lar_error *error) {
                                                 .pose = tool->pose});
     } else if (status == LAR_ERROR_ARGUMENT) {
         /* Nowhere to go, or too far for one tick: it stays, and starts anew from there. */
-        lar_simulation_tool_pose(session->simulation, i, &tool->pose, NULL);
+        lar_simulation_tool_asked(session->simulation, i, &tool->pose);
         lar_coupling_reset(&tool->coupling, &tool->pose);
         status = LAR_OK;
     }
@@ -79,8 +86,16 @@ static void tell_devices(lar_session *session) {
     const lar_device_tick now = tick_of(session);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
-        if (tool->device) lar_device_feel(tool->device, &now, &tool->felt, &tool->pose);
+        if (tool->device) lar_device_feel(tool->device, &now, &tool->felt, &tool->place);
     }
+}
+
+static void note_load(lar_session_tool *tool) {
+    const double *f = tool->force.force;
+    double force = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+    tool->load.limit = tool->force.limit;
+    tool->load.force = fmax(tool->load.force, force);
+    tool->load.reached = tool->load.reached || tool->force.limited;
 }
 
 void lar_session_feel_tools(lar_session *session) {
@@ -88,6 +103,8 @@ void lar_session_feel_tools(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
+        lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
+        note_load(tool);
         if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, &tool->felt);
         lar_history_put(&session->history, i, tool->force.force);
     }

@@ -186,6 +186,9 @@ static void tool_calls(void **unused) {
     assert_int_equal(info.shape, LAR_TOOL_HAND);
     assert_int_equal(lar_simulation_tool_move(simulation, 0, &pose, 10, &error), LAR_OK);
     assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, &error), LAR_OK);
+    assert_true(force.limit == 0 && force.depth == 0 && force.apart == 0 && !force.limited);
+    assert_int_equal(lar_simulation_step_parts(simulation), 1);
+    assert_int_equal(lar_simulation_divided_steps(simulation, NULL), 0);
     lar_simulation_destroy(simulation);
     lar_model_destroy(model);
 }

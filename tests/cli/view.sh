@@ -27,6 +27,7 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --save-folder "saved here/
 says '^http://127.0.0.1:[0-9]*/$'
 says '^real-time factor'
 says '^ticks '
+says '^tool  *probe: largest force 0 N, limit [0-9.]* N$'
 says '^state hash  *[0-9a-f]\{16\}$'
 [ -d "saved here/below" ] || fail "the folder for saved states was not made"
 
@@ -34,7 +35,7 @@ says '^state hash  *[0-9a-f]\{16\}$'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --json --grid 2x1x1 --pace 0
 complains '^http://127.0.0.1:[0-9]*/$'
 has_keys title url state message steps time real_time_factor ticks deadline_misses slow_motion \
-    skipped recoveries recovery viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
+    skipped recoveries recovery divided_steps most_parts tools viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
 [ "$(value_of grid)" = '"2x1x1"' ] || fail "the grid is $(value_of grid)"
 [ "$(value_of steps)" -gt 0 ] || fail "nothing was simulated"
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0

@@ -325,6 +325,44 @@ static void instruments_have_one_owner(void **unused) {
     end_serving(&s);
 }
 
+/* Pressed against the side that is held: it is seen where it is, not where it should go. */
+static void a_tool_that_tissue_stops_says_so(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    client c = open_client(s.port);
+    const char *told = await_text(&c, "status");
+    assert_true(number_of(told, "step_parts") >= 1 && number_of(told, "divided_steps") >= 0);
+    assert_true(number_of(told, "limit") > 0);
+    assert_true(number_of(told, "apart") == 0 && number_of(told, "depth") == 0);
+    assert_null(strstr(told, "\"limited\":true"));
+    say(&c, "{\"do\":\"tool\",\"tool\":0,\"position\":[0.06,0.01,0.008]}");
+    lar_tool_pose pose = {.opening = -1};
+    for (int i = 0; i < 2000 && !(pose.opening > 0 && fabs(pose.position[0] - 0.06) < 1e-4); i++) {
+        lar_session_tool_force(s.b.session, SERVED_BALL, &pose, NULL, NULL);
+        nap(0.002);
+    }
+    say(&c, "{\"do\":\"tool\",\"tool\":0,\"position\":[-0.01,0.01,0.008]}");
+    await_status(&c, "\"limited\":true");
+    told = (char *)c.data;
+    const char *tools = strstr(told, "\"tools\":[");
+    assert_non_null(tools);
+    print_message("limit %g N, depth %g m, apart %g m, %g steps divided\n",
+                  number_of(tools, "limit"), number_of(tools, "depth"), number_of(tools, "apart"),
+                  number_of(told, "divided_steps"));
+    assert_true(number_of(tools, "depth") > 0 && number_of(tools, "apart") > 0);
+    double x = 0;
+    assert_int_equal(sscanf(tools, "\"tools\":[{\"position\":[%lf", &x), 1);
+    assert_true(x > -0.01 + number_of(tools, "apart"));
+    lar_tool_load load;
+    DONE(lar_session_tool_load(s.b.session, SERVED_BALL, &load, &failure));
+    assert_true(load.reached && load.force > 0 && load.limit == number_of(tools, "limit"));
+    say(&c, "{\"do\":\"tool\",\"tool\":0,\"position\":[0.06,0.01,0.008]}");
+    for (int i = 0; i < 100 && strstr(await_text(&c, "status"), "\"limited\":true"); i++) continue;
+    assert_null(strstr((char *)c.data, "\"limited\":true"));
+    close_client(&c);
+    end_serving(&s);
+}
+
 /* ---- commands ----------------------------------------------------------------------------------
  */
 
@@ -445,6 +483,7 @@ int main(void) {
                                        cmocka_unit_test(pulls_and_lets_go),
                                        cmocka_unit_test(hands_are_handed_out),
                                        cmocka_unit_test(instruments_have_one_owner),
+                                       cmocka_unit_test(a_tool_that_tissue_stops_says_so),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
                                        cmocka_unit_test(saves_where_it_may),
                                        cmocka_unit_test(shows_why_it_stopped_and_begins_again),

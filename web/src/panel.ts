@@ -2,7 +2,16 @@
 import { element, number, write } from './dom';
 import type { Hello, Status } from './protocol';
 
-type Row = [name: string, value: (s: Status) => string, bad?: (s: Status) => boolean];
+/* Whether steps are computed in parts now. */
+export function division(parts: number): string {
+    return parts > 1 ? `step divided by ${parts}` : 'none';
+}
+
+type Row = [name: string, value: (s: Status) => string, bad?: (s: Status) => boolean, title?: string];
+
+const DIVIDED =
+    'Strained tissue and tools that press hard need shorter steps: while they do, every step is ' +
+    'computed in several parts, which takes as many times as long.';
 
 const rate = (perSecond: number): string =>
     perSecond >= 9999.5 ? `${(perSecond / 1000).toFixed(1)} kHz` : `${perSecond.toFixed(0)} Hz`;
@@ -36,12 +45,15 @@ export class Panel {
         ['pictures', () => rate(this.pictureRate)],
         ['given up', (s) => `${s.skipped.toFixed(2)} s`, (s) => s.skipped > 0],
         ['went back', (s) => `${s.recoveries} ×`, (s) => s.recoveries > 0],
+        ['division', (s) => division(s.step_parts), (s) => s.step_parts > 1, DIVIDED],
+        ['divided steps', (s) => String(s.divided_steps), undefined, `${DIVIDED} So many were, since the engine was started.`],
         ['viewers', (s) => String(s.viewers)],
     ];
 
     constructor() {
-        for (const [name] of this.rows) {
+        for (const [name, , , title] of this.rows) {
             const row = document.createElement('tr');
+            if (title) row.title = title;
             const head = document.createElement('th');
             head.scope = 'row';
             head.textContent = name;

@@ -57,6 +57,10 @@ export interface ToolStatus extends Pose {
     torque: [number, number, number];
     touching: number;
     held: number;
+    limit: number; // it stays behind its hand where tissue pushes harder [N]; 0: it never does
+    depth: number; // of the tissue in it [m]
+    apart: number; // from its tip to where its hand asks the tip to be [m]
+    limited: boolean; // tissue keeps it from following its hand
     by: 'nobody' | 'you' | 'other' | 'device';
 }
 
@@ -83,6 +87,8 @@ export interface Status {
     message: string;
     recoveries: number; // times that the run became unstable and went back to a sound state
     recovery: string; // the last of them
+    step_parts: number; // that every step is computed in now; 1: not divided
+    divided_steps: number;
     viewers: number;
     saved: string[];
     tools: ToolStatus[];

@@ -1,12 +1,35 @@
 /* The list of tools: the hand and the scene's instruments. */
 import { check, radios } from './colours';
-import { element } from './dom';
+import { element, withUnit, write } from './dom';
 import type { Instrument } from './instrument';
-import type { Hello, Status } from './protocol';
+import type { Hello, Status, ToolStatus } from './protocol';
+
+/* What a tool bears: its force of its limit, and how deep the tissue is in it. */
+export function load(tool: Pick<ToolStatus, 'force' | 'limit' | 'depth' | 'limited'>): string {
+    const force = Math.hypot(...tool.force).toFixed(2);
+    const words = [tool.limit > 0 ? `${force} of ${tool.limit.toFixed(2)} N` : `${force} N`];
+    if (tool.depth > 0) words.push(`${withUnit(tool.depth, 'm')} deep`);
+    if (tool.limited) words.push('limit reached');
+    return words.join(', ');
+}
+
+const LIMIT =
+    'Force on the tool and the most that it may bear; how deep tissue is in it. Once the limit is ' +
+    'reached the tool stays behind its hand, until the hand comes back.';
+
+function addLoad(entry: Element): HTMLElement {
+    const load = document.createElement('span');
+    load.className = 'load';
+    (entry as HTMLElement).title = LIMIT;
+    entry.setAttribute('aria-label', entry.textContent ?? ''); // it does not change ten times a second
+    entry.append(load);
+    return load;
+}
 
 export class ToolCard {
     private tools: number[] = []; // behind each entry; -1: the hand
     private readonly list = element('tool-list');
+    private loads: (HTMLElement | null)[] = []; // one in each entry; null: the hand's
     private readonly opening = element<HTMLInputElement>('opening');
 
     constructor(private readonly instrument: Instrument) {
@@ -19,6 +42,7 @@ export class ToolCard {
         element('tools').hidden = instruments.length === 0;
         const names = this.tools.map((i) => (i < 0 ? 'hand' : hello.tools[i]!.name));
         radios(this.list, names, (i) => this.instrument.choose(this.tools[i]!));
+        this.loads = [...this.list.children].map((entry, i) => (this.tools[i]! < 0 ? null : addLoad(entry)));
     }
 
     show(tool: number): void {
@@ -27,6 +51,12 @@ export class ToolCard {
     }
 
     update(status: Status): void {
+        this.loads.forEach((where, i) => {
+            const tool = status.tools[this.tools[i]!];
+            if (!where || !tool) return;
+            write(where, load(tool));
+            where.classList.toggle('bad', tool.limited);
+        });
         const tool = status.tools[this.instrument.chosen];
         if (tool && document.activeElement !== this.opening)
             this.opening.value = String(tool.opening);

@@ -91,6 +91,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
+        parts: 1, divided: 0, pressed: false,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -184,8 +185,11 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, lag: 0, skipped: 0,
         recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
         recoveries: state.recoveries, recovery: state.recovery,
+        step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
-            touching: 0, held: 0, by: 'nobody' })),
+            ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true }
+                : { depth: 0, apart: 0, limited: false }),
+            limit: tools[i].shape === 'hand' ? 0 : 1.76, touching: 0, held: 0, by: 'nobody' })),
     });
 
     function surfaceMessage() {

@@ -65,6 +65,26 @@ test('a run that went back says so, once, and goes on', async () => {
     await v.close();
 });
 
+test('a tool that tissue stops says so, and divided steps are told', async () => {
+    const v = await openPage(browser, server.url);
+    const row = v.page.locator('#tool-list').getByRole('radio', { name: 'probe' });
+    await v.page.locator('#tools').evaluate((card) => (card.open = true));
+    await v.page.locator('#panel').evaluate((card) => (card.open = true));
+    await row.getByText('0.00 of 1.76 N').waitFor({ timeout: 3000 });
+    Object.assign(server.state, { pressed: true, parts: 4, divided: 340 });
+    await row.getByText('1.80 of 1.76 N, 400 µm deep, limit reached').waitFor({ timeout: 3000 });
+    assert.equal(await row.locator('.load.bad').count(), 1);
+    assert.match(await row.getAttribute('title'), /stays behind its hand/);
+    const division = v.page.locator('#panel tr', { hasText: 'step divided by 4' });
+    await division.waitFor({ timeout: 3000 });
+    assert.match(await division.getAttribute('title'), /shorter steps/);
+    assert.match(await v.page.locator('#panel tr', { hasText: 'divided steps' }).innerText(), /340/);
+    await v.shot('limit-reached');
+    Object.assign(server.state, { pressed: false, parts: 1, divided: 0 });
+    await row.getByText('limit reached').waitFor({ state: 'hidden', timeout: 3000 });
+    await v.close();
+});
+
 test('a lost processor is named, and nothing that would be in vain is offered', async () => {
     const v = await openPage(browser, server.url);
     Object.assign(server.state, { state: 'stopped', lost: true, message: 'processor 1 is lost' });

@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'camera'];
+    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -285,4 +285,18 @@ test('the first look is from where the scene says, or from low y', () => {
     endoscope.update(0);
     assert.ok(Math.abs(endoscope.camera.position.x - 1) < 1e-6);
     delete globalThis.matchMedia;
+});
+
+test('a tool says its force, its limit, and when that is reached', () => {
+    const { load } = parts.toolcard;
+    const rest = { force: [0, 0, 0], limit: 4.39, depth: 0, limited: false };
+    assert.equal(load(rest), '0.00 of 4.39 N');
+    assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
+        '5.00 of 4.39 N, 1.12 mm deep, limit reached');
+    assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+});
+
+test('the panel says into how many parts steps are divided', () => {
+    assert.equal(parts.panel.division(1), 'none');
+    assert.equal(parts.panel.division(4), 'step divided by 4');
 });

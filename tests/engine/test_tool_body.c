@@ -1,0 +1,165 @@
+/* A tool that is pushed into tissue: stays outside, says that it is kept from following its hand,
+ * and comes back to it. */
+#include "engine/engine_test.h"
+#include "engine/touch_test.h"
+
+static const brick block = {{6, 6, 4}, 0.005, 0.05, LAR_LAW_neo_hookean, 2e3, 2e5, 1000};
+static const double upright[4] = {1, 0, 0, 0};
+static const double above[3] = {0.016, 0.014, 0.026}, below[3] = {0.016, 0.014, -0.004};
+static const lar_tool ball = {.shape = LAR_TOOL_SPHERE, .radius = 0.005};
+enum { TICK = 10 };
+
+static lar_model *pressed_model(void) {
+    lar_model *model = brick_model(&block);
+    fix_nodes(model, brick_side(&block, 2, 0), LAR_AXIS_ALL);
+    model->damping = 20;
+    touch_tool(model, "ball", ball, above);
+    return model;
+}
+
+static lar_tool_force force_of(lar_simulation *simulation) {
+    lar_tool_force force;
+    lar_error error;
+    if (lar_simulation_tool_force(simulation, 0, &force, &error)) fail_msg("%s", error.message);
+    return force;
+}
+
+static double size_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* The solid angle of a triangle, seen from the origin (Van Oosterom and Strackee 1983). */
+static double solid_angle(const double a[3], const double b[3], const double c[3]) {
+    double la = size_of(a), lb = size_of(b), lc = size_of(c), ab = 0, bc = 0, ca = 0, volume = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        ab += a[i] * b[i];
+        bc += b[i] * c[i];
+        ca += c[i] * a[i];
+        volume += a[i] * (b[j] * c[k] - b[k] * c[j]);
+    }
+    return 2 * atan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb);
+}
+
+/* How often the deformed surface goes round a point: 1 inside, 0 outside. */
+static double winding(const lar_simulation *simulation, const double point[3]) {
+    const lar_model *model = simulation->domain.model;
+    double sum = 0;
+    for (int32_t f = 0; f < model->surface.face_count; f++) {
+        double x[4][3];
+        for (int a = 0; a < 4; a++) {
+            int32_t node = model->surface.corner[f][a];
+            const double *u = node_u(simulation, node);
+            for (int i = 0; i < 3; i++) x[a][i] = model->mesh.position[node][i] + u[i] - point[i];
+        }
+        sum += solid_angle(x[0], x[1], x[2]) + solid_angle(x[0], x[2], x[3]);
+    }
+    return sum / (4 * 3.14159265358979);
+}
+
+typedef struct pushed {
+    double force, apart, depth; /* the largest */
+    double pressing;            /* mean force while the hand rests below */
+    int32_t limited;            /* ticks */
+    int32_t parts;
+} pushed;
+
+/* So many steps in ticks; the tool's centre never comes inside. */
+static pushed watch(lar_simulation *simulation, uint64_t steps) {
+    pushed seen = {0};
+    uint64_t ticks = steps / TICK;
+    for (uint64_t i = 0; i < ticks; i++) {
+        lar_tool_pose pose;
+        advance(simulation, TICK);
+        lar_tool_force force = force_of(simulation);
+        assert_int_equal(lar_simulation_tool_pose(simulation, 0, &pose, NULL), LAR_OK);
+        assert_below(winding(simulation, pose.position), 0.5);
+        assert_true(force.limited == 0 || force.limited == 1);
+        assert_true(force.limited || force.apart == 0);
+        seen.force = fmax(seen.force, size_of(force.force));
+        seen.pressing += size_of(force.force) / (double)ticks;
+        seen.apart = fmax(seen.apart, force.apart);
+        seen.depth = fmax(seen.depth, force.depth);
+        seen.limited += force.limited;
+        int32_t parts = lar_simulation_step_parts(simulation);
+        seen.parts = parts > seen.parts ? parts : seen.parts;
+    }
+    return seen;
+}
+
+/* Pushed 30 mm, which is more than the block is high, kept there, and withdrawn. */
+static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
+    (void)unused;
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    double way = above[2] - below[2];
+    uint64_t second = (uint64_t)(1 / lar_simulation_time_step(simulation));
+    lar_tool_force force = force_of(simulation);
+    const double limit = force.limit;
+    assert_true(limit > 0 && force.depth == 0 && force.apart == 0 && force.limited == 0);
+    assert_true(winding(simulation, (double[]){0.015, 0.015, 0.01}) > 0.99);
+
+    place(simulation, 0, below, upright, 1, second / 4);
+    pushed in = watch(simulation, second / 4), rest = watch(simulation, second / 4);
+    force = force_of(simulation);
+    print_message("limit %.3g N: up to %.3g N on the way, %.3g N at rest, %.3g mm apart, tissue "
+                  "up to %.3g mm deep; up to %d parts\n",
+                  limit, fmax(in.force, rest.force), rest.pressing, 1e3 * force.apart,
+                  1e3 * fmax(in.depth, rest.depth), (int)in.parts);
+    assert_int_equal(force.limited, 1);
+    assert_true(force.apart > 0.2 * way && force.apart < way);
+    assert_true(rest.pressing > 0.6 * limit && rest.pressing < 1.4 * limit);
+    assert_true(rest.depth > 0 && rest.depth < ball.radius);
+
+    place(simulation, 0, above, upright, 1, second / 4);
+    watch(simulation, second / 2);
+    force = force_of(simulation);
+    lar_tool_pose pose, wanted = {.orientation = {1, 0, 0, 0}, .opening = 1};
+    memcpy(wanted.position, above, sizeof wanted.position);
+    assert_int_equal(lar_simulation_tool_pose(simulation, 0, &pose, NULL), LAR_OK);
+    assert_memory_equal(&pose, &wanted, sizeof pose);
+    assert_int_equal(force.limited, 0);
+    assert_true(force.apart == 0 && force.depth == 0 && size_of(force.force) == 0);
+    assert_int_equal(force.touching, 0);
+    finish(simulation, model);
+}
+
+/* What is said is the same on every grid, and divided steps are counted as they were done. */
+static void what_is_said_does_not_depend_on_the_grid(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {NULL, "2x1x1"};
+    lar_model *model = pressed_model();
+    lar_tool_force force[2];
+    uint64_t divided[2], counted = 0;
+    int32_t most[2];
+    for (int g = 0; g < 2; g++) {
+        lar_options options = lar_options_default();
+        options.grid = grids[g];
+        lar_simulation *simulation = start_with(model, options);
+        uint64_t steps = (uint64_t)(0.25 / lar_simulation_time_step(simulation));
+        place(simulation, 0, below, upright, 1, steps);
+        for (uint64_t i = 0; i < steps; i++) {
+            advance(simulation, 1);
+            if (g == 0) counted += lar_simulation_step_parts(simulation) > 1;
+        }
+        assert_int_equal(lar_simulation_tool_force(simulation, 0, &force[g], NULL), LAR_OK);
+        divided[g] = lar_simulation_divided_steps(simulation, &most[g]);
+        lar_simulation_destroy(simulation);
+    }
+    print_message("%.0f steps divided, into %d parts at most\n", (double)divided[0], (int)most[0]);
+    assert_int_equal(force[0].limited, 1);
+    assert_true(divided[0] > 0 && most[0] > 1);
+    assert_int_equal(divided[0], counted);
+    assert_int_equal(divided[0], divided[1]);
+    assert_int_equal(most[0], most[1]);
+    assert_memory_equal(&force[0], &force[1], sizeof force[0]);
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
+        cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
