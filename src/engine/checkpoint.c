@@ -33,7 +33,7 @@ typedef struct file_head {
 /* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
 _Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
 _Static_assert(sizeof(file_head) == 144, "the format");
-_Static_assert(sizeof(lar_step_division) == 40, "the format");
+_Static_assert(sizeof(lar_step_division) == 48, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 
@@ -359,7 +359,7 @@ static bool power_of_two(int32_t parts) {
 }
 
 static bool good_division(const lar_step_division *d, const file_head *head) {
-    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
+    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step && d->decided <= head->step &&
            d->hardness >= 1 && d->hardness <= (double)d->parts * d->parts &&
            d->hardness <= LAR_HARDNESS_MOST && d->need >= 0 && d->lately >= 0 &&
            d->lately <= LAR_NEED_MOST;
