@@ -223,13 +223,15 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness = harden(list, tools, d->hardness, fading, unit);
+    bool close = lar_division_is_close(d);
     d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;
     int32_t wanted = 1;
     while (wanted < LAR_PARTS_MOST &&
            (d->lately > most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
-    bool changed = hardness != d->hardness || wanted != d->parts;
+    bool changed =
+        hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);
     d->hardness = hardness;
     if (wanted == d->parts) return changed;
     d->before = d->parts;

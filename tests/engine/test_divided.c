@@ -167,6 +167,30 @@ static void processes_change_nothing(void **unused) {
     lar_model_destroy(model);
 }
 
+/* The other process has what is strained, a little: whether that is looked at in every step must
+ * be told, though nothing else changes. */
+static void processes_know_what_is_strained(void **unused) {
+    (void)unused;
+    lar_model *model = organ();
+    model->tool[BALL].rest.position[0] = 0.023;
+    lar_options options = setting("2x1x1", 1);
+    options.comm = "shm";
+    fleet f;
+    lar_simulation *alone = start_with(model, setting(NULL, 0));
+    start_fleet(&f, model, options, 2, NULL);
+    place_tool(alone, BALL, 0.023, 0.0148, 0.0174, 1, 200);
+    place_tool(f.zero, BALL, 0.023, 0.0148, 0.0174, 1, 200);
+    for (int i = 0; i < 20; i++) {
+        advance(alone, 10);
+        advance(f.zero, 10);
+        assert_true(hash_of(alone) == hash_of(f.zero));
+    }
+    assert_true(lar_division_is_close(&alone->tools.division));
+    lar_simulation_destroy(alone);
+    end_fleet(&f);
+    lar_model_destroy(model);
+}
+
 static void instruction_sets_change_nothing(void **unused) {
     (void)unused;
     static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
@@ -316,6 +340,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grids_and_sizes_of_advances_change_nothing),
         cmocka_unit_test(processes_change_nothing),
+        cmocka_unit_test(processes_know_what_is_strained),
         cmocka_unit_test(instruction_sets_change_nothing),
         cmocka_unit_test(no_steps_are_nothing),
         cmocka_unit_test(a_saved_run_goes_on_with_the_same_bits),
