@@ -359,10 +359,10 @@ static bool power_of_two(int32_t parts) {
 }
 
 static bool good_division(const lar_step_division *d, const file_head *head) {
-    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step && d->decided <= head->step &&
-           d->hardness >= 1 && d->hardness <= (double)d->parts * d->parts &&
-           d->hardness <= LAR_HARDNESS_MOST && d->need >= 0 && d->lately >= 0 &&
-           d->lately <= LAR_NEED_MOST;
+    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
+           d->decided <= head->step && d->hardness >= 1 &&
+           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MOST &&
+           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST;
 }
 
 /* A way between two places is a number. Empty hands, which go no way, may be anywhere. */

@@ -378,7 +378,7 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
-    enum { DIVISION = 144, TOOL = 184, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
+    enum { DIVISION = 144, TOOL = 192, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
         size_t at, size;
@@ -404,7 +404,8 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 32, 8, -1, "tool"}, /* and lately */
         {DIVISION + 32, 8, 1025, "tool"},
         {DIVISION + 32, 8, NAN, "tool"},
-        {TOOL, 8, INFINITY, "tool"}, /* a position */
+        {DIVISION + 40, 8, 1e300, "tool"}, /* when decided */
+        {TOOL, 8, INFINITY, "tool"},       /* a position */
         {TOOL, 8, -1e200, "tool"},
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */
         {TOOL + 56, 8, 1.5, "tool"},    /* an opening */
