@@ -378,7 +378,7 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
-    enum { DIVISION = 144, TOOL = 184, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
+    enum { DIVISION = 144, TOOL = 192, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
         size_t at, size;
