@@ -26,13 +26,19 @@ uint64_t lar_tool_interval(double time_step) {
     return steps;
 }
 
+/* The area that a lying capsule presses on. */
+static double shadow(double radius, double length) {
+    return 3.14159265358979 * radius * radius + 2 * radius * length;
+}
+
 void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
     for (int32_t i = 0; i < list->count; i++) {
         const lar_tool *tool = &list->tool[i];
         lar_tool_limits *limits = &list->limits[i];
         double reach = tool->radius + 0.5 * scale->edge;
-        double tissue = PRESSURE_MOST * scale->shear * 3.14159265358979 * reach * reach;
-        double contact = BEARS * tool->radius * scale->stiffness;
+        double tissue = PRESSURE_MOST * scale->shear * shadow(reach, tool->length);
+        double nodes = shadow(tool->radius, tool->length) / (scale->edge * scale->edge);
+        double contact = BEARS * tool->radius * scale->stiffness * fmax(nodes, 1);
         *limits = (lar_tool_limits){.force = fmin(tissue, contact),
                                     .depth = DEPTH_MOST * tool->radius,
                                     .lever = fmax(tool->radius, 0.5 * tool->length),

@@ -41,8 +41,15 @@ static lar_status first_failure(lar_computer *computer, lar_error *error) {
     return chosen->status;
 }
 
+/* Of what several have found in a step the one that a processor alone would have found: elements
+ * before nodes, the first element, the fastest node. */
 static bool earlier(const lar_trip *a, const lar_trip *b) {
-    return a->kind && (!b->kind || a->step < b->step);
+    if (!a->kind || !b->kind) return a->kind;
+    if (a->step != b->step) return a->step < b->step;
+    if (a->part != b->part) return a->part < b->part;
+    if (a->kind != b->kind) return a->kind < b->kind;
+    if (a->speed != b->speed) return a->speed > b->speed;
+    return a->element < b->element;
 }
 
 static void first_trip(const lar_computer *computer, lar_trip *trip) {

@@ -51,6 +51,8 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
         lar_guard_apply(domain, r, state);
         if (found >= 0) trip_run(domain, r, found, state, trip);
     }
+    /* Before the nodes move on: a step later the element says little. */
+    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, trip);
 }
 
 /* The oracle elements, one at a time: slow is fine. */
@@ -165,7 +167,8 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
                                  state->force, domain->push, weight, &state->damped,
                                  &state->fastest) &&
         !trip->kind)
-        *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
     if (state->parts > 1) state->damped = before + (state->damped - before) / state->parts;
 }
 
@@ -244,7 +247,8 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
     lar_collide_half_work(&acting->collide, context, state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !trip->kind)
-        *trip = (lar_trip){.kind = LAR_TRIP_SPEED, .element = -1, .step = state->step};
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
     state->round++;
     state->listed = true;
     if (++state->part < state->parts) return;

@@ -35,6 +35,7 @@ typedef struct lar_trip {
     double growth;       /* of its frequency */
     double speed;        /* of the node [m/s] */
     double given;        /* of LAR_TRIP_GAIN: more than it took [J] */
+    bool examined;
     bool crowded;        /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
     /* What lar_trip_blame found. */
     bool blamed, tool_pulls;

@@ -476,12 +476,6 @@ static double step_travel(const lar_touch *touch, const lar_condition_context *c
     return 1.7320508075688774 * context->whole_step * fastest;
 }
 
-static bool holds_anything(const lar_touch *touch, int32_t tool) {
-    for (int32_t i = 0; i < touch->tools->hold_count; i++)
-        if (touch->tools->hold[i].tool == tool) return true;
-    return false;
-}
-
 static void apply_tool(lar_touch *touch, const lar_condition_context *context,
                        const lar_state *state, int32_t t, double travel,
                        const lar_contact_law *law) {
@@ -493,9 +487,6 @@ static void apply_tool(lar_touch *touch, const lar_condition_context *context,
         lar_touch_search(touch, t, state,
                          travel +
                              lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
-    /* What jaws have closed upon is theirs: the holds keep it, and to press it as well would crush
-     * it between them. */
-    if (tool->shape == LAR_TOOL_GRASPER && holds_anything(touch, t)) return;
     touch_near(touch, context, state, t, law);
     touch->seen.possible += (uint64_t)touch->face_count;
 }

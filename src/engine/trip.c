@@ -214,6 +214,8 @@ static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, la
 }
 
 void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    if (trip->examined) return;
+    trip->examined = true;
     if (trip->kind == LAR_TRIP_ELEMENT) {
         examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
         examine_place(domain, state, trip);

@@ -42,7 +42,7 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device p
 [ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
 [ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
 
-# A block that a hand rams turns inside out: the session goes back, on and on, and replays.
+# A block is torn by a load beside a hand that moves: the session goes back, on and on, and replays.
 awk 'BEGIN {
     print "*NODE"
     for (k = 0; k < 4; k++) for (j = 0; j < 5; j++) for (i = 0; i < 7; i++)
@@ -54,6 +54,7 @@ awk 'BEGIN {
     }
     print "*NSET, NSET=bottom"
     for (n = 1; n <= 35; n++) print n ","
+    print "*NSET, NSET=top\n123,"
 }' >block.inp
 cat >block.yaml <<EOF
 lariat: 1
@@ -61,16 +62,17 @@ mesh: block.inp
 damping: 0.5
 materials: [ { cells: all, law: neo-hookean, density: 1000, shear_modulus: 500, bulk_modulus: 25e3 } ]
 fix: [ { nodes: bottom, axes: xyz } ]
+load: [ { nodes: top, force: [0, 0, -1e3], curve: { points: [[0, 0], [1.1, 0], [1.1, 1]] } } ]
 EOF
 awk 'BEGIN {
     print "time,x,y,z,opening\n0,.03,.02,.03,1\n.3,.03,.02,.03,1\n.31,.03,.02,.03,0\n.4,.03,.02,.03,0"
-    for (t = .5; t < 20; t += .3) printf "%g,.03,.02,%g,0\n", t, n++ % 2 ? .13 : -.07
+    for (t = .5; t < 20; t += .3) printf "%g,.03,.02,%g,0\n", t, n++ % 2 ? .032 : .028
 }' >hand.csv
 for grid in '' '--grid 2x1x1 --comm shm'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" view block.yaml --port 0 --seconds 1 --pace 0 --record back.recording \
         --device hand=script:hand.csv --json $grid
-    complains 'the run became unstable and went back 0\.[0-9]* s to step [0-9]*: .*tool hand'
+    complains 'the run became unstable and went back [0-9.]* s to .*: unstable at step'
     [ "$(value_of recoveries)" -gt 0 ] || fail "it went back $(value_of recoveries) times"
     [ "$(value_of state)" = '"playing"' ] || fail "the state is $(value_of state)"
     case $(value_of recovery) in '"went back'*) ;; *) fail "the last was $(value_of recovery)" ;; esac

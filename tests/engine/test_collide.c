@@ -186,6 +186,8 @@ static double thrown(double speed, double part_of_stable_step, bool self, double
     return most / first_energy;
 }
 
+static uint64_t last_hash; /* of the last run */
+
 /* What is too soft for its speed: G = 4 kPa at 3 and 5 m/s. While it goes on, energy holds. When
  * elements are crushed until their surface has no inside any more, the run stops and says so. */
 static lar_status crushed(double shear, double speed, double part_of_stable_step, const char *grid,
@@ -211,6 +213,7 @@ static lar_status crushed(double shear, double speed, double part_of_stable_step
         if (!status) *most = fmax(*most, total(&e) / first_energy);
     }
     *steps = lar_simulation_steps(s);
+    last_hash = lar_simulation_hash(s);
     if (status) assert_int_equal(lar_simulation_advance(s, 1, error), status);
     finish(s, model);
     return status;
@@ -236,21 +239,23 @@ static void what_is_crushed_holds_or_stops_and_says_why(void **unused) {
         assert_non_null(strstr(error.message, "; use "));
         given += strstr(error.message, "more than it took") != NULL;
     }
-    assert_true(held > 10 && given > 3);
+    (void)given;
+    assert_int_equal(held, 30); /* 12 of them stopped before corners had barriers */
 }
 
 /* The same on any number of processors. */
-static void what_is_crushed_stops_everywhere(void **unused) {
+static void what_is_crushed_is_the_same_everywhere(void **unused) {
     (void)unused;
     static const char *const grids[] = {NULL, "1x1x2", "2x2x1"};
-    uint64_t steps[3];
+    uint64_t steps[3], first_hash = 0;
     lar_error error[3] = {0};
     double most[3];
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(crushed(2e3, 5, 0.2, grids[i], &steps[i], &most[i], &error[i]),
-                         LAR_ERROR_UNSTABLE);
+        lar_status status = crushed(2e3, 5, 0.2, grids[i], &steps[i], &most[i], &error[i]);
+        assert_int_equal(status, LAR_OK);
         assert_true(steps[i] == steps[0]);
-        assert_string_equal(error[i].message, error[0].message);
+        assert_true(last_hash == first_hash || i == 0);
+        if (i == 0) first_hash = last_hash;
     }
 }
 
@@ -412,7 +417,7 @@ int main(void) {
         cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(what_is_crushed_holds_or_stops_and_says_why),
-        cmocka_unit_test(what_is_crushed_stops_everywhere),
+        cmocka_unit_test(what_is_crushed_is_the_same_everywhere),
         cmocka_unit_test(corners_that_graze_add_no_energy),
         cmocka_unit_test(every_joule_of_contact_is_accounted_for),
         cmocka_unit_test(prediction_changes_no_bit),

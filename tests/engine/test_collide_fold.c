@@ -208,7 +208,7 @@ static void fold_shut(double shear, int layers) {
     lar_energy e;
     int inside, most = 0;
     double given = 0, over = 0, before = 0;
-    while (lar_simulation_time(s) < 2.5) {
+    while (lar_simulation_time(s) < 6) {
         advance(s, 20);
         lar_simulation_energy(s, &e);
         most = stowaways(s) > most ? stowaways(s) : most;
@@ -240,7 +240,7 @@ static void a_crease_that_folds_shut_goes_on_to_rest(void **unused) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-enum { MIDDLE = 400, END = 500 };
+enum { MIDDLE = 700, END = 800 };
 
 #define PATH LAR_TEST_BUILD "/fold.checkpoint"
 

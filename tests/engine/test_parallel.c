@@ -158,13 +158,7 @@ static void an_unstable_run_stops_everywhere(void **unused) {
     for (int grid = 0; grid < GRIDS; grid++) {
         simulation = start_with(model, combination(grid, 1 + grid % THREADS, 0, 0));
         assert_int_equal(lar_simulation_advance(simulation, 500, &error), LAR_ERROR_UNSTABLE);
-        /* "unstable at step N (T s): ", the same step; of several elements that break in it another
-         * one may be seen first. It is described as it was then, not when all had stopped. */
-        size_t beginning = (size_t)(strchr(alone.message, ':') - alone.message);
-        assert_memory_equal(error.message, alone.message, beginning);
-        const char *ratio = strstr(error.message, "volume ratio ");
-        assert_non_null(ratio);
-        assert_true(fabs(strtod(ratio + strlen("volume ratio "), NULL)) < 1000);
+        assert_string_equal(error.message, alone.message);
         assert_true(lar_simulation_steps(simulation) < 50);
         char first[sizeof error.message];
         strcpy(first, error.message);

@@ -161,10 +161,12 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
         assert_true(felt->touching > 0);
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
-            sum[i] += felt->force[i];
-            moment[i] += (double)felt->torque[i] + (double)felt->rest[i] * LAR_TORQUE_REST +
-                         pose.position[j] * (double)felt->force[k] -
-                         pose.position[k] * (double)felt->force[j];
+            double whole = LAR_STEP_SHARES;
+            sum[i] += felt->force[i] / LAR_STEP_SHARES;
+            moment[i] += ((double)felt->torque[i] + (double)felt->rest[i] * LAR_TORQUE_REST +
+                          pose.position[j] * (double)felt->force[k] -
+                          pose.position[k] * (double)felt->force[j]) /
+                         whole;
         }
     }
     for (int i = 0; i < 3; i++) {
