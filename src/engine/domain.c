@@ -266,7 +266,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = choose_step(domain, options, error);
-    domain->interval = lar_tool_interval(domain->time_step);
+    domain->interval = LAR_INTERVAL_MOST; /* those with tools decide more often: simulation.c */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);

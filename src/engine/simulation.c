@@ -131,6 +131,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     lar_status status = lar_tool_list_create(model, options->hands, &simulation->list, error);
     if (!status) status = lar_domain_create(model, options, domain, error);
     if (status) return status;
+    if (model->tool_count > 0) domain->interval = lar_tool_interval(domain->time_step);
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,

@@ -132,7 +132,7 @@ typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar
 /* From where on an element is looked at more closely: its volume; the sum of the squares of its
  * cofactors, 3 at rest, with which its frequency goes; and how far the gradient in a corner may be
  * from the mean one, squared. */
-static const double STRAINED_VOLUME = 0.75, STRAINED_COFACTOR = 3 * 1.3, STRAINED_CORNER = 0.0625;
+static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_CORNER = 0.09;
 
 LAR_INLINE unsigned strained_lanes(const lar_lane cof[9], lar_lane J) {
     return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), lar_lane_square_sum(cof)) |
