@@ -64,7 +64,7 @@ typedef struct lar_step_division {
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
  * for it. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
-    return division->lately > 0.8;
+    return division->lately > 0.7;
 }
 
 /* The hand of a tool, and how far the tool is from following it. */

@@ -178,14 +178,14 @@ static void processes_know_what_is_strained(void **unused) {
     fleet f;
     lar_simulation *alone = start_with(model, setting(NULL, 0));
     start_fleet(&f, model, options, 2, NULL);
-    place_tool(alone, BALL, 0.023, 0.0148, 0.0174, 1, 200);
-    place_tool(f.zero, BALL, 0.023, 0.0148, 0.0174, 1, 200);
+    place_tool(alone, BALL, 0.023, 0.0148, 0.0156, 1, 200);
+    place_tool(f.zero, BALL, 0.023, 0.0148, 0.0156, 1, 200);
     for (int i = 0; i < 20; i++) {
         advance(alone, 10);
         advance(f.zero, 10);
         assert_true(hash_of(alone) == hash_of(f.zero));
     }
-    assert_true(lar_division_is_close(&alone->tools.division));
+    assert_true(alone->tools.division.lately > 0.3);
     lar_simulation_destroy(alone);
     end_fleet(&f);
     lar_model_destroy(model);
