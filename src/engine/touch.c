@@ -366,6 +366,7 @@ static void give(lar_touch *touch, const lar_condition_context *context, int32_t
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
             double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
+            if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
             sum->torque[i] += context->shares * llrint(whole);
             sum->rest[i] += context->shares * llrint((torque - whole) / LAR_TORQUE_REST);
         }

@@ -77,7 +77,7 @@ static void settle(lar_device *device, bool pressed) {
 
 static lar_tool_pose play(lar_device *device, int ticks, double tool_follows) {
     lar_tool_pose pose = PROBE.rest, tool = PROBE.rest;
-    lar_tool_force none = {{0}, {0}, 0, 0};
+    lar_tool_force none = {.touching = 0};
     for (int i = 0; i < ticks; i++) {
         assert_true(lar_device_poll(device, &TICK, &pose));
         for (int k = 0; k < 3; k++)
