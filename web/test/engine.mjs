@@ -26,7 +26,7 @@ export function demo() {
 export function tornDemo({ folder, scene }) {
     const torn = join(folder, 'torn.yaml');
     const text = readFileSync(scene, 'utf8').replace(/^load:[\s\S]*?(?=^\S)/m, '');
-    writeFileSync(torn, `${text}\nload: [ { nodes: fundus, force: [0, 0, 40], over: 4 } ]\n`);
+    writeFileSync(torn, `${text}\nload: [ { nodes: fundus, force: [0, 0, 40000], over: 1 } ]\n`);
     return torn;
 }
 
