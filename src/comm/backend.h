@@ -60,6 +60,8 @@ struct lar_comm {
     unsigned char *receive;      /* the backend's; two halves of options.receive_bytes */
     lar_comm_peer *peers;        /* [count] */
     lar_comm_address *addresses; /* [count] */
+    uint64_t completed;          /* steps, between two stretches of them */
+    bool completed_known;        /* lar_comm_complete has been called */
     uint64_t ahead;              /* modulo 2^64: of steps' names in messages before their numbers */
     uint64_t token;              /* a number that only this computer's processors know */
     uint64_t *verdict;           /* who is lost; 0: nobody. Atomic, may be shared */

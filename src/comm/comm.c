@@ -169,6 +169,10 @@ int32_t lar_comm_count(const lar_comm *comm) {
 void lar_comm_number_steps(lar_comm *comm, int64_t ahead) {
     comm->ahead = (uint64_t)ahead;
 }
+void lar_comm_complete(lar_comm *comm, uint64_t steps) {
+    comm->completed = steps;
+    comm->completed_known = true;
+}
 const char *lar_comm_backend_name(const lar_comm *comm) {
     return comm->backend->name;
 }
@@ -187,9 +191,10 @@ lar_status lar_comm_check(lar_comm *comm, uint64_t step, lar_error *error) {
         "it lives but does not send what is waited for", "it stopped with a failure of its own"};
     int lost = (int)(verdict & 0xffffffffu) - 1;
     char complete[80] = "";
-    if (step)
+    uint64_t steps = step ? step - 1 + comm->ahead : comm->completed;
+    if (step || comm->completed_known)
         snprintf(complete, sizeof complete, "the last complete step of processor %d is %llu; ",
-                 (int)comm->options.self, (unsigned long long)(step - 1 + comm->ahead));
+                 (int)comm->options.self, (unsigned long long)steps);
     if (lost == comm->options.self)
         return lar_fail(error, LAR_ERROR_PEER,
                         "the others have given up processor %d, which is this one (%s); %slook for "

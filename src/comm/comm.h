@@ -133,13 +133,17 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
  * above; who closed without an abort is no loss), and after 2.5 ms of polling it sleeps, 50 us at
  * first, 1 ms at last, so that waiting costs no processor time and an answer may then come up to 1
  * ms late; what follows within a session's tick is heard at once. `step` counts the packets at this
- * offset, which need not be steps of a simulation: the message of a loss names no step. */
+ * offset, which need not be steps of a simulation: the message of a loss names the step
+ * that lar_comm_complete has told, if any. */
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error);
 
 /* What messages call the packets of step n: step n + ahead, for who counts packets otherwise than
  * the steps of a simulation (0 at first). While nobody waits. */
 void lar_comm_number_steps(lar_comm *comm, int64_t ahead);
+/* This processor has completed so many steps and sends none now: what messages say of it while it
+ * waits for orders or answers. No other thread uses the connection meanwhile. */
+void lar_comm_complete(lar_comm *comm, uint64_t steps);
 
 /* ---- the backends of this build ---------------------------------------------------------- */
 

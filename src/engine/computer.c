@@ -316,7 +316,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
     lar_crew_run(computer->crew, advance_seat, computer);
-    for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].stop = 0;
+    for (int32_t i = 0; i < computer->hosted; i++) lar_processor_pause(&computer->processor[i]);
     report_here(computer, &computer->report);
     return first_failure(computer, error);
 }

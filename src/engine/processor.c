@@ -298,6 +298,16 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
     if (p->comm) lar_comm_number_steps(p->comm, p->ahead);
 }
 
+void lar_processor_pause(lar_processor *p) {
+    const lar_worker *first = &p->worker[0];
+    p->stop = 0;
+    /* Parts of divided steps are rounds of their own. */
+    p->ahead = (int64_t)(first->state.step - first->round);
+    if (!p->comm) return;
+    lar_comm_number_steps(p->comm, p->ahead);
+    lar_comm_complete(p->comm, first->state.step);
+}
+
 void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
     uint64_t known = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
     while ((known == 0 || step < known) &&

@@ -111,6 +111,9 @@ void lar_processor_destroy(lar_processor *processor); /* idempotent */
 void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
                            const lar_state *state);
 
+/* After a stretch of steps, when none of its threads computes: what messages say of it. */
+void lar_processor_pause(lar_processor *processor);
+
 /* Asks all processors to stop before `step`: earlier requests stand. */
 void lar_processor_ask_stop(lar_processor *processor, uint64_t step);
 

@@ -92,7 +92,7 @@ lose() {
         [ $who = "$victim" ] && continue
         prefix="processor $who: "
         [ $who = 0 ] && prefix=
-        grep -q "^lariat run: ${prefix}processor $victim is lost: " err || {
+        grep -q "^lariat run: ${prefix}processor $victim is lost: .*last complete step of processor $who is [0-9]" err || {
             fail "processor $who does not tell that $victim is lost ($signal, $comm)"
             cat err >&2
         }
