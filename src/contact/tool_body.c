@@ -14,7 +14,7 @@ static const double PRESSURE_MOST = 6;
 /* Contact must bear the limit at a depth at which the tool's middle is well outside. */
 static const double DEPTH_MOST = 0.5, BEARS = 0.45;
 /* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
-static const double NEED_MOST = 100;
+static const double BORNE_RATE = 100;
 static const double GRASP_SHARE = 0.5;
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
@@ -82,7 +82,7 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     double grasp = mean.squeeze / limits->grasp;
     double depth = felt->depth / limits->depth;
     double most = fmax(fmax(force, turn), grasp);
-    double other = fmax(depth, most > 0 ? need / NEED_MOST : 0);
+    double other = fmax(depth, most > 0 ? need / BORNE_RATE : 0);
     *load = fmax(most, other);
     if (other > 1 && other > most && most > 0) mean.excess = other / most;
     return mean;

@@ -70,7 +70,7 @@ awk 'BEGIN {
 }' >hand.csv
 for grid in '' '--grid 2x1x1 --comm shm'; do
     # shellcheck disable=SC2086
-    expect 0 "$LARIAT" view block.yaml --port 0 --seconds 1 --pace 0 --record back.recording \
+    expect 0 "$LARIAT" view block.yaml --port 0 --seconds 4 --pace 0 --record back.recording \
         --device hand=script:hand.csv --json $grid
     complains 'the run became unstable and went back [0-9.]* s to .*: unstable at step'
     [ "$(value_of recoveries)" -gt 0 ] || fail "it went back $(value_of recoveries) times"
