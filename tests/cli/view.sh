@@ -69,9 +69,14 @@ awk 'BEGIN {
     for (t = .5; t < 20; t += .3) printf "%g,.03,.02,%g,0\n", t, n++ % 2 ? .032 : .028
 }' >hand.csv
 for grid in '' '--grid 2x1x1 --comm shm'; do
-    # shellcheck disable=SC2086
-    expect 0 "$LARIAT" view block.yaml --port 0 --seconds 4 --pace 0 --record back.recording \
-        --device hand=script:hand.csv --json $grid
+    # Two processors that share a busy core with other tests may need longer to reach the load.
+    for patience in 4 20 60; do
+        rm -f back.recording
+        # shellcheck disable=SC2086
+        expect 0 "$LARIAT" view block.yaml --port 0 --seconds $patience --pace 0 \
+            --record back.recording --device hand=script:hand.csv --json $grid
+        [ "$(value_of recoveries)" -eq 0 ] || break
+    done
     complains 'the run became unstable and went back [0-9.]* s to .*: unstable at step'
     [ "$(value_of recoveries)" -gt 0 ] || fail "it went back $(value_of recoveries) times"
     [ "$(value_of state)" = '"playing"' ] || fail "the state is $(value_of state)"
