@@ -222,7 +222,7 @@ static lar_status crushed(double shear, double speed, double part_of_stable_step
 static void what_is_crushed_holds_or_stops_and_says_why(void **unused) {
     (void)unused;
     static const double shears[] = {2e3, 4e3, 8e3}, parts[] = {0.1, 0.2, 0.4, 0.8, 0.999};
-    int held = 0, given = 0;
+    int held = 0;
     for (int k = 0; k < 30; k++) {
         lar_error error = {0};
         uint64_t steps;
@@ -237,10 +237,8 @@ static void what_is_crushed_holds_or_stops_and_says_why(void **unused) {
         assert_non_null(strstr(error.message, "element "));
         assert_non_null(strstr(error.message, "near ("));
         assert_non_null(strstr(error.message, "; use "));
-        given += strstr(error.message, "more than it took") != NULL;
     }
-    (void)given;
-    assert_true(held >= 28); /* 12 of 30 stopped before corners had barriers */
+    assert_true(held >= 28); /* 21 of 30 held before corners had barriers */
 }
 
 /* The same on any number of processors. */
