@@ -75,6 +75,7 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
 
     for (int i = 0; i < model->fix_count; i++)
         add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
+    c->fixed_count = c->constraint_count;
     for (int i = 0; i < model->move_count; i++)
         add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
                         model->move[i].by, model->move[i].curve);
@@ -200,14 +201,13 @@ int32_t lar_conditions_load(lar_conditions *c, const lar_condition_context *cont
 
 void lar_conditions_observe(lar_conditions *c, const lar_condition_context *context,
                             lar_state *state) {
-    for (int32_t i = 0; i < c->constraint_count; i++) {
+    /* The support takes it: a large reaction is no fast node. */
+    for (int32_t i = 0; i < c->fixed_count; i++) state->force[c->constraint[i].value] = 0;
+    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
         lar_constraint *constraint = &c->constraint[i];
         int64_t *force = &state->force[constraint->value];
-        if (constraint->curve >= 0) { /* what stands still does no work */
-            constraint->force = (double)*force / context->scale;
-            constraint->before = state->v[constraint->value];
-        }
-        /* The support takes it: a large reaction is no fast node. */
+        constraint->force = (double)*force / context->scale;
+        constraint->before = state->v[constraint->value];
         *force = 0;
     }
 }
@@ -217,31 +217,35 @@ double lar_constraint_value(const lar_model *model, const lar_constraint *constr
     return constraint->by * lar_curve_value(&model->curve[constraint->curve], time);
 }
 
+/* The kernel moved what stands still as if it were free, and counted that as damped motion. */
+static double hold(const lar_conditions *c, const double *weight, lar_state *state) {
+    double counted = 0, *restrict u = state->u, *restrict v = state->v;
+    for (int32_t i = 0; i < c->fixed_count; i++) {
+        int32_t value = c->constraint[i].value;
+        counted += weight[value / 4] * v[value] * v[value];
+        u[value] = v[value] = 0;
+    }
+    return counted;
+}
+
 double lar_conditions_impose(lar_conditions *c, const lar_condition_context *context, double time,
                              lar_state *state) {
     const lar_model *model = context->model;
-    double dt = context->time_step, gravity[3], work = 0;
+    double dt = context->time_step, share = dt / context->whole_step, gravity[3], work = 0;
     lar_gravity_at(model, time, gravity);
-    for (int32_t i = 0; i < c->constraint_count; i++) {
+    state->damped -= share * hold(c, context->weight, state);
+    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
         const lar_constraint *constraint = &c->constraint[i];
         double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
         double mass = context->mass[constraint->value / 4];
         double weight = context->weight[constraint->value / 4];
-        /* The kernel moved this value as if it were free and counted that as damped motion. */
-        double before = constraint->curve < 0 ? 0 : constraint->before;
-        double share = dt / context->whole_step;
-        state->damped -= share * weight * (before + *v) * (before + *v);
-        if (constraint->curve < 0) {
-            *u = 0;
-            *v = 0;
-            continue;
-        }
+        double before = constraint->before, free = before + *v;
         double old = lar_constraint_value(model, constraint, time);
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
         state->fastest = fmax(state->fastest, fabs(*v));
+        state->damped += weight * ((before + *v) * (before + *v) - share * free * free);
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
-        state->damped += weight * (before + *v) * (before + *v);
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / dt;
         double reaction =

@@ -167,8 +167,15 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->strained = lar_calloc(elements, sizeof *domain->strained);
     domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
-    if (!domain->blocks || !domain->corner_limit || !domain->strained || !domain->strained_count)
+    domain->strain = lar_calloc(elements, sizeof *domain->strain);
+    domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
+    if (!domain->blocks || !domain->corner_limit || !domain->strained || !domain->strained_count ||
+        !domain->strain || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
+    for (lar_lid n = 0; n < domain->layout.node_padded; n++)
+        if (domain->layout.global[n] >= 0)
+            memcpy(domain->rest + 4 * (size_t)n,
+                   domain->model->mesh.position[domain->layout.global[n]], 3 * sizeof(double));
     double steepest = 0;
     char *memory = domain->blocks;
     for (int32_t r = 0; r < domain->run_count; r++) {
@@ -343,6 +350,8 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->corner_limit);
     free(domain->strained);
     free(domain->strained_count);
+    free(domain->strain);
+    free(domain->rest);
     if (!domain->rate_lent) free(domain->rate);
     free(domain->spare);
     if (domain->weight != domain->mass) free(domain->weight);

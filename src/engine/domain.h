@@ -34,8 +34,10 @@ typedef struct lar_domain {
     int32_t *run_first;   /* [run_count] the run's first block in layout.block */
     void *blocks;         /* all blocks of all runs */
     double *corner_limit; /* [8 for each block] lar_hex8_corner_limit, in squared force units */
-    int32_t *strained;    /* [8 for each block] elements that the guard looks at in every step, */
+    double *rest;         /* [layout.node_padded][4] where nodes are at rest [m] */
+    int32_t *strained;    /* [8 for each block] what the guard looks at in every step, */
     int32_t *strained_count; /* [run_count] the first of a run's place; scratch (engine/guard.h) */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a watch */
     lar_element_rate *rate;  /* [elements of the model] */
     bool rate_lent;          /* `rate` belongs to the whole */
     size_t block_bytes;

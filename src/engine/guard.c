@@ -4,10 +4,10 @@
 
 #include "mechanics/hex8_guard.h"
 
-/* Elements are listed when a corner is no farther from its barrier than this. That no corner comes
- * there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the least
- * corner that was not listed stood at 0.48. */
-static const double LISTED = 2 * LAR_GUARD_START;
+/* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
+ * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
+ * least corner that was not listed stood at 0.48. */
+static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
 
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
 static const double LEAD = 0.5;
@@ -21,31 +21,52 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
 }
 
 /* (omega dt / 2)^2 of an element as it is strained. */
-static double need_of(const lar_domain *domain, lar_gid e, const double rest[8][3],
-                      const double now[8][3], const lar_guard *guard) {
+static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
+                      const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_element_rate *rate = &domain->rate[e];
-    double growth = lar_hex8_growth(rest, now, lar_model_material_of(domain->model, e));
-    double square = rate->square * growth + (1 + 2 * LEAD) * guard->stiffness / rate->mass;
+    const lar_material *material = lar_model_material_of(domain->model, e);
+    double square = rate->square * lar_hex8_growth(material, strain);
+    if (pressed) {
+        double rest[8][3], now[8][3];
+        lar_guard guard;
+        corners_of(domain, state, e, rest, now);
+        lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &guard);
+        square += (1 + 2 * LEAD) * guard.stiffness / rate->mass;
+    }
     double need = 0.25 * domain->time_step * domain->time_step * square;
     return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
 
+/* Strained lanes of one block, from entry `i` of a watch on. Returns where those of the next
+ * begin. */
+static int32_t lanes_of_block(const lar_hex8_watch *watch, int32_t i, int32_t *block,
+                              unsigned *lanes) {
+    *block = watch->lane[i] / LAR_BLOCK;
+    for (*lanes = 0; i < watch->count && watch->lane[i] / LAR_BLOCK == *block; i++)
+        *lanes |= 1u << watch->lane[i] % LAR_BLOCK;
+    return i;
+}
+
 void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,
                       bool measures, lar_state *state) {
-    int32_t *kept = watch->lane, count = 0;
-    for (int32_t i = 0; i < watch->count; i++) {
-        int32_t lane = watch->lane[i];
-        lar_gid e =
-            domain->layout.block[domain->run_first[r] + lane / LAR_BLOCK].element[lane % LAR_BLOCK];
-        if (e < 0) continue;
-        double rest[8][3], now[8][3];
-        lar_guard guard;
-        corners_of(domain, state, e, rest, now);
-        lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
-                       lar_model_material_of(domain->model, e), &guard);
-        double need = need_of(domain, e, (const double(*)[3])rest, (const double(*)[3])now, &guard);
-        if (measures && !(need <= state->need)) state->need = need;
-        if (!(guard.least >= LISTED)) kept[count++] = e;
+    int32_t *list = watch->lane, count = 0;
+    for (int32_t first = 0, end; first < watch->count; first = end) {
+        int32_t block;
+        unsigned lanes;
+        end = lanes_of_block(watch, first, &block, &lanes);
+        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
+        unsigned below =
+            domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
+        for (int32_t i = first; i < end; i++) {
+            int32_t lane = watch->lane[i] % LAR_BLOCK;
+            if (element[lane] < 0) lanes &= ~(1u << lane);
+            if (!measures || element[lane] < 0) continue;
+            double need =
+                need_of(domain, state, element[lane], below >> lane & 1, watch->strain[i]);
+            if (!(need <= state->need)) state->need = need;
+        }
+        lanes &= below >> LAR_BLOCK;
+        if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
     }
     domain->strained_count[r] = count;
 }
@@ -81,8 +102,16 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
-    const int32_t *element = domain->strained + LAR_BLOCK * (size_t)domain->run_first[r];
-    for (int32_t i = 0; i < domain->strained_count[r]; i++) apply(domain, element[i], true, state);
+    const int32_t *list = domain->strained + LAR_BLOCK * (size_t)domain->run_first[r];
+    for (int32_t i = 0; i < domain->strained_count[r]; i++) {
+        int32_t block = list[i] >> LAR_BLOCK;
+        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
+        unsigned below =
+            domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
+        for (unsigned lanes = below & (unsigned)list[i] & ((1u << LAR_BLOCK) - 1); lanes;
+             lanes &= lanes - 1)
+            apply(domain, element[__builtin_ctz(lanes)], true, state);
+    }
 }
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {

@@ -44,7 +44,8 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
         lar_hex8_watch watch = {.limit = domain->corner_limit + place,
-                                .lane = domain->strained + place};
+                                .lane = domain->strained + place,
+                                .strain = domain->strain + place};
         int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
                                                  &domain->limits, watches ? &watch : NULL);
         if (watches) lar_guard_select(domain, r, &watch, due, state);

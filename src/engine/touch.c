@@ -287,14 +287,16 @@ static double wall_mass(const lar_touch_face *face, const double *mass, const do
 
 /* The wall. Of a tool that is small beside a face few points of the grid touch, or none, and they
  * bear what so few may. What the others could bear belongs to the closest point of the face, when
- * that is deep in the tool: as much as its corners bear, at whatever size of tool and face. */
-static void touch_wall(lar_patch *patch, const lar_contact_law *law, const double *mass, int n) {
-    double free_share = 1 - patch->covered / (n * n);
-    if (!(free_share > 0)) return;
+ * that is deep in the tool: as much as its corners bear, at whatever size of tool and face. Returns
+ * how far the face is from where the wall begins. */
+static double touch_wall(lar_patch *patch, const lar_contact_law *law, const double *mass, int n) {
+    double free_share = 1 - patch->covered / (n * n), gap = INFINITY;
+    if (!(free_share > 0)) return -patch->radius;
     for (int32_t s = 0; s < patch->body->count; s++) {
         lar_face_segment at;
         lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
         double depth = patch->radius - at.distance;
+        gap = fmin(gap, WALL * patch->radius - depth);
         if (!(depth > WALL * patch->radius)) continue;
         if (!(at.distance > 0)) /* the middle line goes through the face: out the way it came */
             for (int i = 0; i < 3; i++) at.normal[i] = -patch->out[i];
@@ -305,6 +307,7 @@ static void touch_wall(lar_patch *patch, const lar_contact_law *law, const doubl
                    free_share * share * wall_mass(patch->face, mass, at.weight),
                    depth - WALL * patch->radius);
     }
+    return gap;
 }
 
 /* How far the face is at least from where the wall begins: no point of it is farther from a point
@@ -334,7 +337,7 @@ static void touch_face(lar_patch *patch, const lar_contact_law *law, const doubl
         touch_point(patch, law, weight);
     }
     double gap = wall_gap(patch, n);
-    if (gap < 0) touch_wall(patch, law, mass, n);
+    if (gap < 0) gap = touch_wall(patch, law, mass, n);
     patch->closest = fmin(patch->closest, gap);
 }
 

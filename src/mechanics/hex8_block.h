@@ -81,6 +81,9 @@ typedef struct lar_hex8_limits {
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 
+/* What a watch says of an element's strain: det F, |F|^2 and |cof F|^2, 1, 3 and 3 at rest. */
+enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
+
 /* Elements that are strained so much that they must be looked at more closely (hex8_guard.h):
  * squeezed, or bent by their hourglass modes, by about a fifth. */
 typedef struct lar_hex8_watch {
@@ -88,6 +91,7 @@ typedef struct lar_hex8_watch {
                             force */
     int32_t count;
     int32_t *lane; /* [8 for each block of the run] block * 8 + lane, ascending */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [as many] of each */
 } lar_hex8_watch;
 
 /* Recovers a run: adds the internal forces for the displacements `u` [nodes][4] to `force`
@@ -96,6 +100,12 @@ typedef struct lar_hex8_watch {
  * hourglass forces are compared with their limit, and strained elements are listed. */
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
                                     const lar_hex8_limits *limits, lar_hex8_watch *watch);
+
+/* Looks at the corners of block `block` of a run, with nodes at `rest` and displaced by `u`, both
+ * [nodes][4]. A corner's volume is what its edges span. Returns a bit for each lane where one is
+ * not above share[0] times that at rest; and for share[1], eight bits further up. */
+typedef unsigned (*lar_hex8_corners)(const lar_block_run *run, int32_t block, const double *rest,
+                                     const double *u, const double share[2]);
 
 /* How nodes move in one leapfrog step of length dt with mass-proportional damping. */
 typedef struct lar_motion {
@@ -122,6 +132,7 @@ typedef struct lar_kernels {
     const char *name; /* as in LARIAT_ISA */
     bool (*available)(void);
     lar_hex8_recover recover;
+    lar_hex8_corners corners;
     lar_node_update update;
 } lar_kernels;
 

@@ -165,46 +165,12 @@ static double volume_slope(const lar_material *material, double J, double *press
     }
 }
 
-/* Eight times dx/dxi in the middle, a column for each natural coordinate. */
-static void middle_slope(const double x[8][3], double slope[3][3]) {
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++) {
-            slope[k][i] = 0;
-            for (int a = 0; a < 8; a++) slope[k][i] += lar_node_sign[a][k] * x[a][i];
-        }
-}
-
-/* The three cross products of the columns: the cofactors. Returns the determinant. */
-static double cofactor(const double column[3][3], double cof[3][3]) {
-    for (int k = 0; k < 3; k++) lar_cross(column[(k + 1) % 3], column[(k + 2) % 3], cof[k]);
-    return lar_dot(column[0], cof[0]);
-}
-
-static double square_sum(const double A[3][3]) {
-    return lar_dot(A[0], A[0]) + lar_dot(A[1], A[1]) + lar_dot(A[2], A[2]);
-}
-
-/* The sum over k of a_k (x) b_k, column by column. */
-static void outer_sum(const double a[3][3], const double b[3][3], double factor, double out[3][3]) {
-    for (int j = 0; j < 3; j++)
-        for (int i = 0; i < 3; i++)
-            out[j][i] = factor * (a[0][i] * b[0][j] + a[1][i] * b[1][j] + a[2][i] * b[2][j]);
-}
-
-double lar_hex8_growth(const double rest[8][3], const double now[8][3],
-                       const lar_material *material) {
-    double before[3][3], after[3][3], cof_before[3][3], cof_after[3][3], F[3][3], cof[3][3];
-    middle_slope(rest, before);
-    middle_slope(now, after);
-    double volume_before = cofactor((const double(*)[3])before, cof_before);
-    double J = cofactor((const double(*)[3])after, cof_after) / volume_before;
+double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
+    double J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA] / 3.0;
     if (!(J > 0)) return INFINITY;
-    outer_sum((const double(*)[3])after, (const double(*)[3])cof_before, 1 / volume_before, F);
-    outer_sum((const double(*)[3])cof_after, (const double(*)[3])before, 1 / volume_before, cof);
     double bulk = lar_material_bulk(material), shear = 4 * lar_material_shear(material) / 3;
     double pressure, slope = volume_slope(material, J, &pressure);
-    double area = square_sum((const double(*)[3])cof) / 3;
-    double stretch = sqrt(square_sum((const double(*)[3])F) / 3);
+    double stretch = sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
     double volume = fmax(slope, 0) * area + fabs(pressure) * stretch;
     return (volume + shear * fmax(1, area / (J * J))) / (bulk + shear);
 }

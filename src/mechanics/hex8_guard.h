@@ -25,6 +25,7 @@
 #define LAR_MECHANICS_HEX8_GUARD_H
 
 #include "mechanics/hex8.h"
+#include "mechanics/hex8_block.h"
 
 #define LAR_GUARD_START 0.3
 
@@ -51,9 +52,8 @@ void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const
 double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]);
 
 /* How the square of an element's highest frequency has grown with its strain, barrier apart: the
- * volume term goes with |cof F|^2 and the law's own slope, shear with |F^-1|^2; from the gradient
- * in the middle. Infinite where that is turned over. */
-double lar_hex8_growth(const double rest[8][3], const double now[8][3],
-                       const lar_material *material);
+ * volume term goes with |cof F|^2 and the law's own slope, shear with |F^-1|^2. `strain`: what a
+ * watch says (hex8_block.h), of the mean gradient. Infinite where that is turned over. */
+double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]);
 
 #endif

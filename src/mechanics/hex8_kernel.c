@@ -17,6 +17,7 @@
 #define UNROLL3 _Pragma("GCC unroll 3")
 #define UNROLL4 _Pragma("GCC unroll 4")
 #define UNROLL6 _Pragma("GCC unroll 6")
+#define UNROLL8 _Pragma("GCC unroll 8")
 #define UNROLL9 _Pragma("GCC unroll 9")
 
 /* What waits between the phases. */
@@ -29,9 +30,8 @@ typedef struct lane_record {
  * ++. */
 static const int left_node[4] = {0, 3, 4, 7}, right_node[4] = {1, 2, 5, 6};
 
-LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                            const double *u, lar_lane sum[3], lar_lane difference[3]) {
-    lar_lane left[3], right[3];
+LAR_INLINE void gather_pair(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
+                            const double *u, lar_lane left[3], lar_lane right[3]) {
     const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
     if (rows == LAR_ROWS_NONE) {
         lar_lane_gather(u, a, left);
@@ -39,6 +39,12 @@ LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows
     } else {
         lar_lane_gather_row(u, a, b, rows == LAR_ROWS_FOUR, left, right);
     }
+}
+
+LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
+                            const double *u, lar_lane sum[3], lar_lane difference[3]) {
+    lar_lane left[3], right[3];
+    gather_pair(head, lane, rows, edge, u, left, right);
     UNROLL3 for (int i = 0; i < 3; i++) {
         sum[i] = right[i] + left[i];
         difference[i] = right[i] - left[i];
@@ -134,22 +140,30 @@ typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar
  * from the mean one, squared. */
 static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_CORNER = 0.09;
 
-LAR_INLINE unsigned strained_lanes(const lar_lane cof[9], lar_lane J) {
-    return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), lar_lane_square_sum(cof)) |
-           lar_lane_not_greater(J, lar_lane_set(STRAINED_VOLUME));
+/* What a watch says of the strain of some lanes (hex8_block.h). */
+typedef struct lane_strain {
+    lar_lane number[LAR_STRAIN_NUMBERS];
+} lane_strain;
+
+LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
+    return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), strain->number[LAR_STRAIN_AREA]) |
+           lar_lane_not_greater(strain->number[LAR_STRAIN_VOLUME], lar_lane_set(STRAINED_VOLUME));
 }
 
 /* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. With the
  * corners' `limit` (may be NULL) *strained gets those to be looked at more closely. */
 LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
                                  const lar_hex8_limits *limits, lane_law law, const double *limit,
-                                 unsigned *strained) {
+                                 lane_strain *strain, unsigned *strained) {
     lar_lane P[9], p[LAR_LAW_PARAMETERS];
     UNROLL3 for (int k = 0; k < LAR_LAW_PARAMETERS; k++) p[k] =
         lar_lane_load(&head->modulus[k][lane]);
-    lar_lane J = lar_lane_cofactor(record->F, P);
-    if (limit) *strained = strained_lanes(P, J);
-    lar_lane stress = law(record->F, P, J, lar_lane_square_sum(record->F), p);
+    lar_lane J = lar_lane_cofactor(record->F, P), I1 = lar_lane_square_sum(record->F);
+    if (limit) {
+        *strain = (lane_strain){{J, I1, lar_lane_square_sum(P)}};
+        *strained = strained_lanes(strain);
+    }
+    lar_lane stress = law(record->F, P, J, I1, p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
     unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->least_volume)) |
                       lar_lane_not_greater(lar_lane_set(limits->stress_square), stress);
@@ -260,7 +274,7 @@ typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const d
                              lane_record *record);
 typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
                                  const lar_hex8_limits *limits, const double *limit,
-                                 unsigned *strained);
+                                 lane_strain *strain, unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
@@ -293,15 +307,18 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
 #define DEFINE_LAW(identifier, name)                                                               \
     static unsigned stress_##identifier(const char *blocks, size_t count, size_t size,             \
                                         lane_record *record, const lar_hex8_limits *limits,        \
-                                        const double *limit, unsigned *strained) {                 \
+                                        const double *limit, lane_strain *strain,                  \
+                                        unsigned *strained) {                                      \
         unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
             beyond |=                                                                              \
                 stress_lanes((const lar_block_head *)(const void *)block, lane, record, limits,    \
-                             lar_##identifier##_stress, limit ? limit + shift : NULL, &part)       \
+                             lar_##identifier##_stress, limit ? limit + shift : NULL, strain,      \
+                             &part)                                                                \
                 << shift;                                                                          \
             if (limit) *strained |= part << shift;                                                 \
+            strain++;                                                                              \
             shift += LAR_LANES;                                                                    \
         }                                                                                          \
         return beyond;                                                                             \
@@ -320,14 +337,23 @@ LAR_INLINE void ask_for_next_chunk(const char *blocks, size_t bytes) {
 }
 
 /* Lists the strained elements of a chunk that begins with block b. */
-static void list_strained(lar_hex8_watch *watch, int32_t b, unsigned strained) {
-    for (; strained; strained &= strained - 1)
-        watch->lane[watch->count++] = b * LAR_BLOCK + __builtin_ctz(strained);
+static void list_strained(lar_hex8_watch *watch, int32_t b, unsigned strained,
+                          const lane_strain *strain) {
+    for (; strained; strained &= strained - 1, watch->count++) {
+        int lane = __builtin_ctz(strained);
+        double values[LAR_LANES] __attribute__((aligned(64)));
+        for (int k = 0; k < LAR_STRAIN_NUMBERS; k++) {
+            lar_lane_store(values, strain[lane / LAR_LANES].number[k]);
+            watch->strain[watch->count][k] = (float)values[lane % LAR_LANES];
+        }
+        watch->lane[watch->count] = b * LAR_BLOCK + lane;
+    }
 }
 
 static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_watch *watch) {
     lane_record record[CHUNK * PARTS];
+    lane_strain strains[CHUNK * PARTS];
     strain_phase strain = strain_table[run->shape][run->rows];
     stress_phase stress = stress_table[run->law];
     force_phase forces = force_table[run->shape][run->rows];
@@ -340,9 +366,9 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
         unsigned strained = 0;
         const double *limit = watch ? watch->limit + b * LAR_BLOCK : NULL;
-        unsigned beyond = stress(blocks, count, size, record, limits, limit, &strained);
+        unsigned beyond = stress(blocks, count, size, record, limits, limit, strains, &strained);
         forces(blocks, count, run->turn, record, force);
-        if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained);
+        if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
             int block = __builtin_ctz(beyond) / LAR_BLOCK;
             first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);
@@ -351,10 +377,65 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
     return first;
 }
 
+/* ---- corners ------------------------------------------------------------------------------- */
+
+/* Where the corners of a block are, less whatever `nodes` says. */
+LAR_INLINE void gather_corners(const lar_block_head *head, int lane, lar_block_rows rows,
+                               const double *nodes, lar_lane x[8][3]) {
+    UNROLL4 for (int edge = 0; edge < 4; edge++) {
+        lar_lane left[3], right[3];
+        gather_pair(head, lane, rows, edge, nodes, left, right);
+        UNROLL3 for (int i = 0; i < 3; i++) {
+            x[left_node[edge]][i] = left[i];
+            x[right_node[edge]][i] = right[i];
+        }
+    }
+}
+
+/* The volumes that the edges span in the eight corners. */
+LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
+    /* Of every corner the corners where its edges along xi, eta, zeta begin and end. */
+    static const int from[8][3] = {{0, 0, 0}, {0, 1, 1}, {3, 1, 2}, {3, 0, 3},
+                                   {4, 4, 0}, {4, 5, 1}, {7, 5, 2}, {7, 4, 3}};
+    static const int to[8][3] = {{1, 3, 4}, {1, 2, 5}, {2, 2, 6}, {2, 3, 7},
+                                 {5, 7, 4}, {5, 6, 5}, {6, 6, 6}, {6, 7, 7}};
+    UNROLL8 for (int a = 0; a < 8; a++) {
+        lar_lane e[3][3];
+        UNROLL3 for (int k = 0; k < 3; k++) UNROLL3 for (int i = 0; i < 3; i++)
+            e[k][i] = x[to[a][k]][i] - x[from[a][k]][i];
+        lar_lane sum = e[0][0] * lar_lane_fnma(e[1][2], e[2][1], e[1][1] * e[2][2]);
+        sum = lar_lane_fma(e[0][1], lar_lane_fnma(e[1][0], e[2][2], e[1][2] * e[2][0]), sum);
+        volume[a] =
+            lar_lane_fma(e[0][2], lar_lane_fnma(e[1][1], e[2][0], e[1][0] * e[2][1]), sum);
+    }
+}
+
+static unsigned corners(const lar_block_run *run, int32_t b, const double *rest, const double *u,
+                        const double share[2]) {
+    const lar_block_head *head =
+        (const void *)((const char *)run->blocks + (size_t)b * lar_block_size(run->shape));
+    unsigned below[2] = {0, 0};
+    for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
+        lar_lane x[8][3], moved[8][3], before[8], now[8];
+        gather_corners(head, lane, run->rows, rest, x);
+        gather_corners(head, lane, run->rows, u, moved);
+        corner_volumes((const lar_lane(*)[3])x, before);
+        UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++)
+            x[a][i] = x[a][i] + moved[a][i];
+        corner_volumes((const lar_lane(*)[3])x, now);
+        for (int k = 0; k < 2; k++)
+            for (int a = 0; a < 8; a++)
+                below[k] |= lar_lane_not_greater(now[a], lar_lane_set(share[k]) * before[a]) << lane;
+    }
+    return below[0] | below[1] << LAR_BLOCK;
+}
+
+/* ---- nodes --------------------------------------------------------------------------------- */
+
 /* Nodes are runs of four values (the last always 0), so every value is treated alike. */
 LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t end, double *u,
-                              double *v, int64_t *force, const double *push, const double *mass,
-                              double *damped, double *fastest) {
+                              double *v, int64_t *force, const double *push, bool divided,
+                              const double *mass, double *damped, double *fastest) {
     const lar_lane keep = lar_lane_set(motion->keep), dt = lar_lane_set(motion->dt);
     const lar_lane speed = lar_lane_set(motion->speed), factor = lar_lane_set(motion->push);
     lar_lane sum = lar_lane_set(0), most = lar_lane_set(0);
@@ -363,7 +444,8 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
         lar_lane before = lar_lane_load(v + k);
         lar_lane after = lar_lane_fma(keep, before, lar_lane_repeat4(motion->drift, k));
-        after = lar_lane_fnma(f, factor * lar_lane_per_node(push, k), after);
+        lar_lane pushed = lar_lane_per_node(push, k);
+        after = lar_lane_fnma(f, divided ? factor * pushed : pushed, after);
         lar_lane_store(v + k, after);
         lar_lane_store(u + k, lar_lane_fma(dt, after, lar_lane_load(u + k)));
         lar_ilane_store(force + k, (lar_ilane){0});
@@ -389,8 +471,12 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
 static bool update(const lar_motion *motion, int32_t first, int32_t end, double *u, double *v,
                    int64_t *force, const double *push, const double *mass, double *damped,
                    double *fastest) {
-    if (mass) return update_values(motion, first, end, u, v, force, push, mass, damped, fastest);
-    return update_values(motion, first, end, u, v, force, push, NULL, NULL, fastest);
+    /* Four loops: what is not wanted costs nothing. */
+#define VALUES(divided, mass)                                                                      \
+    update_values(motion, first, end, u, v, force, push, divided, mass, damped, fastest)
+    if (motion->push != 1) return mass ? VALUES(true, mass) : VALUES(true, NULL);
+    return mass ? VALUES(false, mass) : VALUES(false, NULL);
+#undef VALUES
 }
 
 #if LAR_SIMD == LAR_SIMD_AVX512
@@ -420,5 +506,6 @@ const lar_kernels LAR_KERNELS_NAME = {
     .name = LAR_KERNELS_TEXT,
     .available = available,
     .recover = recover,
+    .corners = corners,
     .update = update,
 };

@@ -274,9 +274,11 @@ typedef struct lar_block_run {
 typedef struct lar_hex8_limits {
     float least_volume, stress_square, hourglass_square;
 } lar_hex8_limits;
+enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
 typedef struct lar_hex8_watch {
     const float *limit;
     int32_t count, *lane;
+    float (*strain)[LAR_STRAIN_NUMBERS];
 } lar_hex8_watch;
 typedef struct lar_motion {
     float keep, dt, speed, drift[4], push;
@@ -286,6 +288,8 @@ typedef struct lar_kernels {
     bool (*available)(void);
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_watch *watch);
+    uint64_t (*corners)(const lar_block_run *run, int32_t b, const float *rest, const float *u,
+                        const float share[2]);
     bool (*update)(const lar_motion *motion, int32_t first, int32_t end, float *u, float *v,
                    int64_t *force, const float *push, const float *mass, float *damped,
                    float *fastest);

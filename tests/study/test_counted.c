@@ -192,8 +192,7 @@ static void counts_are_the_documented_ones(void **state) {
         assert_int_equal(lar_operations_all(&o), documented[k]);
     }
     lar_operations node = lar_operations_of_node();
-    /* Four values: push times its factor, two fused for the velocity, one for the displacement. */
-    assert_int_equal(lar_operations_all(&node), 28);
+    assert_int_equal(lar_operations_all(&node), 24);
     assert_int_equal(node.bytes_loaded, 4 * 3 * 8);
     assert_int_equal(node.bytes_stored, 4 * 3 * 8);
 }
