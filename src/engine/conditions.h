@@ -46,7 +46,7 @@ typedef struct lar_face_pressure {
 
 typedef struct lar_conditions {
     int32_t constraint_count, force_count, pressure_count;
-    int32_t fixed_count;        /* of the constraints, the first: those that stand still */
+    int32_t fixed_count; /* of the constraints, the first: those that stand still */
     lar_constraint *constraint;
     lar_point_force *force;
     lar_face_pressure *pressure;

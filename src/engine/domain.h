@@ -30,16 +30,16 @@ typedef struct lar_domain {
 
     lar_layout layout;
     int32_t run_count;
-    lar_block_run *run;   /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
-    int32_t *run_first;   /* [run_count] the run's first block in layout.block */
-    void *blocks;         /* all blocks of all runs */
-    double *corner_limit; /* [8 for each block] lar_hex8_corner_limit, in squared force units */
-    double *rest;         /* [layout.node_padded][4] where nodes are at rest [m] */
-    int32_t *strained;    /* [8 for each block] what the guard looks at in every step, */
+    lar_block_run *run;      /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
+    int32_t *run_first;      /* [run_count] the run's first block in layout.block */
+    void *blocks;            /* all blocks of all runs */
+    double *corner_limit;    /* [8 for each block] lar_hex8_corner_limit, in squared force units */
+    double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
+    int32_t *strained;       /* [8 for each block] what the guard looks at in every step, */
     int32_t *strained_count; /* [run_count] the first of a run's place; scratch (engine/guard.h) */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a watch */
-    lar_element_rate *rate;  /* [elements of the model] */
-    bool rate_lent;          /* `rate` belongs to the whole */
+    lar_element_rate *rate;              /* [elements of the model] */
+    bool rate_lent;                      /* `rate` belongs to the whole */
     size_t block_bytes;
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */

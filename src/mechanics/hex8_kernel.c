@@ -312,11 +312,10 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
         unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
-            beyond |=                                                                              \
-                stress_lanes((const lar_block_head *)(const void *)block, lane, record, limits,    \
-                             lar_##identifier##_stress, limit ? limit + shift : NULL, strain,      \
-                             &part)                                                                \
-                << shift;                                                                          \
+            beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
+                                   limits, lar_##identifier##_stress,                              \
+                                   limit ? limit + shift : NULL, strain, &part)                    \
+                      << shift;                                                                    \
             if (limit) *strained |= part << shift;                                                 \
             strain++;                                                                              \
             shift += LAR_LANES;                                                                    \
@@ -401,12 +400,11 @@ LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
                                  {5, 7, 4}, {5, 6, 5}, {6, 6, 6}, {6, 7, 7}};
     UNROLL8 for (int a = 0; a < 8; a++) {
         lar_lane e[3][3];
-        UNROLL3 for (int k = 0; k < 3; k++) UNROLL3 for (int i = 0; i < 3; i++)
-            e[k][i] = x[to[a][k]][i] - x[from[a][k]][i];
+        UNROLL3 for (int k = 0; k < 3; k++) UNROLL3 for (int i = 0; i < 3; i++) e[k][i] =
+            x[to[a][k]][i] - x[from[a][k]][i];
         lar_lane sum = e[0][0] * lar_lane_fnma(e[1][2], e[2][1], e[1][1] * e[2][2]);
         sum = lar_lane_fma(e[0][1], lar_lane_fnma(e[1][0], e[2][2], e[1][2] * e[2][0]), sum);
-        volume[a] =
-            lar_lane_fma(e[0][2], lar_lane_fnma(e[1][1], e[2][0], e[1][0] * e[2][1]), sum);
+        volume[a] = lar_lane_fma(e[0][2], lar_lane_fnma(e[1][1], e[2][0], e[1][0] * e[2][1]), sum);
     }
 }
 
@@ -420,12 +418,13 @@ static unsigned corners(const lar_block_run *run, int32_t b, const double *rest,
         gather_corners(head, lane, run->rows, rest, x);
         gather_corners(head, lane, run->rows, u, moved);
         corner_volumes((const lar_lane(*)[3])x, before);
-        UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++)
-            x[a][i] = x[a][i] + moved[a][i];
+        UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] =
+            x[a][i] + moved[a][i];
         corner_volumes((const lar_lane(*)[3])x, now);
         for (int k = 0; k < 2; k++)
             for (int a = 0; a < 8; a++)
-                below[k] |= lar_lane_not_greater(now[a], lar_lane_set(share[k]) * before[a]) << lane;
+                below[k] |= lar_lane_not_greater(now[a], lar_lane_set(share[k]) * before[a])
+                            << lane;
     }
     return below[0] | below[1] << LAR_BLOCK;
 }

@@ -1,0 +1,175 @@
+/* The guard of corners: a barrier with the forces of its energy, that is nothing where corners are
+ * sound; and the kernels that look for corners to be guarded, on every instruction set. */
+#include "mechanics_test.h"
+
+#include "mechanics/hex8_guard.h"
+
+enum { NODES = 8 * LAR_BLOCK + 4 };
+static const double size = 0.01;
+
+/* A crooked element, and where its corners are when some are pushed in. */
+static void crooked(uint64_t *seed, double push, double rest[8][3], double now[8][3]) {
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) {
+            rest[a][i] = 0.5 * size * (lar_node_sign[a][i] + 0.3 * random_value(seed));
+            now[a][i] = rest[a][i] + push * size * random_value(seed);
+        }
+}
+
+static double energy_of(const double rest[8][3], const double now[8][3],
+                        const lar_material *material) {
+    lar_guard guard;
+    lar_hex8_guard(rest, now, material, &guard);
+    return guard.energy;
+}
+
+static void forces_are_slopes_of_the_energy(void **state) {
+    (void)state;
+    uint64_t seed = 11;
+    lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
+    int guarded = 0, folded = 0;
+    for (int k = 0; k < 2000; k++) {
+        double rest[8][3], now[8][3], force[8][3] = {{0}}, sum[3] = {0};
+        lar_guard guard;
+        crooked(&seed, 0.6, rest, now);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, force, &guard);
+        if (guard.least >= LAR_GUARD_START) {
+            assert_true(guard.energy == 0 && guard.stiffness == 0);
+            assert_true(largest(&force[0][0], 24) == 0);
+            continue;
+        }
+        guarded++;
+        folded += guard.least < 0;
+        assert_true(guard.energy >= 0 && guard.stiffness > 0);
+        double step = 1e-7 * size, most = largest(&force[0][0], 24);
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) {
+                double at = now[a][i];
+                now[a][i] = at + step;
+                double above = energy_of((rows)rest, (rows)now, &material);
+                now[a][i] = at - step;
+                double below = energy_of((rows)rest, (rows)now, &material);
+                now[a][i] = at;
+                double bound =
+                    1e-5 * most + 1e-13 * guard.energy / step + 2 * step * guard.stiffness;
+                assert_below(fabs((above - below) / (2 * step) - force[a][i]), bound);
+                sum[i] += force[a][i];
+            }
+        assert_below(largest(sum, 3), 1e-12 * most);
+    }
+    assert_true(guarded > 500 && folded > 100);
+}
+
+/* What damps takes energy, and a barrier pulls nothing together. */
+static void damping_only_takes(void **state) {
+    (void)state;
+    uint64_t seed = 12;
+    lar_material material = test_material(LAR_LAW_coupled_neo_hookean, 3e3, 3e4);
+    for (int k = 0; k < 2000; k++) {
+        double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}}, still[8][3] = {{0}};
+        lar_guard guard;
+        crooked(&seed, 0.6, rest, now);
+        random_fill(&seed, 1, &v[0][0], 24);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, still, &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, 1e-4, force, &guard);
+        double power = 0, most = 0;
+        for (int i = 0; i < 24; i++) {
+            double part = (force[i / 3][i % 3] - still[i / 3][i % 3]) * v[i / 3][i % 3];
+            power += part;
+            most += fabs(part);
+        }
+        assert_true(guard.taken <= 0);
+        assert_below(fabs(power + guard.taken), 1e-10 * most + 1e-300);
+    }
+}
+
+/* ---- kernels ------------------------------------------------------------------------------- */
+
+typedef struct block_nodes {
+    double rest[NODES][4] __attribute__((aligned(64)));
+    double u[NODES][4] __attribute__((aligned(64)));
+} block_nodes;
+
+/* Eight loose elements, or a row of eight on four lines of nodes. */
+static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *nodes) {
+    static const int line_of[8] = {0, 0, 1, 1, 2, 2, 3, 3};
+    memset(nodes, 0, sizeof *nodes);
+    for (int n = 0; n < LAR_BLOCK; n++)
+        for (int a = 0; a < 8; a++) {
+            int lane = row ? LAR_ROW_LANES[n] : n, right = lar_node_sign[a][0] > 0;
+            int node = row ? 16 * line_of[a] + n + right : 8 * n + a;
+            for (int i = 0; i < 3; i++) {
+                nodes->rest[node][i] = 0.5 * size * lar_node_sign[a][i] +
+                                       (row && i == 0 ? size * n : 0) +
+                                       0.1 * size * random_value(seed);
+                nodes->u[node][i] = 0.45 * size * random_value(seed);
+            }
+            block->head.node[a][lane] = 4 * node;
+        }
+}
+
+static double least_of(const lar_hex8_block *block, const block_nodes *nodes, int lane) {
+    double rest[8][3], now[8][3];
+    lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
+    lar_guard guard;
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) {
+            int node = block->head.node[a][lane] / 4;
+            rest[a][i] = nodes->rest[node][i];
+            now[a][i] = rest[a][i] + nodes->u[node][i];
+        }
+    lar_hex8_guard((rows)rest, (rows)now, &material, &guard);
+    return guard.least;
+}
+
+static void kernels_see_the_same_corners(void **state) {
+    (void)state;
+    static const lar_isa wanted[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
+    static const double share[2] = {0.3, 0.6};
+    static lar_hex8_block block;
+    static block_nodes nodes;
+    uint64_t seed = 13;
+    int seen[3] = {0};
+    for (int k = 0; k < 400; k++) {
+        bool row = k % 2;
+        fill(&seed, row, &block, &nodes);
+        lar_block_run run = {.shape = LAR_SHAPE_GENERAL,
+                             .rows = row ? LAR_ROWS_EIGHT : LAR_ROWS_NONE,
+                             .count = 1,
+                             .blocks = &block};
+        unsigned expected = 0;
+        for (int lane = 0; lane < LAR_BLOCK; lane++) {
+            double least = least_of(&block, &nodes, lane);
+            for (int s = 0; s < 2; s++)
+                if (!(least > share[s])) expected |= 1u << (lane + LAR_BLOCK * s);
+            seen[least < 0.3 ? 0 : least < 0.6 ? 1 : 2]++;
+        }
+        for (int i = 0; i < 4; i++) {
+            const lar_kernels *kernels;
+            if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
+            assert_int_equal(kernels->corners(&run, 0, &nodes.rest[0][0], &nodes.u[0][0], share),
+                             expected);
+        }
+    }
+    assert_true(seen[0] > 100 && seen[1] > 100 && seen[2] > 100);
+}
+
+static void frequency_grows_from_one(void **state) {
+    (void)state;
+    const float rest[LAR_STRAIN_NUMBERS] = {1, 3, 3}, flat[LAR_STRAIN_NUMBERS] = {0, 2, 1};
+    for (int law = 0; law < LAR_LAW_COUNT; law++) {
+        lar_material material = test_material(law, 2e3, 1e5);
+        assert_below(fabs(lar_hex8_growth(&material, rest) - 1), 0.1);
+        assert_true(lar_hex8_growth(&material, flat) == INFINITY);
+        /* A cube pressed to half its length, and one that is pulled to twice. */
+        const float pressed[LAR_STRAIN_NUMBERS] = {1, 0.25F + 4, 4 + 0.5F};
+        assert_true(lar_hex8_growth(&material, pressed) > 1.3);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forces_are_slopes_of_the_energy), cmocka_unit_test(damping_only_takes),
+        cmocka_unit_test(kernels_see_the_same_corners), cmocka_unit_test(frequency_grows_from_one)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
