@@ -244,7 +244,7 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
         state->fastest = fmax(state->fastest, fabs(*v));
-        state->damped += weight * ((before + *v) * (before + *v) - share * free * free);
+        state->damped += share * weight * ((before + *v) * (before + *v) - free * free);
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / dt;
