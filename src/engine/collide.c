@@ -17,6 +17,8 @@ typedef struct touching {
     double weight[LAR_CONTACT_FACES][4]; /* and of their corners; all together 1 */
     double force[3];                     /* on the node [N] */
     double depth;                        /* [m] */
+    int32_t fading;                      /* the face that fades towards its edge; -1: none */
+    double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
 } touching;
 
 static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
@@ -223,7 +225,7 @@ static void blend(const lar_collide *collide, const lar_state *state, int32_t g,
      * smoothly. */
     double upright = 1 - 50 * (1 - closest->height / closest->distance);
     double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
-    touching blended = {0};
+    touching blended = {.fading = -1};
     for (int32_t i = 0; i < group->count && fade > 0; i++) {
         int32_t f = collide->list.face[group->first + i];
         double corner[4][3], sum[4] = {0};
@@ -270,6 +272,33 @@ static double softness(const lar_collide *collide, double standoff) {
     return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
 }
 
+/* By how much nearer the edge itself pushes [m]. */
+static double nearer_of(const lar_collide *collide, int32_t node, int32_t face) {
+    const lar_contact_surface *s = collide->surface;
+    double standoff = lar_contact_standoff(s, &s->node[node], &s->face[face]);
+    double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
+    return fmax(0.5 * standoff, 0.1 * reach);
+}
+
+/* Towards sharp edges springs fade: there they act from a nearer distance on, and the slope of what
+ * they store is a force of its own. `depth` is how far the spring is pressed in. */
+static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
+                   int32_t face, const lar_face_point *closest, double nearer, double mass,
+                   double depth, double rate, touching *t) {
+    const lar_contact_face *f = &collide->surface->face[face];
+    double corner[4][3], blunt[4], slope[5][3];
+    corners_of(collide, state, face, corner, NULL);
+    for (int a = 0; a < 4; a++) blunt[a] = collide->surface->node[f->corner[a]].blunt;
+    double part = lar_face_fade(x, (const double(*)[3])corner, closest, blunt, slope);
+    double all = lar_contact_force(&collide->law, mass, depth, rate);
+    double near = lar_contact_force(&collide->law, mass, depth - nearer, rate);
+    double more = 0.5 * (all * depth - near * (depth - nearer));
+    t->fading = face;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) t->fade[a][i] = -more * slope[a][i];
+    return part * all + (1 - part) * near;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_t face,
@@ -281,7 +310,7 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     contact_point point;
     place_of(collide, state, node, x, v);
     corners_of(collide, state, face, corner, NULL);
-    *t = (touching){.count = 1, .face = {face}};
+    *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
     if (before && lar_contact_active(&surface->node[node], f))
@@ -299,7 +328,10 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - level;
     moved *= softness(collide, standoff);
-    double force = lar_contact_force(&collide->law, moved, depth + from, rate);
+    double force = f->fades && !same_body(collide, node, face)
+                       ? fade(collide, state, x, face, closest, nearer_of(collide, node, face),
+                              moved, depth + from, rate, t)
+                       : lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
     return true;
@@ -355,6 +387,24 @@ static void add_part(lar_collide_part *part, lar_state *state, int32_t value, co
     part->count++;
 }
 
+/* Forces along a face that fades. */
+static void add_fade(lar_collide *collide, const lar_condition_context *context, lar_state *state,
+                     int32_t node, const touching *t, lar_collide_part *part) {
+    const int32_t *value = collide->view.value;
+    int64_t corner[4][3], sum[3] = {0};
+    if (t->fading < 0) return;
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 4; a++) {
+            corner[a][i] = -llrint(t->fade[a][i] * context->scale);
+            sum[i] -= corner[a][i];
+        }
+    if (!collide->adds_node || collide->adds_node[node])
+        add_part(part, state, value[node], sum, context->scale);
+    for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->fading]); a++)
+        add_part(part, state, value[collide->surface->face[t->fading].corner[a]], corner[a],
+                 context->scale);
+}
+
 /* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
  * numbers as who adds the others. */
 static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
@@ -379,6 +429,7 @@ static void add_forces(lar_collide *collide, const lar_condition_context *contex
         for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->face[f]]); a++)
             add_part(part, state, value[collide->surface->face[t->face[f]].corner[a]],
                      corner[4 * f + a], context->scale);
+    add_fade(collide, context, state, node, t, part);
     if (part->count) collide->part_count++;
 }
 

@@ -59,7 +59,7 @@ typedef struct lar_contact_view {
 } lar_contact_view;
 
 /* Faces of a body that push a node together, at most, and whom they push. */
-enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 1 + 4 * LAR_CONTACT_FACES };
+enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1) };
 
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_collide_part {

@@ -402,6 +402,7 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
     if (!status) find_bodies(&model->mesh, d.body);
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);
+    if (!status) status = lar_contact_surface_blunt(surface, error);
     if (!status) status = list_apart(&d, error);
     if (!status) count_possible(surface);
     clear_draft(&d);

@@ -32,6 +32,7 @@ typedef struct lar_contact_face {
     int32_t body;
     uint64_t active, mute; /* passes */
     double size;           /* its longer diagonal at rest [m] */
+    bool fades;            /* a corner is on a sharp edge */
 } lar_contact_face;
 
 typedef struct lar_contact_body {
@@ -48,6 +49,7 @@ typedef struct lar_contact_node {
     int32_t body;
     uint64_t passes; /* in which it is looked at against faces */
     double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
+    double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
 } lar_contact_node;
 
 typedef struct lar_contact_surface {
@@ -99,6 +101,9 @@ static inline double lar_contact_standoff(const lar_contact_surface *surface,
 /* Fits masses and contact distances to a time step. Once, after `clear` is known. */
 lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
                                    lar_contact_surface *surface, lar_error *error);
+
+/* Finds the sharp edges at rest: sets `blunt` and `fades`. */
+lar_status lar_contact_surface_blunt(lar_contact_surface *surface, lar_error *error);
 
 /* Whether a node and a face are never together. */
 bool lar_contact_apart(const lar_contact_surface *surface, int32_t node, int32_t face);

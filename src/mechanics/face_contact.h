@@ -33,6 +33,7 @@ typedef struct lar_face_point {
     double toward;    /* cosine between the way to the point and the way along the triangle that
                          comes closest to it: 0 but where the closest point is a corner */
     double weight[4]; /* of the corners */
+    int triangle;     /* at corners `triangle` and the next */
 } lar_face_point;
 
 /* Distances closer to each other than this part of the size of a face are equal: rounding must not
@@ -67,6 +68,12 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
  * x is not straight above it. */
 double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
                       double sum[4]);
+
+/* A number at the closest point of a face: `value` at its corners, 1 in its middle, linear in its
+ * triangles. Returns it, and its slopes with the places of the corners and, last, with x [1/m]. They
+ * are forces and moments that balance, as those of any potential of the five places. */
+double lar_face_fade(const double x[3], const double corner[4][3], const lar_face_point *point,
+                     const double value[4], double slope[5][3]);
 
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
