@@ -272,31 +272,43 @@ static double softness(const lar_collide *collide, double standoff) {
     return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
 }
 
-/* By how much nearer the edge itself pushes [m]. */
-static double nearer_of(const lar_collide *collide, int32_t node, int32_t face) {
+/* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
+static double full_of(const lar_collide *collide, int32_t node, int32_t face) {
+    static const double LEAST = 0.25; /* of the reach */
     const lar_contact_surface *s = collide->surface;
-    double standoff = lar_contact_standoff(s, &s->node[node], &s->face[face]);
     double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
-    return fmax(0.5 * standoff, 0.1 * reach);
+    return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), LEAST * reach);
 }
 
-/* Towards sharp edges springs fade: there they act from a nearer distance on, and the slope of what
- * they store is a force of its own. `depth` is how far the spring is pressed in. */
+/* The force of a spring on a sharp edge, and what it stores: it acts later, and is the harder for
+ * it until it has stored as much as others. */
+static double late_force(const lar_contact_law *law, double mass, double full, double depth,
+                         double rate, double *stored) {
+    static const double LATE = 0.1; /* of `full` */
+    double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
+    bool is_full = depth >= full;
+    double force = lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
+    *stored = 0.5 * (is_full ? depth : late) * force;
+    return is_full ? force : steep * force;
+}
+
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
+ * is how far the spring is pressed in. */
 static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
-                   int32_t face, const lar_face_point *closest, double nearer, double mass,
+                   int32_t face, const lar_face_point *closest, double full, double mass,
                    double depth, double rate, touching *t) {
     const lar_contact_face *f = &collide->surface->face[face];
-    double corner[4][3], blunt[4], slope[5][3];
+    double corner[4][3], blunt[4], slope[5][3], stored;
     corners_of(collide, state, face, corner, NULL);
     for (int a = 0; a < 4; a++) blunt[a] = collide->surface->node[f->corner[a]].blunt;
     double part = lar_face_fade(x, (const double(*)[3])corner, closest, blunt, slope);
     double all = lar_contact_force(&collide->law, mass, depth, rate);
-    double near = lar_contact_force(&collide->law, mass, depth - nearer, rate);
-    double more = 0.5 * (all * depth - near * (depth - nearer));
-    t->fading = face;
+    double late = late_force(&collide->law, mass, full, depth, rate, &stored);
+    double more = 0.5 * all * depth - stored;
+    t->fading = more != 0 ? face : -1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) t->fade[a][i] = -more * slope[a][i];
-    return part * all + (1 - part) * near;
+    return part * all + (1 - part) * late;
 }
 
 /* The force on the node of group g by a face which it is behind, or before it by less than the
@@ -329,7 +341,7 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     double from = standoff - level;
     moved *= softness(collide, standoff);
     double force = f->fades && !same_body(collide, node, face)
-                       ? fade(collide, state, x, face, closest, nearer_of(collide, node, face),
+                       ? fade(collide, state, x, face, closest, full_of(collide, node, face),
                               moved, depth + from, rate, t)
                        : lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
