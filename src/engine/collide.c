@@ -287,7 +287,8 @@ static double late_force(const lar_contact_law *law, double mass, double full, d
     static const double LATE = 0.1; /* of `full` */
     double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
     bool is_full = depth >= full;
-    double force = lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
+    double force =
+        lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
     *stored = 0.5 * (is_full ? depth : late) * force;
     return is_full ? force : steep * force;
 }
@@ -302,9 +303,11 @@ static double fade(const lar_collide *collide, const lar_state *state, const dou
     corners_of(collide, state, face, corner, NULL);
     for (int a = 0; a < 4; a++) blunt[a] = collide->surface->node[f->corner[a]].blunt;
     double part = lar_face_fade(x, (const double(*)[3])corner, closest, blunt, slope);
+    double steep = 6 * part * (1 - part);
+    part = part * part * (3 - 2 * part);
     double all = lar_contact_force(&collide->law, mass, depth, rate);
     double late = late_force(&collide->law, mass, full, depth, rate, &stored);
-    double more = 0.5 * all * depth - stored;
+    double more = (0.5 * all * depth - stored) * steep;
     t->fading = more != 0 ? face : -1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) t->fade[a][i] = -more * slope[a][i];
@@ -341,8 +344,8 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     double from = standoff - level;
     moved *= softness(collide, standoff);
     double force = f->fades && !same_body(collide, node, face)
-                       ? fade(collide, state, x, face, closest, full_of(collide, node, face),
-                              moved, depth + from, rate, t)
+                       ? fade(collide, state, x, face, closest, full_of(collide, node, face), moved,
+                              depth + from, rate, t)
                        : lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];

@@ -70,8 +70,8 @@ double lar_face_blend(const double x[3], const double corner[4][3], double least
                       double sum[4]);
 
 /* A number at the closest point of a face: `value` at its corners, 1 in its middle, linear in its
- * triangles. Returns it, and its slopes with the places of the corners and, last, with x [1/m]. They
- * are forces and moments that balance, as those of any potential of the five places. */
+ * triangles. Returns it, and its slopes with the places of the corners and, last, with x [1/m].
+ * They are forces and moments that balance, as those of any potential of the five places. */
 double lar_face_fade(const double x[3], const double corner[4][3], const lar_face_point *point,
                      const double value[4], double slope[5][3]);
 
