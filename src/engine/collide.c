@@ -21,8 +21,8 @@ typedef struct touching {
     double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
 } touching;
 
-static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
-                     double v[3]) {
+static void place_of_node(const lar_collide *collide, const lar_state *state, int32_t node,
+                          double x[3], double v[3]) {
     const lar_contact_view *view = &collide->view;
     if (view->place) {
         const double *place = view->place[view->slot[node]];
@@ -34,6 +34,23 @@ static void place_of(const lar_collide *collide, const lar_state *state, int32_t
     const double *u = state->u + view->value[node];
     for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
     if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
+}
+
+/* Of a node or a point of an edge; v may be NULL. */
+static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
+                     double v[3]) {
+    int32_t parent[2];
+    double weight[2], end[2][3], speed[2][3];
+    if (lar_contact_parents(collide->surface, node, parent, weight) == 1) {
+        place_of_node(collide, state, node, x, v);
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        place_of_node(collide, state, parent[k], end[k], v ? speed[k] : NULL);
+    for (int i = 0; i < 3; i++) {
+        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
+        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
+    }
 }
 
 static void corners_of(const lar_collide *collide, const lar_state *state, int32_t face,
@@ -402,21 +419,29 @@ static void add_part(lar_collide_part *part, lar_state *state, int32_t value, co
     part->count++;
 }
 
-/* Forces along a face that fades. */
-static void add_fade(lar_collide *collide, const lar_condition_context *context, lar_state *state,
-                     int32_t node, const touching *t, lar_collide_part *part) {
-    const int32_t *value = collide->view.value;
-    int64_t corner[4][3], sum[3] = {0};
-    if (t->fading < 0) return;
-    for (int i = 0; i < 3; i++)
-        for (int a = 0; a < 4; a++) {
-            corner[a][i] = -llrint(t->fade[a][i] * context->scale);
-            sum[i] -= corner[a][i];
-        }
-    if (!collide->adds_node || collide->adds_node[node])
-        add_part(part, state, value[node], sum, context->scale);
-    for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->fading]); a++)
-        add_part(part, state, value[collide->surface->face[t->fading].corner[a]], corner[a],
+/* To the node, or to both ends of the edge that the point is on. */
+static void add_to_node(lar_collide *collide, const lar_condition_context *context,
+                        lar_state *state, int32_t node, const int64_t sum[3],
+                        lar_collide_part *part) {
+    int32_t parent[2];
+    double weight[2];
+    int64_t share[2][3] = {{0}};
+    int count = lar_contact_parents(collide->surface, node, parent, weight);
+    for (int i = 0; i < 3; i++) {
+        if (count == 2) share[1][i] = llrint(weight[1] * (double)sum[i]);
+        share[0][i] = sum[i] - share[1][i];
+    }
+    for (int k = 0; k < count; k++)
+        if (!collide->adds_node || collide->adds_node[parent[k]])
+            add_part(part, state, collide->view.value[parent[k]], share[k], context->scale);
+}
+
+static void add_to_face(lar_collide *collide, const lar_condition_context *context,
+                        lar_state *state, int32_t face, int64_t (*force)[3],
+                        lar_collide_part *part) {
+    if (collide->adds_corner && !collide->adds_corner[face]) return;
+    for (int a = 0; a < 4; a++)
+        add_part(part, state, collide->view.value[collide->surface->face[face].corner[a]], force[a],
                  context->scale);
 }
 
@@ -425,9 +450,8 @@ static void add_fade(lar_collide *collide, const lar_condition_context *context,
 static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
                        int32_t node, const touching *t) {
     static const double MOST = 0x1p58; /* of a force in force units */
-    const int32_t *value = collide->view.value;
     lar_collide_part *part = &collide->part[collide->part_count];
-    int64_t corner[4 * LAR_CONTACT_FACES][3], sum[3] = {0};
+    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
@@ -436,15 +460,18 @@ static void add_forces(lar_collide *collide, const lar_condition_context *contex
             corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
             sum[i] -= corner[a][i];
         }
+        for (int a = 0; a < 4 && t->fading >= 0; a++) {
+            double along = t->fade[a][i] * context->scale;
+            if (!(fabs(along) < MOST)) return;
+            slope[a][i] = -llrint(along);
+            sum[i] -= slope[a][i];
+        }
     }
     part->count = 0;
-    if (!collide->adds_node || collide->adds_node[node])
-        add_part(part, state, value[node], sum, context->scale);
+    add_to_node(collide, context, state, node, sum, part);
     for (int32_t f = 0; f < t->count; f++)
-        for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->face[f]]); a++)
-            add_part(part, state, value[collide->surface->face[t->face[f]].corner[a]],
-                     corner[4 * f + a], context->scale);
-    add_fade(collide, context, state, node, t, part);
+        add_to_face(collide, context, state, t->face[f], &corner[4 * f], part);
+    if (t->fading >= 0) add_to_face(collide, context, state, t->fading, slope, part);
     if (part->count) collide->part_count++;
 }
 
@@ -469,6 +496,7 @@ void lar_collide_add(lar_collide *collide, const lar_condition_context *context,
         if (collide->travel < collide->due[g] || !contact(collide, state, g, &t)) continue;
         add_forces(collide, context, state, node, &t);
         /* Each node is counted once, by who adds its force. */
+        if (node >= collide->surface->node_count) continue;
         bool own = !collide->adds_node || collide->adds_node[node];
         collide->info.touching += own;
         if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
@@ -512,7 +540,7 @@ static double fetch_places(lar_collide *collide, const lar_state *state) {
     lar_collide_motion *motion = collide->motion;
     double most = 0;
     for (int32_t n = 0; n < collide->surface->node_count; n++) {
-        place_of(collide, state, n, motion->x[n], NULL);
+        place_of_node(collide, state, n, motion->x[n], NULL);
         for (int i = 0; i < 3; i++)
             most = lar_most(most, fabs(motion->x[n][i] - motion->searched[n][i]));
     }
