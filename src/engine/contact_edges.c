@@ -85,8 +85,9 @@ static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
     return edges;
 }
 
-/* Points of an edge: between nodes, which are points already. */
-enum { EDGE_POINTS = 4 };
+/* Points of an edge: between nodes, which are points already. Each has so small a part of the mass
+ * behind it, or two edges that lie along each other would have more springs than a step bears. */
+enum { EDGE_POINTS = 4, EDGE_PARTS = 8 };
 
 static lar_status add_points(lar_contact_surface *s, const side *edge, size_t edges,
                              lar_error *error) {
@@ -125,12 +126,11 @@ lar_status lar_contact_surface_edges(lar_contact_surface *s, lar_error *error) {
     return status;
 }
 
-/* All points of an edge together count as much as its nodes do. */
 void lar_contact_edges_fit(lar_contact_surface *s) {
     for (int32_t n = s->node_count; n < s->point_count; n++) {
         const lar_contact_point *point = &s->point[n - s->node_count];
         double compliance = 0;
         for (int i = 0; i < 2; i++) compliance += point->weight[i] / s->node[point->node[i]].mass;
-        s->node[n].mass = 1 / (EDGE_POINTS * compliance);
+        s->node[n].mass = 1 / (EDGE_PARTS * compliance);
     }
 }

@@ -311,14 +311,28 @@ static void side_slopes(const double corner[3][3], const bool has[3], double slo
     }
 }
 
-double lar_face_fade(const double x[3], const double corner[4][3], const lar_face_point *point,
-                     const double value[4], double slope[5][3]) {
-    int t = point->triangle, next = (t + 1) % 4, other = (t + 2) % 4;
-    double place[3][3], of[3][3], at[3], away[3], sum = 0;
-    double part[3] = {point->weight[t] - point->weight[other],
-                      point->weight[next] - point->weight[other], 4 * point->weight[other]};
-    const double values[3] = {value[t], value[next], 1};
+/* Shares of corner t, the next one, and the middle. */
+static void shares_of(const lar_face_point *point, double part[3]) {
+    int t = point->triangle, other = (t + 2) % 4;
+    part[0] = point->weight[t] - point->weight[other];
+    part[1] = point->weight[(t + 1) % 4] - point->weight[other];
+    part[2] = 4 * point->weight[other];
+}
+
+double lar_face_value(const lar_face_point *point, const double value[5]) {
+    double part[3];
+    shares_of(point, part);
+    return part[0] * value[point->triangle] + part[1] * value[(point->triangle + 1) % 4] +
+           part[2] * value[4];
+}
+
+void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
+                    const double value[5], double slope[5][3]) {
+    int t = point->triangle, next = (t + 1) % 4;
+    double place[3][3], of[3][3], at[3], away[3], part[3];
+    const double values[3] = {value[t], value[next], value[4]};
     bool has[3];
+    shares_of(point, part);
     memcpy(place[0], corner[t], sizeof place[0]);
     memcpy(place[1], corner[next], sizeof place[1]);
     middle_of(corner, place[2]);
@@ -330,10 +344,8 @@ double lar_face_fade(const double x[3], const double corner[4][3], const lar_fac
     lar_face_mean(corner, point->weight, at);
     between(at, x, away);
     memset(slope, 0, 5 * sizeof *slope);
-    for (int c = 0; c < 3; c++) {
-        sum += part[c] * values[c];
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++) slope[4][i] += values[c] * of[c][i];
-    }
     /* Turning the triangle moves the foot of x as well. */
     for (int c = 0; c < 3; c++) {
         double turn = dot(slope[4], of[c]);
@@ -343,5 +355,4 @@ double lar_face_fade(const double x[3], const double corner[4][3], const lar_fac
                 slope[a][i] += c == 2 ? 0.25 * own : a == (c == 0 ? t : next) ? own : 0;
         }
     }
-    return sum;
 }
