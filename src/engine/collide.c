@@ -309,32 +309,41 @@ static double late_force(const lar_contact_law *law, double mass, double full, d
     return is_full ? force : steep * force;
 }
 
-/* Towards sharp edges springs fade, and the slope of what they store is a force of its own, with
- * that of their stiffness. `depth` is how far the spring is pressed in, `moved` the mass that it
- * moves, of which it has the part `soft`. */
-static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
-                   int32_t face, const lar_face_point *closest, double full, double moved,
-                   double soft, double depth, double rate, touching *t) {
-    const lar_contact_face *f = &collide->surface->face[face];
-    double corner[4][3], value[5] = {0}, compliance[5] = {0}, slope[5][3], stored;
-    corners_of(collide, state, face, corner, NULL);
-    for (int a = 0; a < 4; a++) {
-        const lar_contact_node *node = &collide->surface->node[f->corner[a]];
-        value[a] = node->blunt;
-        compliance[a] = 1 / node->mass;
-        compliance[4] += 0.25 * compliance[a];
+/* The part of five forces that is no larger than `most`: of a face that is crushed slopes have no
+ * bound. */
+static double within_force(double most, const double force[5][3]) {
+    double largest = 0;
+    for (int a = 0; a < 5; a++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) square += force[a][i] * force[a][i];
+        largest = fmax(largest, square);
     }
+    largest = sqrt(largest);
+    return largest <= most ? 1 : most / largest;
+}
+
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
+ * is how far the spring is pressed in. */
+static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
+                   int32_t face, const lar_face_point *closest, double full, double mass,
+                   double depth, double rate, touching *t) {
+    const lar_contact_face *f = &collide->surface->face[face];
+    double corner[4][3], value[5], slope[5][3], stored;
+    corners_of(collide, state, face, corner, NULL);
+    for (int a = 0; a < 4; a++) value[a] = collide->surface->node[f->corner[a]].blunt;
     value[4] = 1;
     double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
     part = part * part * (3 - 2 * part);
-    double all = lar_contact_force(&collide->law, moved * soft, depth, rate);
-    double late = late_force(&collide->law, moved * soft, full, depth, rate, &stored);
-    double more = 0.5 * all * depth - stored, both = stored + part * more;
-    for (int a = 0; a < 5; a++) value[a] = more * steep * value[a] - both * moved * compliance[a];
+    double all = lar_contact_force(&collide->law, mass, depth, rate);
+    double late = late_force(&collide->law, mass, full, depth, rate, &stored);
+    double more = (0.5 * all * depth - stored) * steep;
     lar_face_slope(x, (const double(*)[3])corner, closest, value, slope);
+    for (int a = 0; a < 5; a++)
+        for (int i = 0; i < 3; i++) slope[a][i] *= -more;
+    double within = within_force(fmax(all, late), (const double(*)[3])slope);
     t->fading = face;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) t->fade[a][i] = -slope[a][i];
+        for (int i = 0; i < 3; i++) t->fade[a][i] = within * slope[a][i];
     return part * all + (1 - part) * late;
 }
 
@@ -366,11 +375,11 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - level;
-    double soft = softness(collide, standoff);
+    moved *= softness(collide, standoff);
     double force = f->fades && !same_body(collide, node, face)
                        ? fade(collide, state, x, face, closest, full_of(collide, node, face), moved,
-                              soft, depth + from, rate, t)
-                       : lar_contact_force(&collide->law, moved * soft, depth + from, rate);
+                              depth + from, rate, t)
+                       : lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
     return true;

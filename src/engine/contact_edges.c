@@ -87,7 +87,7 @@ static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
 
 /* Points of an edge: between nodes, which are points already. Each has so small a part of the mass
  * behind it, or two edges that lie along each other would have more springs than a step bears. */
-enum { EDGE_POINTS = 4, EDGE_PARTS = 8 };
+enum { EDGE_POINTS = 4, EDGE_PARTS = 12 };
 
 static lar_status add_points(lar_contact_surface *s, const side *edge, size_t edges,
                              lar_error *error) {
