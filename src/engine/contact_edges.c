@@ -41,7 +41,7 @@ static void stand(const lar_contact_surface *s, int32_t face, double normal[3], 
 
 /* 1 where two faces make no sharp edge, 0 where they do. */
 static double bluntness(const lar_contact_surface *s, int32_t one, int32_t other) {
-    static const double BLUNT = 0.85, SHARP = 0.5; /* cosines of 32 and 60 degrees */
+    static const double BLUNT = 0.26, SHARP = 0.09; /* cosines of 75 and 85 degrees */
     double normal[2][3], middle[2][3], cosine = 0, under = 0;
     stand(s, one, normal[0], middle[0]);
     stand(s, other, normal[1], middle[1]);
