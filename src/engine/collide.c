@@ -1,7 +1,6 @@
 #include "engine/collide.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "mechanics/face_contact.h"
@@ -17,10 +16,12 @@ typedef struct touching {
     double weight[LAR_CONTACT_FACES][4]; /* and of their corners; all together 1 */
     double force[3];                     /* on the node [N] */
     double depth;                        /* [m] */
+    int32_t fading;                      /* the face that fades towards its edge; -1: none */
+    double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
 } touching;
 
-static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
-                     double v[3]) {
+static void place_of_node(const lar_collide *collide, const lar_state *state, int32_t node,
+                          double x[3], double v[3]) {
     const lar_contact_view *view = &collide->view;
     if (view->place) {
         const double *place = view->place[view->slot[node]];
@@ -32,6 +33,23 @@ static void place_of(const lar_collide *collide, const lar_state *state, int32_t
     const double *u = state->u + view->value[node];
     for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
     if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
+}
+
+/* Of a node or a point of an edge; v may be NULL. */
+static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
+                     double v[3]) {
+    int32_t parent[2];
+    double weight[2], end[2][3], speed[2][3];
+    if (lar_contact_parents(collide->surface, node, parent, weight) == 1) {
+        place_of_node(collide, state, node, x, v);
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        place_of_node(collide, state, parent[k], end[k], v ? speed[k] : NULL);
+    for (int i = 0; i < 3; i++) {
+        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
+        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
+    }
 }
 
 static void corners_of(const lar_collide *collide, const lar_state *state, int32_t face,
@@ -223,7 +241,7 @@ static void blend(const lar_collide *collide, const lar_state *state, int32_t g,
      * smoothly. */
     double upright = 1 - 50 * (1 - closest->height / closest->distance);
     double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
-    touching blended = {0};
+    touching blended = {.fading = -1};
     for (int32_t i = 0; i < group->count && fade > 0; i++) {
         int32_t f = collide->list.face[group->first + i];
         double corner[4][3], sum[4] = {0};
@@ -270,6 +288,65 @@ static double softness(const lar_collide *collide, double standoff) {
     return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
 }
 
+/* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
+static double full_of(const lar_collide *collide, int32_t node, int32_t face) {
+    static const double LEAST = 0.25; /* of the reach */
+    const lar_contact_surface *s = collide->surface;
+    double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
+    return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), LEAST * reach);
+}
+
+/* The force of a spring on a sharp edge, and what it stores: it acts later, and is the harder for
+ * it until it has stored as much as others. */
+static double late_force(const lar_contact_law *law, double mass, double full, double depth,
+                         double rate, double *stored) {
+    static const double LATE = 0.1; /* of `full` */
+    double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
+    bool is_full = depth >= full;
+    double force =
+        lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
+    *stored = 0.5 * (is_full ? depth : late) * force;
+    return is_full ? force : steep * force;
+}
+
+/* The part of five forces that is no larger than `most`: of a face that is crushed slopes have no
+ * bound. */
+static double within_force(double most, const double force[5][3]) {
+    double largest = 0;
+    for (int a = 0; a < 5; a++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) square += force[a][i] * force[a][i];
+        largest = fmax(largest, square);
+    }
+    largest = sqrt(largest);
+    return largest <= most ? 1 : most / largest;
+}
+
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
+ * is how far the spring is pressed in. */
+static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
+                   int32_t face, const lar_face_point *closest, double full, double mass,
+                   double depth, double rate, touching *t) {
+    const lar_contact_face *f = &collide->surface->face[face];
+    double corner[4][3], value[5], slope[5][3], stored;
+    corners_of(collide, state, face, corner, NULL);
+    for (int a = 0; a < 4; a++) value[a] = collide->surface->node[f->corner[a]].blunt;
+    value[4] = 1;
+    double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
+    part = part * part * (3 - 2 * part);
+    double all = lar_contact_force(&collide->law, mass, depth, rate);
+    double late = late_force(&collide->law, mass, full, depth, rate, &stored);
+    double more = (0.5 * all * depth - stored) * steep;
+    lar_face_slope(x, (const double(*)[3])corner, closest, value, slope);
+    for (int a = 0; a < 5; a++)
+        for (int i = 0; i < 3; i++) slope[a][i] *= -more;
+    double within = within_force(fmax(all, late), (const double(*)[3])slope);
+    t->fading = face;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) t->fade[a][i] = within * slope[a][i];
+    return part * all + (1 - part) * late;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_t face,
@@ -281,7 +358,7 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     contact_point point;
     place_of(collide, state, node, x, v);
     corners_of(collide, state, face, corner, NULL);
-    *t = (touching){.count = 1, .face = {face}};
+    *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
     if (before && lar_contact_active(&surface->node[node], f))
@@ -299,7 +376,10 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - level;
     moved *= softness(collide, standoff);
-    double force = lar_contact_force(&collide->law, moved, depth + from, rate);
+    double force = f->fades && !same_body(collide, node, face)
+                       ? fade(collide, state, x, face, closest, full_of(collide, node, face), moved,
+                              depth + from, rate, t)
+                       : lar_contact_force(&collide->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
     return true;
@@ -355,14 +435,39 @@ static void add_part(lar_collide_part *part, lar_state *state, int32_t value, co
     part->count++;
 }
 
+/* To the node, or to both ends of the edge that the point is on. */
+static void add_to_node(lar_collide *collide, const lar_condition_context *context,
+                        lar_state *state, int32_t node, const int64_t sum[3],
+                        lar_collide_part *part) {
+    int32_t parent[2];
+    double weight[2];
+    int64_t share[2][3] = {{0}};
+    int count = lar_contact_parents(collide->surface, node, parent, weight);
+    for (int i = 0; i < 3; i++) {
+        if (count == 2) share[1][i] = llrint(weight[1] * (double)sum[i]);
+        share[0][i] = sum[i] - share[1][i];
+    }
+    for (int k = 0; k < count; k++)
+        if (!collide->adds_node || collide->adds_node[parent[k]])
+            add_part(part, state, collide->view.value[parent[k]], share[k], context->scale);
+}
+
+static void add_to_face(lar_collide *collide, const lar_condition_context *context,
+                        lar_state *state, int32_t face, int64_t (*force)[3],
+                        lar_collide_part *part) {
+    if (collide->adds_corner && !collide->adds_corner[face]) return;
+    for (int a = 0; a < 4; a++)
+        add_part(part, state, collide->view.value[collide->surface->face[face].corner[a]], force[a],
+                 context->scale);
+}
+
 /* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
  * numbers as who adds the others. */
 static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
                        int32_t node, const touching *t) {
     static const double MOST = 0x1p58; /* of a force in force units */
-    const int32_t *value = collide->view.value;
     lar_collide_part *part = &collide->part[collide->part_count];
-    int64_t corner[4 * LAR_CONTACT_FACES][3], sum[3] = {0};
+    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
@@ -371,14 +476,18 @@ static void add_forces(lar_collide *collide, const lar_condition_context *contex
             corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
             sum[i] -= corner[a][i];
         }
+        for (int a = 0; a < 4 && t->fading >= 0; a++) {
+            double along = t->fade[a][i] * context->scale;
+            if (!(fabs(along) < MOST)) return;
+            slope[a][i] = -llrint(along);
+            sum[i] -= slope[a][i];
+        }
     }
     part->count = 0;
-    if (!collide->adds_node || collide->adds_node[node])
-        add_part(part, state, value[node], sum, context->scale);
+    add_to_node(collide, context, state, node, sum, part);
     for (int32_t f = 0; f < t->count; f++)
-        for (int a = 0; a < 4 && (!collide->adds_corner || collide->adds_corner[t->face[f]]); a++)
-            add_part(part, state, value[collide->surface->face[t->face[f]].corner[a]],
-                     corner[4 * f + a], context->scale);
+        add_to_face(collide, context, state, t->face[f], &corner[4 * f], part);
+    if (t->fading >= 0) add_to_face(collide, context, state, t->fading, slope, part);
     if (part->count) collide->part_count++;
 }
 
@@ -403,6 +512,7 @@ void lar_collide_add(lar_collide *collide, const lar_condition_context *context,
         if (collide->travel < collide->due[g] || !contact(collide, state, g, &t)) continue;
         add_forces(collide, context, state, node, &t);
         /* Each node is counted once, by who adds its force. */
+        if (node >= collide->surface->node_count) continue;
         bool own = !collide->adds_node || collide->adds_node[node];
         collide->info.touching += own;
         if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
@@ -433,187 +543,4 @@ void lar_collide_restart(lar_collide *collide) {
     for (int32_t i = 0; i < collide->list.face_count; i++) {
         collide->away[i] = 0;
     }
-}
-
-/* ---- motion and searches, of the whole model ------------------------------------------------ */
-
-/* Steps that a search should last, and those that the next one may take within the last fifth of
- * the skin. */
-enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
-
-/* Fetches the places; returns how far the farthest has moved since the search. */
-static double fetch_places(lar_collide *collide, const lar_state *state) {
-    lar_collide_motion *motion = collide->motion;
-    double most = 0;
-    for (int32_t n = 0; n < collide->surface->node_count; n++) {
-        place_of(collide, state, n, motion->x[n], NULL);
-        for (int i = 0; i < 3; i++)
-            most = lar_most(most, fabs(motion->x[n][i] - motion->searched[n][i]));
-    }
-    return most;
-}
-
-static double skin_for(const lar_collide_motion *motion, double way) {
-    return fmin(fmax(2 * way * SEARCH_STEPS, motion->skin_least), motion->skin_most);
-}
-
-/* A search is done; `moved` says what has moved since its places. */
-static void take_list(lar_collide *collide, double moved) {
-    lar_collide_motion *motion = collide->motion;
-    collide->list = motion->search->list;
-    memcpy(motion->searched, motion->x, (size_t)collide->surface->node_count * sizeof *motion->x);
-    collide->info.searches++;
-    collide->info.boxed += (uint64_t)collide->list.face_count;
-    lar_collide_restart(collide);
-    collide->moved = collide->travel = moved;
-    motion->searching = false;
-}
-
-static void search_now(lar_collide *collide, const lar_state *state, double way) {
-    lar_collide_motion *motion = collide->motion;
-    fetch_places(collide, state);
-    if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x,
-                                skin_for(motion, way)))
-        collide->crowded = true;
-    take_list(collide, 0);
-    motion->valid = true;
-}
-
-/* What has really moved? */
-static void look(lar_collide *collide, const lar_state *state, double way) {
-    lar_collide_motion *motion = collide->motion;
-    double moved = fetch_places(collide, state);
-    if (moved < 0.15 * collide->list.skin) {
-        collide->moved = moved;
-        return;
-    }
-    lar_contact_search_begin(motion->search, (const double(*)[3])motion->x, skin_for(motion, way));
-    motion->since = 0;
-    motion->searching = true;
-}
-
-/* The list is good for this step, whatever happens. `way` is what a step takes at present. */
-static void keep_list(lar_collide *collide, const lar_state *state, double way) {
-    lar_collide_motion *motion = collide->motion;
-    if (!motion->valid || motion->always) {
-        search_now(collide, state, way);
-        return;
-    }
-    if (!motion->searching && collide->moved > 0.3 * collide->list.skin) look(collide, state, way);
-    bool last = !(collide->moved < 0.5 * collide->list.skin);
-    if (motion->searching) {
-        /* As many as must be, when the rest of the way is to be enough for the others. */
-        double steps = way > 0 ? (0.5 * collide->list.skin - collide->moved) / (1.25 * way) : 1e9;
-        int32_t left = lar_contact_search_left(motion->search);
-        int32_t nodes = (int32_t)(left / fmax(fmin(steps, PART_STEPS), 1)) + 1;
-        lar_contact_progress progress =
-            lar_contact_search_go_on(motion->search, last ? INT32_MAX : nodes);
-        if (progress == LAR_SEARCH_DONE) take_list(collide, motion->since);
-        if (progress == LAR_SEARCH_FULL) search_now(collide, state, way);
-    }
-    /* It has become so fast that even the new list is old. */
-    if (!(collide->moved < 0.5 * collide->list.skin)) search_now(collide, state, way);
-}
-
-void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
-                       lar_state *state) {
-    if (!collide->surface) return;
-    lar_collide_motion *motion = collide->motion;
-    if (state->round != motion->next) motion->valid = false;
-    keep_list(collide, state, context->whole_step * state->fastest);
-    motion->next = state->round + 1;
-    lar_collide_add(collide, context, state);
-    collide->info.possible += collide->surface->possible;
-    collide->info.steps++;
-}
-
-void lar_collide_moved(lar_collide *collide, lar_state *state, double way) {
-    for (int32_t i = 0; i < collide->level_count; i++)
-        state->u[collide->level[i].value] = collide->level[i].depth;
-    collide->level_count = 0;
-    collide->moved += way;
-    collide->way = way;
-    if (!collide->motion) return;
-    /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
-    collide->travel += way;
-    collide->motion->since += way;
-}
-
-void lar_collide_forget(lar_collide *collide) {
-    if (collide->motion) collide->motion->valid = false;
-}
-
-/* ---- creation ------------------------------------------------------------------------------- */
-
-static lar_status allocate(lar_collide *collide, const int32_t *local, lar_error *error) {
-    lar_collide_motion *motion = collide->motion;
-    const lar_contact_surface *surface = &motion->search->surface;
-    size_t nodes = (size_t)surface->node_count, groups = (size_t)motion->search->list.group_room;
-    size_t pairs = (size_t)motion->search->list.face_room;
-    int32_t *value = lar_calloc(nodes, sizeof *value);
-    collide->view.value = value;
-    motion->x = lar_calloc(nodes, sizeof *motion->x);
-    motion->searched = lar_calloc(nodes, sizeof *motion->searched);
-    collide->due = lar_calloc(groups, sizeof *collide->due);
-    collide->last = lar_calloc(groups, sizeof *collide->last);
-    collide->near = lar_calloc(groups, sizeof *collide->near);
-    collide->away = lar_calloc(pairs, sizeof *collide->away);
-    collide->part = lar_calloc(groups, sizeof *collide->part);
-    collide->level = lar_calloc(groups, sizeof *collide->level);
-    if (!value || !motion->x || !motion->searched || !collide->due || !collide->last ||
-        !collide->near || !collide->away || !collide->part || !collide->level)
-        return lar_fail_memory(error, groups * sizeof *collide->part, "contact of bodies");
-    for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
-    return LAR_OK;
-}
-
-lar_status lar_collide_create(const lar_model *model, const double *mass, const int32_t *local,
-                              double time_step, double stable_step, bool search_always,
-                              lar_collide *collide, lar_error *error) {
-    *collide = (lar_collide){0};
-    lar_collide_motion *motion = collide->motion = lar_calloc(1, sizeof *motion);
-    if (motion) motion->search = lar_calloc(1, sizeof *motion->search);
-    if (!motion || !motion->search) {
-        lar_collide_destroy(collide);
-        return lar_fail_memory(error, sizeof *motion->search, "contact of bodies");
-    }
-    lar_status status = lar_contact_search_create(model, mass, local, motion->search, error);
-    lar_contact_surface *surface = &motion->search->surface;
-    if (!status && surface->node_count > 0)
-        status = lar_contact_surface_fit(model, time_step, stable_step, surface, error);
-    if (status || surface->node_count == 0) {
-        lar_collide_destroy(collide);
-        return status;
-    }
-    collide->law = lar_contact_law_for(time_step, stable_step);
-    collide->time_step = time_step;
-    collide->list = motion->search->list;
-    motion->always = search_always;
-    motion->skin_least = 0.25 * surface->reach;
-    motion->skin_most = 2 * surface->reach_most;
-    status = allocate(collide, local, error);
-    if (status)
-        lar_collide_destroy(collide);
-    else
-        collide->surface = surface;
-    return status;
-}
-
-void lar_collide_destroy(lar_collide *collide) {
-    lar_collide_motion *motion = collide->motion;
-    free(collide->due);
-    free(collide->last);
-    free(collide->near);
-    free(collide->away);
-    free(collide->part);
-    free(collide->level);
-    if (motion) {
-        free((int32_t *)collide->view.value);
-        if (motion->search) lar_contact_search_clear(motion->search);
-        free(motion->search);
-        free(motion->x);
-        free(motion->searched);
-        free(motion);
-    }
-    *collide = (lar_collide){0};
 }

@@ -16,6 +16,9 @@
  * hollow several faces are about as close and the closest point jumps: up to LAR_CONTACT_FACES of
  * them push together, through a mean of their points that does not jump. docs/theory.md, contact.
  *
+ * Sharp edges (contact_edges.c): towards them springs fade, with a force
+ * along the face; and points of them are pushed by faces of other bodies as nodes are.
+ *
  * Levels. A node of a body may come to lie below that body's own faces without having come through
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
  * rest. Pushed from there it would get energy that contact never took. So the depth at which it
@@ -59,7 +62,7 @@ typedef struct lar_contact_view {
 } lar_contact_view;
 
 /* Faces of a body that push a node together, at most, and whom they push. */
-enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 1 + 4 * LAR_CONTACT_FACES };
+enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1) };
 
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_collide_part {

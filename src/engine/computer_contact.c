@@ -157,7 +157,7 @@ static bool list_fits(const lar_contact_surface *surface, const lar_contact_list
     int64_t from = 0;
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
-        if (group->node < 0 || group->node >= surface->node_count || group->first != from ||
+        if (group->node < 0 || group->node >= surface->point_count || group->first != from ||
             group->count < 1 || group->count > LAR_GROUP_FACES_MOST)
             return false;
         from += group->count;

@@ -92,7 +92,11 @@ static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *li
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
-    if (map->reporter[group->node] == processor) return true;
+    int32_t parent[2];
+    double weight[2];
+    int count = lar_contact_parents(s, group->node, parent, weight);
+    for (int k = 0; k < count; k++)
+        if (map->reporter[parent[k]] == processor) return true;
     if (is_own_body(s, list, group) && has_node(map, processor, group->node)) return true;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
         int32_t f = list->face[i];
@@ -106,7 +110,10 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
 /* Marks the nodes of a group. */
 static void mark_nodes(const lar_contact_map *map, const lar_contact_list *list,
                        const lar_contact_group *group, uint8_t *marked) {
-    marked[group->node] = 1;
+    int32_t parent[2];
+    double weight[2];
+    lar_contact_parents(map->surface, group->node, parent, weight);
+    marked[parent[0]] = marked[parent[1]] = 1;
     for (int32_t i = group->first; i < group->first + group->count; i++)
         for (int a = 0; a < 4; a++) marked[map->surface->face[list->face[i]].corner[a]] = 1;
 }
@@ -159,8 +166,11 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         const int32_t *face = list->face + group->first;
-        bool takes = collide->adds_node[group->node] ||
-                     (collide->keeps[group->node] && is_own_body(collide->surface, list, group));
+        int32_t parent[2];
+        double weight[2];
+        lar_contact_parents(collide->surface, group->node, parent, weight);
+        bool takes = collide->adds_node[parent[0]] || collide->adds_node[parent[1]] ||
+                     (is_own_body(collide->surface, list, group) && collide->keeps[group->node]);
         for (int32_t i = 0; i < group->count && !takes; i++)
             takes = collide->adds_corner[face[i]] &&
                     lar_contact_active(&collide->surface->node[group->node],

@@ -189,6 +189,7 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
             int32_t f = search->order[i];
             if (search->apart[f] == node + 1 || !(passes & (s->face[f].active | s->face[f].mute)))
                 continue;
+            if (node >= s->node_count && s->face[f].body == s->node[node].body) continue;
             if (count == room) return -1;
             insert(s->face, face, count++, f);
         }
@@ -226,6 +227,15 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
     return true;
 }
 
+static void find_place(const lar_contact_search *search, int32_t node, double x[3]) {
+    int32_t parent[2];
+    double weight[2];
+    int count = lar_contact_parents(&search->surface, node, parent, weight);
+    const double *one = search->x[parent[0]], *other = search->x[parent[1]];
+    for (int i = 0; i < 3; i++)
+        x[i] = count == 1 ? one[i] : weight[0] * one[i] + weight[1] * other[i];
+}
+
 void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], double skin) {
     lar_contact_list *list = &search->next;
     list->group_count = list->face_count = 0;
@@ -238,7 +248,7 @@ void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], 
 enum { BOXES_PER_NODE = 4 };
 
 int32_t lar_contact_search_left(const lar_contact_search *search) {
-    return search->surface.node_count - search->at +
+    return search->surface.point_count - search->at +
            (search->surface.face_count - search->boxes) / BOXES_PER_NODE;
 }
 
@@ -248,18 +258,20 @@ lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_
     if (search->boxes < s->face_count) {
         fit_boxes(search,
                   nodes < s->face_count / BOXES_PER_NODE ? nodes * BOXES_PER_NODE : s->face_count);
-        if (search->boxes < s->face_count || nodes < s->node_count) return LAR_SEARCH_UNDER_WAY;
+        if (search->boxes < s->face_count || nodes < s->point_count) return LAR_SEARCH_UNDER_WAY;
     }
-    int32_t end = nodes < s->node_count - search->at ? search->at + nodes : s->node_count;
+    int32_t end = nodes < s->point_count - search->at ? search->at + nodes : s->point_count;
     for (int32_t n = search->at; n < end; n++) {
+        double x[3];
         if (!s->node[n].passes) continue;
-        mark_apart(search, n);
-        int32_t count = find_faces(search, n, search->x[n], list->face + list->face_count,
+        if (n < s->node_count) mark_apart(search, n);
+        find_place(search, n, x);
+        int32_t count = find_faces(search, n, x, list->face + list->face_count,
                                    list->face_room - list->face_count);
-        if (count < 0 || !add_groups(search, n, search->x[n], count)) return LAR_SEARCH_FULL;
+        if (count < 0 || !add_groups(search, n, x, count)) return LAR_SEARCH_FULL;
     }
     search->at = end;
-    if (end < s->node_count) return LAR_SEARCH_UNDER_WAY;
+    if (end < s->point_count) return LAR_SEARCH_UNDER_WAY;
     lar_contact_list done = search->next;
     search->next = search->list;
     search->list = done;

@@ -263,6 +263,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         double stable = stable_step * most / fastest[s->node[n].node];
         s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
     }
+    lar_contact_edges_fit(s);
     free(fastest);
     return LAR_OK;
 }
@@ -402,6 +403,7 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
     if (!status) find_bodies(&model->mesh, d.body);
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);
+    if (!status) status = lar_contact_surface_edges(surface, error);
     if (!status) status = list_apart(&d, error);
     if (!status) count_possible(surface);
     clear_draft(&d);
@@ -413,6 +415,7 @@ void lar_contact_surface_clear(lar_contact_surface *surface) {
     free(surface->node);
     free(surface->face);
     free(surface->body);
+    free(surface->point);
     free(surface->rest);
     free(surface->apart_first);
     free(surface->apart);

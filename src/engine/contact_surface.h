@@ -32,6 +32,7 @@ typedef struct lar_contact_face {
     int32_t body;
     uint64_t active, mute; /* passes */
     double size;           /* its longer diagonal at rest [m] */
+    bool fades;            /* a corner is on a sharp edge */
 } lar_contact_face;
 
 typedef struct lar_contact_body {
@@ -44,19 +45,28 @@ typedef struct lar_contact_body {
 
 /* Nodes of the faces below: "contact nodes". */
 typedef struct lar_contact_node {
-    int32_t node; /* of the model */
+    int32_t node; /* of the model; of a point of an edge that of its first */
     int32_t body;
     uint64_t passes; /* in which it is looked at against faces */
     double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
+    double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
 } lar_contact_node;
+
+/* A point of a sharp edge, which meets faces of other bodies as nodes do. */
+typedef struct lar_contact_point {
+    int32_t node[2];  /* contact nodes */
+    double weight[2]; /* their shares, sum 1 */
+} lar_contact_point;
 
 typedef struct lar_contact_surface {
     int32_t node_count, face_count, body_count;
-    int32_t slave_count;    /* nodes with passes */
-    lar_contact_node *node; /* ascending */
+    int32_t point_count;      /* nodes, and behind them points of edges */
+    int32_t slave_count;      /* those with passes */
+    lar_contact_node *node;   /* [point_count] nodes ascending */
+    lar_contact_point *point; /* [point_count - node_count] */
     lar_contact_face *face; /* by the surface's order */
     lar_contact_body *body; /* [body_count] */
-    double (*rest)[3];      /* [node_count] reference positions */
+    double (*rest)[3];      /* [point_count] reference positions */
     int64_t *apart_first;   /* [node_count + 1] faces that are never together with a node: */
     int32_t *apart;         /* ascending for each node */
     double reach;           /* the least of all bodies [m] */
@@ -99,6 +109,27 @@ static inline double lar_contact_standoff(const lar_contact_surface *surface,
 /* Fits masses and contact distances to a time step. Once, after `clear` is known. */
 lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
                                    lar_contact_surface *surface, lar_error *error);
+
+/* The nodes of which a node or point of an edge is made, and their shares; returns how many. */
+static inline int lar_contact_parents(const lar_contact_surface *surface, int32_t node,
+                                      int32_t parent[2], double weight[2]) {
+    parent[0] = parent[1] = node;
+    weight[0] = 1;
+    weight[1] = 0;
+    if (node < surface->node_count) return 1;
+    const lar_contact_point *point = &surface->point[node - surface->node_count];
+    for (int i = 0; i < 2; i++) {
+        parent[i] = point->node[i];
+        weight[i] = point->weight[i];
+    }
+    return 2;
+}
+
+/* Finds the sharp edges at rest: sets `blunt` and `fades`, and adds the edges' points. */
+lar_status lar_contact_surface_edges(lar_contact_surface *surface, lar_error *error);
+
+/* Masses of the edges' points, from those of nodes. */
+void lar_contact_edges_fit(lar_contact_surface *surface);
 
 /* Whether a node and a face are never together. */
 bool lar_contact_apart(const lar_contact_surface *surface, int32_t node, int32_t face);

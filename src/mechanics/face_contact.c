@@ -133,6 +133,7 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
         closest_of_part(x, corner, middle, t, part[t].weight);
         part[t].distance = distance_to(x, corner, part[t].weight);
         part[t].height = part[t].toward = NAN;
+        part[t].triangle = t;
         least = fmin(least, part[t].distance);
     }
     const lar_face_point *chosen = NULL; /* stays so where there are no numbers */
@@ -237,6 +238,44 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
     }
 }
 
+/* ---- smoothly from face to face ------------------------------------------------------------- */
+
+/* A share of a corner that is none. */
+static const double NOTHING = 1e-12;
+
+/* Slopes of the shares of a triangle's corners in its plane: across the side opposite to each. */
+static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
+    for (int c = 0; c < 3; c++) {
+        double side[3], up[3];
+        between(corner[(c + 1) % 3], corner[(c + 2) % 3], side);
+        between(corner[(c + 1) % 3], corner[c], up);
+        double along = share(dot(up, side), dot(side, side));
+        for (int i = 0; i < 3; i++) up[i] -= along * side[i];
+        double square = dot(up, up);
+        for (int i = 0; i < 3; i++) slope[c][i] = share(up[i], square);
+    }
+}
+
+/* How far from its sides the foot of x is within a triangle; 0 where it is on one. */
+static double within(const double x[3], const double corner[4][3], const double middle[3], int t,
+                     const double weight[4], double distance, bool closest) {
+    int next = (t + 1) % 4, other = (t + 2) % 4;
+    double place[3][3], slope[3][3], least = INFINITY;
+    double part[3] = {weight[t] - weight[other], weight[next] - weight[other], 4 * weight[other]};
+    memcpy(place[0], corner[t], sizeof place[0]);
+    memcpy(place[1], corner[next], sizeof place[1]);
+    memcpy(place[2], middle, sizeof place[2]);
+    if (part[0] > NOTHING && part[1] > NOTHING && part[2] > NOTHING) {
+        triangle_slopes((const double(*)[3])place, slope);
+        for (int c = 0; c < 3; c++)
+            least = fmin(least, share(part[c], sqrt(dot(slope[c], slope[c]))));
+        return least;
+    }
+    if (!closest) return 0;
+    double height = height_over(x, corner, middle, t, weight);
+    return sqrt(fmax(distance * distance - height * height, 0));
+}
+
 double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
                       double sum[4]) {
     double middle[3], weight[4], all = 0;
@@ -245,14 +284,75 @@ double lar_face_blend(const double x[3], const double corner[4][3], double least
         closest_of_part(x, corner, middle, t, weight);
         double distance = distance_to(x, corner, weight);
         double count = 1 - (distance - least) / fade;
-        if (!(count > 0) || !(distance > 0)) continue;
-        double upright = height_over(x, corner, middle, t, weight) / distance;
-        if (!(upright > 0)) continue;
-        /* To the 256th. */
-        for (int i = 0; i < 8; i++) upright *= upright;
-        count *= upright < 1 ? upright : 1;
+        if (!(count > 0)) continue;
+        count *= within(x, corner, middle, t, weight, distance, distance <= least);
+        if (!(count > 0)) continue;
         for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
         all += count;
     }
     return all;
+}
+
+/* ---- fading --------------------------------------------------------------------------------- */
+
+/* The same where the closest point is on a side: along that; in a corner it stays. */
+static void side_slopes(const double corner[3][3], const bool has[3], double slope[3][3]) {
+    memset(slope, 0, 3 * sizeof *slope);
+    for (int c = 0; c < 3; c++) {
+        int next = (c + 1) % 3;
+        if (!has[c] || !has[next]) continue;
+        double side[3];
+        between(corner[c], corner[next], side);
+        double square = dot(side, side);
+        for (int i = 0; i < 3; i++) {
+            slope[next][i] = share(side[i], square);
+            slope[c][i] = -slope[next][i];
+        }
+    }
+}
+
+/* Shares of corner t, the next one, and the middle. */
+static void shares_of(const lar_face_point *point, double part[3]) {
+    int t = point->triangle, other = (t + 2) % 4;
+    part[0] = point->weight[t] - point->weight[other];
+    part[1] = point->weight[(t + 1) % 4] - point->weight[other];
+    part[2] = 4 * point->weight[other];
+}
+
+double lar_face_value(const lar_face_point *point, const double value[5]) {
+    double part[3];
+    shares_of(point, part);
+    return part[0] * value[point->triangle] + part[1] * value[(point->triangle + 1) % 4] +
+           part[2] * value[4];
+}
+
+void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
+                    const double value[5], double slope[5][3]) {
+    int t = point->triangle, next = (t + 1) % 4;
+    double place[3][3], of[3][3], at[3], away[3], part[3];
+    const double values[3] = {value[t], value[next], value[4]};
+    bool has[3];
+    shares_of(point, part);
+    memcpy(place[0], corner[t], sizeof place[0]);
+    memcpy(place[1], corner[next], sizeof place[1]);
+    middle_of(corner, place[2]);
+    for (int c = 0; c < 3; c++) has[c] = part[c] > NOTHING;
+    if (has[0] && has[1] && has[2])
+        triangle_slopes((const double(*)[3])place, of);
+    else
+        side_slopes((const double(*)[3])place, has, of);
+    lar_face_mean(corner, point->weight, at);
+    between(at, x, away);
+    memset(slope, 0, 5 * sizeof *slope);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++) slope[4][i] += values[c] * of[c][i];
+    /* Turning the triangle moves the foot of x as well. */
+    for (int c = 0; c < 3; c++) {
+        double turn = dot(slope[4], of[c]);
+        for (int i = 0; i < 3; i++) {
+            double own = turn * away[i] - part[c] * slope[4][i];
+            for (int a = 0; a < 4; a++)
+                slope[a][i] += c == 2 ? 0.25 * own : a == (c == 0 ? t : next) ? own : 0;
+        }
+    }
 }

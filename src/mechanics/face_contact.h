@@ -33,6 +33,7 @@ typedef struct lar_face_point {
     double toward;    /* cosine between the way to the point and the way along the triangle that
                          comes closest to it: 0 but where the closest point is a corner */
     double weight[4]; /* of the corners */
+    int triangle;     /* at corners `triangle` and the next */
 } lar_face_point;
 
 /* Distances closer to each other than this part of the size of a face are equal: rounding must not
@@ -67,6 +68,15 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
  * x is not straight above it. */
 double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
                       double sum[4]);
+
+/* A number at the closest point of a face that is `value` at its corners and, last, in its middle,
+ * linear in its triangles. */
+double lar_face_value(const lar_face_point *point, const double value[5]);
+
+/* Its slopes with the places of the corners and, last, with x [1/m]: forces and moments that
+ * balance, as those of any potential of the five places. */
+void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
+                    const double value[5], double slope[5][3]);
 
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {
