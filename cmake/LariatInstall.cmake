@@ -43,3 +43,11 @@ file(RELATIVE_PATH LARIAT_PC_PREFIX
 string(REGEX REPLACE "/$" "" LARIAT_PC_PREFIX "${LARIAT_PC_PREFIX}")
 configure_file(cmake/lariat.pc.in ${PROJECT_BINARY_DIR}/lariat.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/lariat.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# What `make` builds: all that is installed, and the viewer's page, but no tests.
+add_custom_target(products DEPENDS lariat liblariat)
+foreach(target lariat-mpi-openmpi lariat-mpi-mpich lariat-petsc viewer)
+  if(TARGET ${target})
+    add_dependencies(products ${target})
+  endif()
+endforeach()
