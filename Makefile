@@ -19,7 +19,6 @@ configure:
 # The command and the page only. Without a display the address is printed. DEMO_SECONDS=5 ends it by
 # itself.
 demo: setup configure
-	@echo "The first time this compiles for about a minute."
 	@tools/build.sh demo $(JOBS)
 	build/lariat demo-model out/demo
 	@echo
