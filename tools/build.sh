@@ -16,7 +16,7 @@ MS_PER_FILE=350 MANY=20 # fewer steps are not worth a word but on a terminal
 # left DONE TOTAL: an estimate in words.
 left() {
     local seconds=$((MS_PER_FILE * $2 / jobs / 1000))
-    [ "$SECONDS" -lt 2 ] || seconds=$((SECONDS * ($2 - $1) / $1))
+    [ "$SECONDS" -lt 2 ] || [ "$1" -lt 2 ] || seconds=$((SECONDS * ($2 - $1) / $1))
     if [ "$seconds" -ge 90 ]; then
         echo "about $(((seconds + 30) / 60)) minutes left"
     elif [ "$seconds" -ge 10 ]; then
