@@ -105,9 +105,9 @@ static double round_to_two(double value) {
 static void print_measured(const findings *f) {
     static const double BUSY = 0.5;
     const lar_doctor_measured *m = &f->measured;
-    printf("  %-17sa thread that should wake every millisecond is late by %.2g us (median),\n"
+    printf("  %-17sa thread that should wake every millisecond is late by %.*f us (median),\n"
            "  %-17s99 %% of the times by less than %.0f us, at most by %.0f us\n",
-           "", m->late.p50, "", m->late.p99, m->late.most);
+           "", m->late.p50 < 10 ? 1 : 0, m->late.p50, "", m->late.p99, m->late.most);
     if (f->here.machine.load[0] > BUSY)
         printf(
             "  %-17s%.1f threads wanted to run in the last minute: what is measured is less than\n"
