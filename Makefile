@@ -20,12 +20,7 @@ configure:
 # itself.
 demo: setup configure
 	@tools/build.sh demo $(JOBS)
-	build/lariat demo-model out/demo
-	@echo
-	@echo "Take hold of the organ with the mouse and pull. Ctrl-C ends. What else there is:"
-	@echo "    build/lariat --help; your own mesh: README.md."
-	build/lariat view out/demo/uterus_live.yaml --save-folder out/demo/saved \
-	    $(if $(DISPLAY)$(WAYLAND_DISPLAY),--open) $(if $(DEMO_SECONDS),--seconds $(DEMO_SECONDS))
+	@tools/demo.sh $(DEMO_SECONDS)
 
 check:
 	@tools/setup.sh build scan web check
