@@ -15,9 +15,6 @@
 #include "study/bench_step.h"
 #include "study/linear_solver.h"
 #include "study/real_time.h"
-#ifdef LAR_HAVE_LIBWEBSOCKETS
-#include "session/server_files.h"
-#endif
 
 /* ---- parts ---------------------------------------------------------------------------------- */
 
@@ -37,19 +34,6 @@ static const bool server = true;
 #else
 static const bool server = false;
 #endif
-
-/* What stands in for a page that was not built is one file. */
-static bool page(void) {
-#ifdef LAR_HAVE_LIBWEBSOCKETS
-    lar_files files;
-    if (lar_files_read(NULL, &files, NULL)) return false;
-    bool built = files.count > 1;
-    lar_files_clear(&files);
-    return built;
-#else
-    return false;
-#endif
-}
 
 /* Built with its headers, loaded when the first controller is opened. */
 static bool controllers(void) {
@@ -78,7 +62,7 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
         {"page", "the page that lariat view shows",
          server ? "apt-get install nodejs npm, then make"
                 : "apt-get install libwebsockets-dev nodejs npm, then make",
-         page()},
+         lar_server_has_page() != 0},
         {"gamepad", "game controllers move instruments",
 #ifdef LAR_HAVE_SDL2
          "apt-get install libsdl2-2.0-0",

@@ -32,6 +32,10 @@ agree metis "$LARIAT" partition organ/uterus.yaml --grid 2x1x1 --method metis
 if [ "$(there petsc)" = true ]; then
     agree petsc "$LARIAT" bench implicit --case loose --solver cg
 fi
+# The page is there when it was built into the checkout, and there is who serves it.
+built=false
+[ "$(there viewer)" = false ] || [ ! -e "$SOURCE/web/dist/index.html" ] || built=true
+[ "$(there page)" = $built ] || fail "doctor says '$(there page)' of the page"
 # What cannot be read says so in other words than what there is no reader for.
 echo none >bad.nii
 "$LARIAT" mesh bad.nii --list >tried 2>&1
