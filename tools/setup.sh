@@ -107,6 +107,19 @@ may_install() {
     sudo -n true 2>/dev/null || [ -t 0 ]
 }
 
+# What apt-get and dpkg say, package by package, is shown only when they fail.
+quietly() {
+    local log
+    log=$(mktemp)
+    if "$@" >"$log" 2>&1 </dev/null; then
+        rm -f "$log"
+    else
+        cat "$log" >&2
+        rm -f "$log"
+        return 1
+    fi
+}
+
 updated=no
 apt_install() {
     # A bounded wait for the network, and for another apt that holds the lock.
@@ -114,10 +127,10 @@ apt_install() {
         -o DPkg::Lock::Timeout=120 -o Acquire::Retries=2
         -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30)
     if [ $updated = no ]; then
-        as_root "${apt[@]}" update >&2 </dev/null || return 1
+        quietly as_root "${apt[@]}" update || return 1
         updated=yes
     fi
-    as_root "${apt[@]}" install -y --no-install-recommends "$@" >&2 </dev/null
+    quietly as_root "${apt[@]}" install -y --no-install-recommends "$@"
 }
 
 # need TABLE: installs what is missing, or ends with a sentence.
@@ -130,7 +143,7 @@ need() {
             "and try again: apt-get install $lacking"
         exit 1
     fi
-    say "installing $lacking"
+    say "installing $lacking (a few minutes on a bare system)"
     # shellcheck disable=SC2086
     if ! apt_install $lacking; then
         say "apt-get could not install them; check the network and the package sources, then" \
@@ -145,7 +158,7 @@ want() {
     lacking=$(missing_of "$1")
     [ -n "$lacking" ] || return 0
     if may_install; then
-        say "installing $lacking"
+        say "installing $lacking (a few minutes on a bare system)"
         # shellcheck disable=SC2086
         apt_install $lacking && return 0
     fi

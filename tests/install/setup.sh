@@ -23,7 +23,7 @@ make_command dpkg-query 'exit 1'
 make_command pkg-config 'exit 1'
 make_command id 'echo 0'
 make_command apt-get "printf '%s\n' \"\$@\" >>'$scratch/asked'"
-for tool in sh bash env awk sed cat printf grep tr dirname; do
+for tool in sh bash env awk sed cat printf grep tr dirname mktemp rm; do
     ln -s "$(command -v $tool)" "$scratch/bin/$tool"
 done
 # As in Debian's openmpi-bin: it answers, and has no headers.
@@ -57,6 +57,18 @@ wants_no libcmocka-dev
 mv "$scratch/asked" "$scratch/default"
 asked
 cmp -s "$scratch/asked" "$scratch/default" || fail "the default is not what the Makefile asks for"
+
+# What apt-get says is shown when it fails, and only then.
+make_command apt-get "printf '%s\n' \"\$@\" >>'$scratch/asked'; echo Unpacking thing"
+asked
+! grep -q Unpacking "$scratch/err" || fail "every package is told"
+grep -q '^setup: installing .*libnifti-dev' "$scratch/err" || fail "no word of what is installed"
+make_command apt-get "echo 'E: no such package'; exit 100"
+if PATH="$scratch/bin" bash "$source/tools/setup.sh" build 2>"$scratch/err"; then
+    fail "success without what cannot be installed"
+fi
+grep -q 'E: no such package' "$scratch/err" || fail "apt-get's own words are lost"
+make_command apt-get "printf '%s\n' \"\$@\" >>'$scratch/asked'"
 
 # MPI: the wrapper that finds mpi.h is one, the other is not.
 asked check
