@@ -82,7 +82,7 @@ missing_of() {
         case $probe in
         c:*) command -v "${probe#c:}" >/dev/null 2>&1 && continue ;;
         m:*) pkg-config --exists "${probe#m:}" 2>/dev/null && continue ;;
-        w:*) echo '#include <mpi.h>' | "${probe#w:}" -E -x c - >/dev/null 2>&1 && continue ;;
+        w:*) "${probe#w:}" -E -x c - <<<'#include <mpi.h>' >/dev/null 2>&1 && continue ;;
         esac
         lacking="$lacking $package"
     done <<<"$table"
