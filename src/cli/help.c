@@ -186,6 +186,10 @@ static int help_main(int argc, char **argv) {
         return CLI_DONE;
     }
     const cli_command *command = find(words[0], words[1]);
+    if (!command && words[1] && find(words[0], NULL))
+        return cli_complain(&cli_help, CLI_USAGE,
+                            "there is no %s of %s; lariat %s --help says more", words[1], words[0],
+                            words[0]);
     if (!command) return cli_unknown_command(words[0]);
     ask(command, man ? CLI_HELP_MAN : CLI_HELP_TEXT, NULL);
     return CLI_DONE;

@@ -98,6 +98,7 @@ complains 'bash, zsh, fish'
 expect 2 "$LARIAT" help rnu
 complains 'did you mean run'
 expect 2 "$LARIAT" help bench kernl
+complains 'there is no kernl of bench; lariat bench --help'
 expect 2 "$LARIAT" help run --completion bash
 expect 1 "$LARIAT" help --write /dev/null/share
 complains 'cannot be written'
