@@ -3,36 +3,37 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 
-.PHONY: all setup demo check check-long report fuzz install format clean help
+.PHONY: all setup configure demo check check-long report fuzz install format clean help
 .NOTPARALLEL:
 
-all: setup
-	cmake --preset release --log-level=NOTICE
-	cmake --build --preset release -j $(JOBS)
+# What is installed, without the tests, which `make check` builds.
+all: setup configure
+	@tools/build.sh products $(JOBS)
 
 setup:
-	@tools/setup.sh build web
+	@tools/setup.sh build scan web
 
-# Without a display the address is printed. DEMO_SECONDS=5 ends it by itself.
-demo: all
-	build/lariat demo-model out/demo
-	@echo
-	@echo "Take hold of the organ with the mouse and pull. Ctrl-C ends. What else there is:"
-	@echo "    build/lariat --help; your own mesh: README.md."
-	build/lariat view out/demo/uterus_live.yaml --save-folder out/demo/saved \
-	    $(if $(DISPLAY)$(WAYLAND_DISPLAY),--open) $(if $(DEMO_SECONDS),--seconds $(DEMO_SECONDS))
+configure:
+	@cmake --preset release --log-level=NOTICE >/dev/null
+
+# The command and the page only. Without a display the address is printed. DEMO_SECONDS=5 ends it by
+# itself.
+demo: setup configure
+	@tools/build.sh demo $(JOBS)
+	@tools/demo.sh $(DEMO_SECONDS)
 
 check:
-	@tools/setup.sh build web check
+	@tools/setup.sh build scan web check
 	@JOBS=$(JOBS) tools/check.sh
 
-check-long: setup
+check-long:
+	@tools/setup.sh build scan web check
 	cmake --preset release --log-level=NOTICE
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset long -j 1
 
 report:
-	@tools/setup.sh build web check report
+	@tools/setup.sh build scan web check report
 	cmake --preset release --log-level=NOTICE
 	cmake --build --preset release -j $(JOBS)
 	tools/report/run.sh

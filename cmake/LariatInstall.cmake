@@ -28,6 +28,18 @@ install(FILES include/lariat.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set_target_properties(lariat PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 install(TARGETS lariat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
+# Man pages and completion, which the command makes of its own tables of options (src/cli/help.h).
+if(NOT CMAKE_CROSSCOMPILING)
+  set(help ${PROJECT_BINARY_DIR}/help)
+  add_custom_command(OUTPUT ${help}/man/man1/lariat.1
+    COMMAND lariat help --write ${help} DEPENDS lariat
+    COMMENT "Man pages and completion" VERBATIM)
+  add_custom_target(lariat_help ALL DEPENDS ${help}/man/man1/lariat.1)
+  install(DIRECTORY ${help}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(DIRECTORY ${help}/bash-completion ${help}/zsh ${help}/fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR})
+endif()
+
 # Both package files find the prefix from where they lie, so that an installed tree can be moved.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Lariat)
 configure_package_config_file(cmake/LariatConfig.cmake.in ${PROJECT_BINARY_DIR}/LariatConfig.cmake
@@ -43,3 +55,11 @@ file(RELATIVE_PATH LARIAT_PC_PREFIX
 string(REGEX REPLACE "/$" "" LARIAT_PC_PREFIX "${LARIAT_PC_PREFIX}")
 configure_file(cmake/lariat.pc.in ${PROJECT_BINARY_DIR}/lariat.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/lariat.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# What `make` builds: all that is installed, and the viewer's page, but no tests.
+add_custom_target(products DEPENDS lariat liblariat)
+foreach(target lariat_help lariat-mpi-openmpi lariat-mpi-mpich lariat-petsc viewer)
+  if(TARGET ${target})
+    add_dependencies(products ${target})
+  endif()
+endforeach()

@@ -1,19 +1,21 @@
 # Backend mpi: one loadable module for every MPI that is installed (src/comm/mpi_shim.h). What a
 # program needs to be compiled with MPI is asked of its compiler wrapper, not of find_package(MPI),
-# which knows only one MPI at a time.
+# which knows only one MPI at a time. A wrapper alone is no MPI: Debian's openmpi-bin and mpich have
+# one without the headers.
 #
-# lariat_mpi(name option wrapper...): the first wrapper that answers `option` with flags.
-set(LARIAT_MPI_FOUND)
-function(lariat_mpi name probe)
+# lariat_mpi(name title package option wrapper...): the first wrapper that answers `option` with
+# flags with which a program of MPI compiles and links.
+set(LARIAT_HAVE_MPI)
+function(lariat_mpi name title package probe)
+  set(half FALSE)
   foreach(wrapper ${ARGN})
-    string(MAKE_C_IDENTIFIER ${name}_${wrapper} id)
-    find_program(LARIAT_WRAPPER_${id} ${wrapper})
-    mark_as_advanced(LARIAT_WRAPPER_${id})
-    if(NOT LARIAT_WRAPPER_${id})
+    find_program(found ${wrapper} NO_CACHE)
+    if(NOT found)
       continue()
     endif()
-    execute_process(COMMAND ${LARIAT_WRAPPER_${id}} ${probe}
+    execute_process(COMMAND ${found} ${probe}
       OUTPUT_VARIABLE words ERROR_QUIET RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE)
+    unset(found)
     if(failed)
       continue()
     endif()
@@ -22,6 +24,13 @@ function(lariat_mpi name probe)
     list(FILTER folders INCLUDE REGEX "^-I")
     list(TRANSFORM folders REPLACE "^-I" "")
     list(FILTER words INCLUDE REGEX "^-(L|l|Wl,)")
+    lariat_links(works mpi-${name} INCLUDES ${folders} LIBRARIES ${words} SOURCE
+      "#include <mpi.h>
+int main(void) { int there; return MPI_Initialized(&there); }")
+    if(NOT works)
+      set(half TRUE)
+      continue()
+    endif()
     set(target lariat-mpi-${name})
     add_library(${target} MODULE comm/mpi_shim.c)
     target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
@@ -30,19 +39,28 @@ function(lariat_mpi name probe)
     set_target_properties(${target} PROPERTIES OUTPUT_NAME ${target} PREFIX lib SUFFIX .so
       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
     install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    set(LARIAT_MPI_FOUND ${LARIAT_MPI_FOUND} ${name} PARENT_SCOPE)
+    set(LARIAT_HAVE_MPI ${LARIAT_HAVE_MPI} ${name} PARENT_SCOPE)
     return()
   endforeach()
+  if(half)
+    message(NOTICE "${title} is only half installed and not used: no backend mpi with it "
+      "(apt-get install ${package})")
+  endif()
 endfunction()
 
-# `mpicc` alone may be either: only Open MPI's knows --showme, only MPICH's -link_info.
-lariat_mpi(openmpi --showme mpicc.openmpi mpicc)
-lariat_mpi(mpich -link_info mpicc.mpich mpicc)
-if(LARIAT_MPI_FOUND)
-  set_property(SOURCE comm/mpi.c APPEND PROPERTY COMPILE_DEFINITIONS LAR_HAVE_MPI)
+if(mpi IN_LIST LARIAT_WITHOUT)
+  message(STATUS "MPI left out (LARIAT_WITHOUT): no backend mpi and no start by mpirun")
 else()
-  message(STATUS "MPI not found: no backend mpi and no start by mpirun "
-    "(install libopenmpi-dev or libmpich-dev)")
+  # `mpicc` alone may be either: only Open MPI's knows --showme, only MPICH's -link_info.
+  lariat_mpi(openmpi "Open MPI" libopenmpi-dev --showme mpicc.openmpi mpicc)
+  lariat_mpi(mpich MPICH libmpich-dev -link_info mpicc.mpich mpicc)
+  if(NOT LARIAT_HAVE_MPI)
+    message(STATUS "MPI not found: no backend mpi and no start by mpirun "
+      "(apt-get install libopenmpi-dev or libmpich-dev)")
+  endif()
+endif()
+if(LARIAT_HAVE_MPI)
+  set_property(SOURCE comm/mpi.c APPEND PROPERTY COMPILE_DEFINITIONS LAR_HAVE_MPI)
 endif()
 # From the command's folder to where the modules are installed.
 file(RELATIVE_PATH LARIAT_MPI_FROM_BIN "/root/${CMAKE_INSTALL_BINDIR}"

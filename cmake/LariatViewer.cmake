@@ -6,9 +6,8 @@
 option(LARIAT_VIEWER "Build the viewer's page with npm when web/ has changed" OFF)
 
 target_sources(lariat PRIVATE cli/view.c cli/view_report.c)
-pkg_check_modules(LWS QUIET IMPORTED_TARGET libwebsockets>=4.1)
 target_sources(lariat_core PRIVATE session/server_json.c session/server_message.c)
-if(LWS_FOUND)
+if(LARIAT_HAVE_LIBWEBSOCKETS)
   target_sources(lariat_core PRIVATE
     session/server.c
     session/server_act.c
@@ -22,7 +21,6 @@ if(LWS_FOUND)
     session/server_work.c)
   target_link_libraries(lariat_core PRIVATE PkgConfig::LWS)
 else()
-  message(STATUS "libwebsockets not found: no lariat view (install libwebsockets-dev)")
   target_sources(lariat_core PRIVATE session/server_absent.c)
 endif()
 set(LARIAT_VIEWER_BELOW_PREFIX ${CMAKE_INSTALL_DATADIR}/lariat/viewer)

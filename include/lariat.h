@@ -730,6 +730,9 @@ LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
 LAR_API const char *lar_server_url(const lar_server *server);
 LAR_API int32_t lar_server_viewers(const lar_server *server); /* connected now */
 LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
+/* 1 when the page that is served without a `folder` is there; 0 when a page stands in for it that
+ * says how to get it, and where this build has no libwebsockets. */
+LAR_API int lar_server_has_page(void);
 
 #ifdef __cplusplus
 }

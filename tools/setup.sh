@@ -2,21 +2,23 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [web] [check] [fuzz] [report]      default: build
+#   tools/setup.sh [build] [scan] [web] [check] [fuzz] [report]      default: build scan web
 #
-#   build   what the library, the command and their tests need; an error when it cannot be had
+#   build   what the library and the command need; an error when it cannot be had
+#   scan    what scans are read with: libnifti
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
-#   check   what widens the tests: a second compiler, METIS, hwloc, UCX, MPI, SDL2,
-#           libnifti, PETSc, the cross compiler and emulator for NEON
+#   check   what the tests need: cmocka; and what widens them: a second compiler, METIS, hwloc, UCX,
+#           MPI, SDL2, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #   report  what writes and draws the figures of `make report`
 #
-# What belongs to `web`, `check` and `fuzz` is optional: without it the tests that need it are left
-# out, and a sentence says so.
+# The default does everything that README.md shows. What belongs to `scan` and `web`, and what widens
+# the tests, is optional: without it a sentence says what is left out.
 set -euo pipefail
 
 # One line each: package, then how to see the same thing when it came from somewhere else than
-# dpkg (c: a command, m: a pkg-config module).
+# dpkg (c: a command, m: a pkg-config module, w: an MPI's compiler wrapper that finds mpi.h, which the
+# wrapper alone does not prove).
 BUILD_PACKAGES="
 build-essential   c:c++
 cmake             c:cmake
@@ -24,7 +26,8 @@ ninja-build       c:ninja
 pkg-config        c:pkg-config
 libyaml-dev       m:yaml-0.1
 libxml2-dev       m:libxml-2.0
-zlib1g-dev        m:zlib
+zlib1g-dev        m:zlib"
+TEST_PACKAGES="
 libcmocka-dev     m:cmocka"
 LWS_PACKAGES="
 libwebsockets-dev m:libwebsockets"
@@ -53,9 +56,9 @@ gnuplot-nox       c:gnuplot"
 # Both can be installed side by side; which one plain `mpirun` is does not matter.
 MPI_PACKAGES="
 openmpi-bin       c:mpirun.openmpi
-libopenmpi-dev    c:mpicc.openmpi
+libopenmpi-dev    w:mpicc.openmpi
 mpich             c:mpirun.mpich
-libmpich-dev      c:mpicc.mpich"
+libmpich-dev      w:mpicc.mpich"
 NEON_PACKAGES="
 gcc-aarch64-linux-gnu  c:aarch64-linux-gnu-gcc
 qemu-user              c:qemu-aarch64
@@ -79,6 +82,7 @@ missing_of() {
         case $probe in
         c:*) command -v "${probe#c:}" >/dev/null 2>&1 && continue ;;
         m:*) pkg-config --exists "${probe#m:}" 2>/dev/null && continue ;;
+        w:*) "${probe#w:}" -E -x c - <<<'#include <mpi.h>' >/dev/null 2>&1 && continue ;;
         esac
         lacking="$lacking $package"
     done <<<"$table"
@@ -103,6 +107,19 @@ may_install() {
     sudo -n true 2>/dev/null || [ -t 0 ]
 }
 
+# What apt-get and dpkg say, package by package, is shown only when they fail.
+quietly() {
+    local log
+    log=$(mktemp)
+    if "$@" >"$log" 2>&1 </dev/null; then
+        rm -f "$log"
+    else
+        cat "$log" >&2
+        rm -f "$log"
+        return 1
+    fi
+}
+
 updated=no
 apt_install() {
     # A bounded wait for the network, and for another apt that holds the lock.
@@ -110,10 +127,10 @@ apt_install() {
         -o DPkg::Lock::Timeout=120 -o Acquire::Retries=2
         -o Acquire::http::Timeout=30 -o Acquire::https::Timeout=30)
     if [ $updated = no ]; then
-        as_root "${apt[@]}" update >&2 </dev/null || return 1
+        quietly as_root "${apt[@]}" update || return 1
         updated=yes
     fi
-    as_root "${apt[@]}" install -y --no-install-recommends "$@" >&2 </dev/null
+    quietly as_root "${apt[@]}" install -y --no-install-recommends "$@"
 }
 
 # need TABLE: installs what is missing, or ends with a sentence.
@@ -126,7 +143,7 @@ need() {
             "and try again: apt-get install $lacking"
         exit 1
     fi
-    say "installing $lacking"
+    say "installing $lacking (a few minutes on a bare system)"
     # shellcheck disable=SC2086
     if ! apt_install $lacking; then
         say "apt-get could not install them; check the network and the package sources, then" \
@@ -141,7 +158,7 @@ want() {
     lacking=$(missing_of "$1")
     [ -n "$lacking" ] || return 0
     if may_install; then
-        say "installing $lacking"
+        say "installing $lacking (a few minutes on a bare system)"
         # shellcheck disable=SC2086
         apt_install $lacking && return 0
     fi
@@ -159,34 +176,38 @@ want_clang() {
     want "libclang-rt-$version-dev -" "$consequence" || true
 }
 
-[ $# -gt 0 ] || set -- build
+[ $# -gt 0 ] || set -- build scan web
 for group in "$@"; do
     case $group in
     build) need "$BUILD_PACKAGES" ;;
+    scan) want "$NIFTI_PACKAGES" "lariat mesh is built without .nii" || true ;;
     web)
         want "$LWS_PACKAGES" "lariat view is built without its server" || true
         want "$NODE_PACKAGES" "the viewer's page is not built" || true
         ;;
     check)
+        need "$TEST_PACKAGES"
         want_clang "the sanitizers run with gcc instead of clang"
         want "$PETSC_PACKAGES" "lariat bench implicit is built and tested with its own solver only" || true
         want "$METIS_PACKAGES" "lariat partition is built and tested without METIS" || true
         want "$HWLOC_PACKAGES" "threads are not bound to cores" || true
         want "$UCX_PACKAGES" "the backend ucx is neither built nor tested" || true
         want "$SDL_PACKAGES" "game controllers are neither built nor tested" || true
-        want "$NIFTI_PACKAGES" "lariat mesh is built and tested without .nii" || true
         want "$MPI_PACKAGES" "the backend mpi is built and tested with those MPIs that are there" || true
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true
         want "$REPORT_PACKAGES" "the report is not tested" || true
         ;;
-    fuzz) want_clang "fuzzing runs with the plain driver instead of libFuzzer" ;;
+    fuzz)
+        need "$TEST_PACKAGES"
+        want_clang "fuzzing runs with the plain driver instead of libFuzzer"
+        ;;
     report)
         need "$REPORT_PACKAGES"
         want_clang "the report has no second compiler"
         ;;
     *)
-        say "unknown group '$group'; use build, web, check, fuzz or report"
+        say "unknown group '$group'; use build, scan, web, check, fuzz or report"
         exit 2
         ;;
     esac

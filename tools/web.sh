@@ -25,8 +25,14 @@ newer() {
         tsconfig.json -newer "$1" -print -quit 2>/dev/null)" ]
 }
 newer dist/index.html || exit 0
-command -v npm >/dev/null ||
-    give_up "not built, npm is not there (optional: apt-get install nodejs npm)"
+# Either may be there without the other, and npm is a script of node's: it has to run. Sentences name
+# what to do; what vite needs, package.json says under "engines".
+for tool in node npm; do
+    "$tool" --version >/dev/null 2>&1 ||
+        give_up "not built, $tool is not there or does not run (optional: apt-get install nodejs npm)"
+done
+node -e 'process.exit(process.versions.node.split(".")[0] >= 18 ? 0 : 1)' ||
+    give_up "not built, node $(node --version) is too old (optional: install Node.js 18 or newer)"
 if [ ! -e node_modules/.package-lock.json ] ||
     [ package-lock.json -nt node_modules/.package-lock.json ]; then
     echo "viewer: npm fetches what it is built from" >&2

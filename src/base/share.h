@@ -19,4 +19,8 @@ typedef void lar_share_work(void *context, int32_t first, int32_t end);
  * gives no thread the caller does it alone. Calls may be nested. */
 void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context);
 
+/* Cores that the calling thread may use, second threads of cores included. Not of base/pin.h, which
+ * knows none where Lariat was built without hwloc. */
+int32_t lar_share_cores(void);
+
 #endif

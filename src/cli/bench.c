@@ -104,15 +104,16 @@ const cli_command cli_bench_kernel = {
 
 /* ---- lariat bench ----------------------------------------------------------------------- */
 
+const cli_command *const cli_benchmarks[] = {
+    &cli_bench_kernel, &cli_bench_step,      &cli_bench_comm,     &cli_bench_scaling,
+    &cli_bench_jitter, &cli_bench_precision, &cli_bench_implicit, NULL};
+
 static int bench_main(int argc, char **argv) {
     static const char *const names[] = {"kernel", "step",      "comm",     "scaling",
                                         "jitter", "precision", "implicit", NULL};
-    static const cli_command *const benchmarks[] = {
-        &cli_bench_kernel, &cli_bench_step,      &cli_bench_comm,    &cli_bench_scaling,
-        &cli_bench_jitter, &cli_bench_precision, &cli_bench_implicit};
     static const cli_option none[] = {CLI_END};
     for (int i = 0; argc > 0 && names[i]; i++)
-        if (strcmp(argv[0], names[i]) == 0) return benchmarks[i]->main(argc - 1, argv + 1);
+        if (strcmp(argv[0], names[i]) == 0) return cli_benchmarks[i]->main(argc - 1, argv + 1);
     if (argc == 0 || argv[0][0] == '-') {
         const char *what;
         return cli_parse(&cli_bench, none, argc, argv, &what, 1);

@@ -2,13 +2,25 @@
 #ifndef LAR_CLI_COMMANDS_H
 #define LAR_CLI_COMMANDS_H
 
+#include <stdio.h>
+
 #include "cli/options.h"
 #include "lariat.h"
 
 extern const cli_command cli_info, cli_run, cli_verify, cli_partition, cli_demo_model, cli_bench,
     cli_device, cli_view, cli_replay, cli_mesh, cli_bench_kernel, cli_bench_comm, cli_bench_scaling,
     cli_bench_step, cli_bench_jitter, cli_bench_precision, cli_bench_implicit, cli_requirements,
-    cli_predict;
+    cli_predict, cli_doctor, cli_help;
+
+/* All commands in the order in which they are listed, and the benchmarks, whose names begin with
+ * "bench "; NULL ends them. */
+extern const cli_command *const cli_commands[], *const cli_benchmarks[];
+
+/* What `lariat --help` prints. */
+void cli_print_overview(FILE *out);
+
+/* There is no command `name`; prints what was probably meant and returns the exit status. */
+int cli_unknown_command(const char *name);
 
 /* Opens a model and prints its notices to standard error. Returns the exit status; messages are
  * printed. */

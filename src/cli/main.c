@@ -8,29 +8,31 @@
 
 #include "cli/commands.h"
 
-static const cli_command *const commands[] = {
-    &cli_mesh,      &cli_info,         &cli_run,     &cli_view,       &cli_replay, &cli_verify,
-    &cli_partition, &cli_requirements, &cli_predict, &cli_demo_model, &cli_bench,  &cli_device};
-enum { COUNT = sizeof commands / sizeof commands[0] };
+const cli_command *const cli_commands[] = {
+    &cli_mesh,   &cli_info,      &cli_run,          &cli_view,    &cli_replay,
+    &cli_verify, &cli_partition, &cli_requirements, &cli_predict, &cli_demo_model,
+    &cli_bench,  &cli_device,    &cli_doctor,       &cli_help,    NULL};
+enum { COUNT = sizeof cli_commands / sizeof cli_commands[0] - 1 };
 
-static void print_overview(FILE *out) {
+void cli_print_overview(FILE *out) {
     fprintf(out,
             "lariat: real-time finite elements for soft tissue, version %s\n\n"
             "Usage: lariat COMMAND [ARGUMENTS]\n\nCommands:\n",
             lar_version());
     for (int i = 0; i < COUNT; i++)
-        fprintf(out, "  %-14s%s\n", commands[i]->name, commands[i]->summary);
+        fprintf(out, "  %-14s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
     fprintf(out, "\nlariat COMMAND --help explains one command; lariat --version prints the "
                  "version.\n\nFor a first look:\n"
+                 "  lariat doctor\n"
                  "  lariat demo-model demo\n"
                  "  lariat run demo/uterus.yaml --out demo/results\n\n"
                  "Exit status: 0 success, 1 failure, 2 wrong usage, 3 an unstable run,\n"
                  "130 interrupted.\n");
 }
 
-static int unknown_command(const char *name) {
+int cli_unknown_command(const char *name) {
     const char *names[COUNT + 1] = {NULL};
-    for (int i = 0; i < COUNT; i++) names[i] = commands[i]->name;
+    for (int i = 0; i < COUNT; i++) names[i] = cli_commands[i]->name;
     const char *meant = cli_nearest_name(name, names);
     if (meant)
         return cli_complain(NULL, CLI_USAGE, "unknown command %s; did you mean %s?", name, meant);
@@ -39,28 +41,22 @@ static int unknown_command(const char *name) {
 
 static int dispatch(int argc, char **argv) {
     if (argc < 2) {
-        print_overview(stderr);
+        cli_print_overview(stderr);
         return CLI_USAGE;
     }
     const char *name = argv[1];
-    bool help = strcmp(name, "help") == 0;
     if (strcmp(name, "--version") == 0) {
         printf("lariat %s\n", lar_version());
         return CLI_DONE;
     }
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || (help && argc == 2)) {
-        print_overview(stdout);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        cli_print_overview(stdout);
         return CLI_DONE;
     }
-    if (help) {
-        char *rewritten[] = {"--help"};
-        for (int i = 0; i < COUNT; i++)
-            if (strcmp(commands[i]->name, argv[2]) == 0) return commands[i]->main(1, rewritten);
-        return unknown_command(argv[2]);
-    }
     for (int i = 0; i < COUNT; i++)
-        if (strcmp(commands[i]->name, name) == 0) return commands[i]->main(argc - 2, argv + 2);
-    return unknown_command(name);
+        if (strcmp(cli_commands[i]->name, name) == 0)
+            return cli_commands[i]->main(argc - 2, argv + 2);
+    return cli_unknown_command(name);
 }
 
 /* A closed standard stream's number would go to the next file that is opened, and our words into

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/help.h"
+
 /* ---- messages --------------------------------------------------------------------------- */
 
 static int32_t speaker;
@@ -72,32 +74,6 @@ const char *cli_nearest_name(const char *word, const char *const *names) {
         }
     }
     return nearest;
-}
-
-/* ---- help ------------------------------------------------------------------------------- */
-
-static void print_option(const char *name, const char *placeholder, const char *help) {
-    char left[64];
-    enum { COLUMN = 26 };
-    snprintf(left, sizeof left, "%s%s%s", name, placeholder ? " " : "",
-             placeholder ? placeholder : "");
-    printf("  %-*s", COLUMN, left);
-    if (strlen(left) >= COLUMN) printf("\n  %*s", COLUMN, "");
-    for (const char *c = help; *c; c++) {
-        putchar(*c);
-        if (*c == '\n') printf("  %*s", COLUMN, "");
-    }
-    putchar('\n');
-}
-
-static void print_help(const cli_command *command, const cli_option *options) {
-    printf("lariat %s: %s\n\nUsage: lariat %s%s%s%s\n\n%s\n\nOptions:\n", command->name,
-           command->summary, command->name, *command->arguments ? " " : "", command->arguments,
-           " [OPTIONS]", command->description);
-    for (; options->name; options++)
-        print_option(options->name, options->placeholder, options->help);
-    print_option("--help", NULL, "this text");
-    printf("\nExamples:\n%s", command->examples);
 }
 
 /* ---- values ----------------------------------------------------------------------------- */
@@ -232,7 +208,7 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
     bool only_arguments = false;
     for (int i = 0; i < argument_count; i++) arguments[i] = NULL;
     if (asks_help(argc, argv)) {
-        print_help(command, options);
+        cli_tell_help(command, options);
         return CLI_DONE;
     }
     for (int at = 0; at < argc;) {

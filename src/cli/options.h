@@ -5,8 +5,9 @@
  *         CLI_FLAG("--json", "one JSON object on standard output", &json),
  *         CLI_END};
  *
- * The table parses, checks ranges, and prints the help: an option cannot exist without being
- * documented. Values may stand behind a space or an equals sign; `--` ends the options.
+ * The table parses, checks ranges, and makes the help, the man pages and the completion scripts
+ * (help.h): an option cannot exist without being documented. Values may stand behind a space or an
+ * equals sign; `--` ends the options.
  */
 #ifndef LAR_CLI_OPTIONS_H
 #define LAR_CLI_OPTIONS_H

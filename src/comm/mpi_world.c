@@ -61,6 +61,11 @@ static bool find_module(const char *name, char path[PATH_BYTES]) {
            beside(command, LAR_MPI_FROM_BIN "/", name, path);
 }
 
+bool lar_mpi_module(const char *name) {
+    char path[PATH_BYTES];
+    return find_module(name, path);
+}
+
 static lar_status no_module(const char *name, lar_error *error) {
     return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                     "several processes were started together by %s, and the module "

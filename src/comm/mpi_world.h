@@ -21,6 +21,9 @@ typedef struct lar_mpi_world {
     void *abandoned;   /* memory that MPI may still touch after a loss */
 } lar_mpi_world;
 
+/* Whether the module of "openmpi" or "mpich" is there; it is not loaded. */
+bool lar_mpi_module(const char *name);
+
 /* Starts MPI in this process, as everyone else of the world must, and waits for them (MPI_Init).
  * `wanted` is the MPI of the launcher, or NULL when it does not matter. */
 lar_status lar_mpi_join(const char *wanted, lar_mpi_world **world, lar_error *error);

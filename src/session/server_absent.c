@@ -23,3 +23,7 @@ int32_t lar_server_viewers(const lar_server *server) {
 void lar_server_close(lar_server *server) {
     (void)server;
 }
+
+int lar_server_has_page(void) {
+    return 0;
+}

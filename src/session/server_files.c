@@ -10,6 +10,7 @@
 
 #include "base/folder.h"
 #include "base/memory.h"
+#include "lariat.h"
 
 /* Far above any viewer: a wrong folder is refused, not read. */
 enum { FILES_MOST = 256, DEPTH_MOST = 4 };
@@ -178,6 +179,14 @@ static lar_status read_default(lar_files *files, lar_error *error) {
     files->file[0] = (lar_file){
         .path = name, .type = type_of(name), .data = (unsigned char *)data, .size = strlen(data)};
     return LAR_OK;
+}
+
+int lar_server_has_page(void) {
+    lar_files files;
+    if (lar_files_read(NULL, &files, NULL)) return 0;
+    int whole = files.count > 1; /* what stands in for it is one file */
+    lar_files_clear(&files);
+    return whole;
 }
 
 lar_status lar_files_read(const char *folder, lar_files *files, lar_error *error) {

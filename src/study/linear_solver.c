@@ -42,6 +42,11 @@ static bool find_module(char path[PATH_MAX]) {
            beside(command, "../", path);
 }
 
+bool lar_linear_solver_petsc(void) {
+    char path[PATH_MAX];
+    return find_module(path);
+}
+
 /* In builds that look for leaks: what MPI leaves behind, PETSc's users cannot release. */
 __attribute__((weak)) void __lsan_disable(void);
 __attribute__((weak)) void __lsan_enable(void);

@@ -36,6 +36,9 @@ lar_status lar_linear_solver_open(const lar_linear_options *options, lar_linear_
                                   lar_error *error);
 void lar_linear_solver_close(lar_linear_solver *solver); /* NULL is fine */
 
+/* Whether PETSc's module is there; it is not loaded. */
+bool lar_linear_solver_petsc(void);
+
 /* Who solves, for tables: "PETSc 3.18.5 bcgs + ilu". */
 const char *lar_linear_solver_name(const lar_linear_solver *solver);
 

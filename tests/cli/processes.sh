@@ -170,8 +170,9 @@ refuse 1 'a port is a number' --comm tcp --processor 1 --master localhost:99999
 refuse 1 'cannot be used as a folder' --comm shm --out /dev/null/x
 refuse 1 'stable step' --comm shm --time-step 1
 [ "$(wc -l <err)" -eq 1 ] || fail "one failure is told $(wc -l <err) times"
+# What to do: call mpirun, or get an MPI first where this build has none.
 [ -n "${OMPI_COMM_WORLD_RANK-}${PMI_RANK-}${SLURM_PROCID-}" ] ||
-    refuse 1 'mpirun -n 2 lariat' --comm mpi
+    refuse 1 'mpirun -n 2 lariat\|found no MPI; install libopenmpi-dev or libmpich-dev' --comm mpi
 
 # Ctrl-C in a terminal reaches all of them; processor zero ends the run.
 "$LARIAT" run $scene --time 3600 --realtime --grid 2x1x1 --comm shm --json >out 2>err &

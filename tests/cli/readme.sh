@@ -35,32 +35,104 @@ cmp -s printed shown || {
     sed 's/^/    /' printed >&2
 }
 
-# Commands.
+# A scan of one's own: a liver like an egg, 1-byte labels in a NIfTI file of 40 x 30 x 26 voxels of
+# 4 mm.
+make_scan() {
+    printf '\134\001\000\000'                            # length of the header
+    head -c 36 /dev/zero
+    printf '\003\000\050\000\036\000\032\000\001\000\001\000\001\000\001\000' # sizes
+    head -c 14 /dev/zero
+    printf '\002\000\010\000\000\000'                    # bytes, 8 bits
+    for _ in 1 2 3 4; do printf '\000\000\200\100'; done # edges of voxels
+    head -c 16 /dev/zero
+    printf '\000\000\260\103'                            # where the voxels begin
+    head -c 11 /dev/zero
+    printf '\002'                                        # millimetres
+    head -c 130 /dev/zero
+    printf '\001\000'                                    # the rows that follow are the place
+    head -c 24 /dev/zero
+    printf '\000\000\200\100'
+    head -c 16 /dev/zero
+    printf '\000\000\200\100'
+    head -c 16 /dev/zero
+    printf '\000\000\200\100'
+    head -c 20 /dev/zero
+    printf 'n+1\000\000\000\000\000'
+    awk 'BEGIN { for (k = 0; k < 26; k++) for (j = 0; j < 30; j++) for (i = 0; i < 40; i++)
+        printf "%d", ((i - 20) / 16)^2 + ((j - 15) / 11)^2 + ((k - 13) / 9)^2 < 1 }' |
+        tr '01' '\000\001'
+}
+make_scan | gzip >scan.nii.gz
+[ "$(gzip -dc scan.nii.gz | wc -c)" -eq $((352 + 40 * 30 * 26)) ] || fail "the scan has another size"
+echo '1,liver' >labels.csv
+
+# Commands. What this build does not have is left out, as lariat doctor says it.
+"$LARIAT" doctor --no-speed --json >doctor
+there() {
+    awk -v name="\"$1\"," '$2 == name { mine = 1 } mine && /"there"/ { exit !/true/ }' doctor
+}
 cp -r "$SOURCE/examples" examples # a copy: its meshes are named relative to it
 awk '/^```sh/ { inside = 1; next } /^```/ { inside = 0 } inside' "$page" |
     sed -n 's/ *#.*//; s/^build\/lariat //p' >commands
 [ "$(wc -l <commands)" -ge 3 ] || fail "the commands of README.md were not found"
 port=$((20000 + $$ % 20000)) # for the device's: another test may be at the one of the page
-sed -i "s/:9000/:$port/; s/--open/--port 0 --seconds 8/; s/--seconds 60/--seconds 1/" commands
+sed -i "s/:9000/:$port/; /--device/s/--open/--port 0 --seconds 8/; s/--open/--port 0 --seconds 1/
+    s/--push 0.02/& --seconds 4.5/" commands
+grep -q '^mesh scan.nii.gz .*--label' commands || fail "README.md meshes no scan"
+grep -q '^view liver/liver.yaml' commands || fail "README.md does not look at the liver"
 viewer=
 while read -r line; do
     case $line in
-    view*) # goes on until it is ended: the next command talks to it
+    view*--device*) # goes on until it is ended: the next command talks to it
+        there viewer || continue
         # shellcheck disable=SC2086
         "$LARIAT" $line >viewed 2>&1 </dev/null &
         viewer=$!
-        for _ in 1 2 3 4 5 6 7 8 9 10; do grep -q 'http\|libwebsockets' viewed || sleep 0.3; done
+        for _ in 1 2 3 4 5 6 7 8 9 10; do grep -q 'http' viewed || sleep 0.3; done
         continue
         ;;
-    device*) grep -q libwebsockets viewed && continue ;;
+    view* | device*) there viewer || continue ;;
     esac
+    case $line in *scan.nii.gz* | *liver*) there nifti || continue ;; esac
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $line </dev/null
+    case $line in device*) cp "$SCRATCH/out" felt ;; esac
 done <commands
-wait "$viewer" || grep -q libwebsockets viewed || {
+[ -z "$viewer" ] || wait "$viewer" || {
     fail "lariat view of README.md failed:"
     sed 's/^/    /' viewed >&2
 }
+
+# What the device feels beside its command: the same rows, and it touches the organ as often and
+# as hard as it is shown, as far as a busy machine lets it.
+shape() {
+    sed 's/[0-9][0-9.]*/N/g; s/  */ /g'
+}
+# figure FILE SEDEXPRESSION
+figure() {
+    sed -n "s/$2/\1/p" "$1"
+}
+quoted "run: device" >shown
+[ "$(wc -l <shown)" -eq 4 ] || fail "the report of the device was not found in README.md"
+if there viewer; then
+    shape <shown >shown.shape
+    shape <felt | cmp -s - shown.shape || {
+        fail "README.md shows another report of the device:"
+        sed 's/^/    /' felt >&2
+    }
+    touched='.*touched in \([0-9]*\) %.*'
+    echo "$(figure shown "$touched") $(figure felt "$touched")" |
+        awk '{ exit !($1 >= 15 && $2 >= 15 && $1 - $2 < 25 && $2 - $1 < 25) }' || {
+        fail "the device of README.md does not touch the organ as it is shown"
+        sed 's/^/    /' felt >&2
+    }
+    force='^force *largest \([0-9.]*\) N.*'
+    echo "$(figure shown "$force") $(figure felt "$force")" |
+        awk '{ exit !($1 > 0.05 && $2 > 0.05 && $1 < 20 * $2 && $2 < 20 * $1) }' || {
+        fail "the device of README.md does not feel the organ as it is shown"
+        sed 's/^/    /' felt >&2
+    }
+fi
 
 # Links: the file is there, and so is the heading.
 anchors() {

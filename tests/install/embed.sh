@@ -6,7 +6,7 @@
 # 1. The library exports the functions of lariat.h, all of them and nothing else, and carries its
 #    soname. 2. examples/embed.c builds with pkg-config and with find_package, after the tree was
 # moved. 3. Both programs run on the example beam and agree. 4. The command finds the modules for
-# MPI. 5. examples/session.c holds the beam in real time.
+# MPI, and has its man pages and completion. 5. examples/session.c holds the beam in real time.
 set -eu
 source=$1 build=$2 scratch=$3
 cc=${CC:-cc}
@@ -30,6 +30,14 @@ libdir=$(dirname "$(dirname "$pc")")
 library=$libdir/liblariat.so
 [ -e "$library" ] || fail "$library was not installed"
 [ -x "$prefix/bin/lariat" ] || fail "the command was not installed"
+
+# Man pages and completion lie where man and the shells look for them, and are of this command.
+for file in man/man1/lariat.1 man/man1/lariat-run.1 man/man1/lariat-bench-kernel.1 \
+    bash-completion/completions/lariat zsh/site-functions/_lariat fish/vendor_completions.d/lariat.fish; do
+    [ -s "$prefix/share/$file" ] || fail "share/$file was not installed"
+done
+"$prefix/bin/lariat" help run --man | cmp -s - "$prefix/share/man/man1/lariat-run.1" ||
+    fail "the installed man page is not of this command"
 
 # Modules for MPI lie beside the library, and the installed command finds them: alone, where srun
 # says two, it gets as far as asking MPI.

@@ -1,7 +1,7 @@
 # The viewers' server; without libwebsockets only what does not need it.
 lar_test(session/test_server_message.c)
 lar_fuzz(viewer_message)
-if(LWS_FOUND)
+if(LARIAT_HAVE_LIBWEBSOCKETS)
   lar_test(session/test_server.c)
   lar_test(session/test_server_hostile.c)
   lar_test(session/test_server_refused.c)

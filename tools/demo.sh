@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# What `make demo` shows: the demonstration organ in the browser, or, where this build has no viewer,
+# the same organ pulled by a force, as files for ParaView.
+#
+#   tools/demo.sh [SECONDS]        ends by itself after so many; without it Ctrl-C does
+set -euo pipefail
+cd "$(dirname "$0")/.."
+lariat=build/lariat folder=out/demo
+
+$lariat demo-model $folder >/dev/null
+viewer=$($lariat doctor --no-speed --json | grep -A 2 '"name": "viewer"')
+case $viewer in
+*'"there": true'*)
+    echo "Take hold of the organ with the mouse and pull. Ctrl-C ends. What else there is:"
+    echo "    build/lariat --help; your own scan or mesh: README.md."
+    open=
+    [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || open=--open
+    exec $lariat view $folder/uterus_live.yaml --save-folder $folder/saved $open \
+        ${1:+--seconds "$1"}
+    ;;
+*)
+    echo "This build has no libwebsockets, so there is nothing to see in a browser"
+    echo "(apt-get install libwebsockets-dev, then make demo). The organ, pulled by a force:"
+    $lariat run $folder/uterus.yaml --out $folder/results
+    echo "Open $folder/results/uterus.pvd in ParaView to see it move."
+    ;;
+esac
