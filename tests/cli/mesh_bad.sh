@@ -79,6 +79,20 @@ refused 'extension' "$SCRATCH"
 cp good.nrrd good.png
 refused 'extension' good.png
 refused 'mesh one image' good.nrrd good.nrrd
+# More than the header promises, and a flipped bit that makes the data longer.
+echo "$header" | sed 's/text/raw/' >long_raw.nrrd
+head -c 600 /dev/zero | tr '\0' '\3' >>long_raw.nrrd
+refused 'long_raw.nrrd: .*512 bytes of voxels, but 88 more' long_raw.nrrd --list
+cases=$SOURCE/../shared/cases
+if [ -d "$cases" ]; then
+    expect 0 "$LARIAT" mesh "$cases/goodgz.nrrd" --list
+    refused 'gzflip2.nrrd: .*damaged' "$cases/gzflip2.nrrd" --list
+    refused 'short_raw.nrrd: .*more follow' "$cases/short_raw.nrrd" --list
+    "$LARIAT" mesh "$cases/nii_badcrc_long.nii.gz" --list 2>&1 | grep -q 'reads no NIfTI' ||
+        refused 'nii_badcrc_long.nii.gz: .*check sum' "$cases/nii_badcrc_long.nii.gz" --list
+else
+    echo "skipped: ../shared/cases is not there"
+fi
 
 # Surfaces: open, crossing themselves, a mesh, without volume.
 octahedron() {
