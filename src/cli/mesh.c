@@ -136,6 +136,11 @@ static void doubt(const mesh_report *report, bool cubes) {
     const lar_mesh_quality *quality = &report->info.quality;
     double size = 0, lost = 1 - quality->volume / quality->true_volume;
     for (int i = 0; i < 3; i++) size = fmax(size, report->model.upper[i] - report->model.lower[i]);
+    if (report->info.joined > 0)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: %d nodes of the file stand at the place of another one; they are taken "
+                     "as one, so that what meets there is connected",
+                     (int)report->info.joined);
     if (size > LARGE)
         cli_complain(
             &cli_mesh, CLI_DONE,
@@ -222,15 +227,15 @@ static int mesh_main(int argc, char **argv) {
                   "a label of the image, by name or number, as a region;\nmay be given again; "
                   "without: all labels",
                   &s.labels),
-        CLI_FLAG("--fuse", "all labels become one region", &s.fuse),
+        CLI_FLAG("--fuse", "all labels, or regions of a mesh, become one region", &s.fuse),
         CLI_TEXT("--names", "FILE", "names of the labels, a line LABEL,NAME for each", &s.names),
         CLI_FLAG("--list", "list the image's labels, and do nothing else", &s.list),
         CLI_COUNT("--elements", "N", "about so many elements (5000)", &s.elements, 1, 1e7),
         CLI_REAL("--size", "M", "edge of an element in metres, instead of --elements", &s.size,
                  1e-6, 10),
         CLI_REAL("--scale", "S",
-                 "surfaces: metres per unit of the file, 0.001 for\nmillimetres (1)", &s.scale,
-                 1e-9, 1e9),
+                 "surfaces and meshes: metres per unit of the file,\n0.001 for millimetres (1)",
+                 &s.scale, 1e-9, 1e9),
         CLI_FLAG("--principal", "elements along the body's principal axes, not the\nimage's",
                  &s.principal),
         CLI_FLAG("--voxel",
@@ -258,15 +263,17 @@ static int mesh_main(int argc, char **argv) {
 
 const cli_command cli_mesh = {
     .name = "mesh",
-    .summary = "make a model of a segmented scan or of closed surfaces",
+    .summary = "make a model of a segmented scan, of surfaces or of tetrahedra",
     .arguments = "INPUT...",
     .description =
-        "Meshes a label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk\n"
-        ".vtp), one region each, with hexahedra that lie on the true boundary and run in real\n"
-        "time. Writes the mesh, the fine surface and a scene with materials, a support and a\n"
+        "Meshes a label image (.nii .nii.gz .nrrd .nhdr), closed surfaces (.stl .obj .vtk .vtp),\n"
+        "one region each, or the boundary and regions of a mesh of tetrahedra (.msh .vtu .vtk\n"
+        ".inp .feb) with hexahedra that lie on the true boundary and run in real time. Writes the "
+        "mesh, the fine surface and a scene with materials, a support and a\n"
         "pull, which runs as it is and says in comments what to change. Lengths are metres.",
     .examples = "  lariat mesh scan.nii.gz --list\n"
                 "  lariat mesh scan.nii.gz --label liver --names labels.csv\n"
                 "  lariat mesh scan.seg.nrrd --label 3 --label 4 --elements 20000 --out chest\n"
-                "  lariat mesh liver.stl tumour.stl --scale 0.001 --fix top\n",
+                "  lariat mesh liver.stl tumour.stl --scale 0.001 --fix top\n"
+                "  lariat mesh organ.msh --scale 0.001\n",
     .main = mesh_main};

@@ -1,5 +1,5 @@
-/* From label images or closed surfaces to a hexahedral mesh: the public calls, and the line of
- * steps behind them (meshing/lattice.h draws it). */
+/* From label images, closed surfaces or other meshes to a hexahedral mesh: the public calls, and
+ * the line of steps behind them (meshing/lattice.h draws it). */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +10,7 @@
 #include "meshing/fine_surface.h"
 #include "meshing/fit.h"
 #include "meshing/meshing.h"
+#include "model/format/mesh_io.h"
 
 /* The mesh that is made when nothing is said, and the smallest that is one. */
 enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8 };
@@ -55,18 +56,20 @@ static lar_status check_paths(work *w) {
         const char *path = w->path[i];
         if (!path || !*path)
             return refuse(w, "%s", "the name of a file to mesh is empty; give one");
-        bool image = lar_image_ending(path) != NULL;
-        if (!image && !lar_triangles_named(path))
+        bool image = lar_image_ending(path) != NULL, solids = lar_mesh_named(path);
+        if (!image && !solids && !lar_triangles_named(path))
             return refuse(w,
                           "%.400s: this extension is not known; label images are .nii .nii.gz "
-                          ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp",
+                          ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp, meshes .msh .vtu .vtk .inp "
+                          ".feb",
                           path);
-        if (image && w->count > 1)
-            return refuse(w,
-                          "%.400s is an image, and other files are given besides: mesh one image, "
-                          "or surfaces of one region each",
-                          path);
+        if ((image || solids) && w->count > 1)
+            return lar_fail(w->error, LAR_ERROR_ARGUMENT,
+                            "%.400s is %s, and other files are given besides: mesh one image, one "
+                            "mesh, or surfaces of one region each",
+                            path, image ? "an image" : "a mesh");
         w->meshing->image = image;
+        w->meshing->solids = solids;
     }
     return LAR_OK;
 }
@@ -78,13 +81,17 @@ static lar_status check_image_options(const work *w) {
                       w->path[0]);
     if (w->meshing->image) return LAR_OK;
     if (o->label_count > 0)
-        return refuse(w, "%.400s: a surface has no labels; each file is one region", w->path[0]);
+        return refuse(w,
+                      w->meshing->solids
+                          ? "%.400s: labels are for images; all regions of a mesh are taken"
+                          : "%.400s: a surface has no labels; each file is one region",
+                      w->path[0]);
     if (o->names)
         return refuse(w,
                       "%.400s: names of labels are for images; surfaces are called as their "
-                      "files are",
+                      "files are, regions of meshes as their sets",
                       w->path[0]);
-    if (o->fuse)
+    if (o->fuse && !w->meshing->solids)
         return refuse(w,
                       "%.400s: only labels of an image can be fused; join the surfaces in the "
                       "program that made them",
@@ -208,9 +215,23 @@ static lar_status boundary_of_surfaces(work *w) {
     return status;
 }
 
+static lar_status boundary_of_mesh(work *w) {
+    double scale = w->options.scale > 0 ? w->options.scale : 1;
+    char *name = name_of_file(w->path[0]);
+    if (!name) return lar_fail_memory(w->error, strlen(w->path[0]), "a name");
+    lar_status status = tell(w, "reading", 0);
+    if (!status)
+        status = lar_boundary_from_mesh(w->path[0], scale, w->options.fuse != 0, name,
+                                        &w->meshing->boundary, &w->meshing->info.joined, w->error);
+    free(name);
+    return status;
+}
+
 static lar_status make_boundary(work *w) {
     lar_meshing *m = w->meshing;
-    lar_status status = m->image ? boundary_of_image(w) : boundary_of_surfaces(w);
+    lar_status status = m->image    ? boundary_of_image(w)
+                        : m->solids ? boundary_of_mesh(w)
+                                    : boundary_of_surfaces(w);
     if (!status) status = name_meshing(w);
     if (!status && w->options.principal)
         status = lar_boundary_principal_axes(&m->boundary, w->error);

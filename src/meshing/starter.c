@@ -120,7 +120,7 @@ static void put_head(const lar_meshing *m, FILE *f) {
             info->elements, m->fitted ? "on the true boundary" : "on a grid, as cubes",
             1e3 * info->size, m->stem, m->stem, m->stem);
     fputs(m->image ? "# x points to the patient's right, y to the front, z to the head.\n"
-                   : "# Axes are those of the surface's file.\n",
+                   : "# Axes are those of the file.\n",
           f);
     fputs("lariat: 1\ntitle: ", f);
     put(f, m->title, true);

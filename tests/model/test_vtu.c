@@ -272,8 +272,11 @@ static void test_bad_text(void **state) {
         {" 4 12 20\n", " 14 12 20\n", LAR_ERROR_FORMAT, "offsets must ascend"},
         {" 4 12 20\n", " 4 99 20\n", LAR_ERROR_FORMAT, "offsets must ascend"},
         {" 4 12 20\n", " 5 12 20\n", LAR_ERROR_FORMAT, "7 corners instead of 8"},
-        {" 9 12 12\n", " 9 12 10\n", LAR_ERROR_UNSUPPORTED,
-         "cell 2 is a tetrahedron (VTK cell type 10); Lariat computes with eight-node hexahedra"},
+        {" 9 12 12\n", " 9 12 15\n", LAR_ERROR_UNSUPPORTED,
+         "cell 2 is a pentagonal prism (VTK cell type 15); Lariat computes with eight-node "
+         "hexahedra"},
+        {" 9 12 12\n", " 9 12 10\n", LAR_ERROR_FORMAT, "tetrahedron 2 has 8 corners instead of 4"},
+        {" 9 12 12\n", " 9 12 24\n", LAR_ERROR_FORMAT, "tetrahedron 2 has 8 corners instead of 10"},
         {" 9 12 12\n", " 9 25 12\n", LAR_ERROR_UNSUPPORTED, "first-order"},
         {" 9 12 12\n", " 9 -5 12\n", LAR_ERROR_UNSUPPORTED, "unknown kind"},
         {" 9 12 12\n", " 9 9 9\n", LAR_ERROR_MODEL, "no hexahedra"},
