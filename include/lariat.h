@@ -290,6 +290,7 @@ typedef struct lar_meshing_info {
     int32_t pads;           /* small places that hold it besides, because its weight asks for them;
                                not when the options say what holds it */
     int32_t fixed_nodes;
+    int image;      /* not 0: made from a label image, which says how large it is */
     int32_t joined; /* nodes of a mesh that stood at the place of another one, and were joined */
     lar_mesh_quality quality;
 } lar_meshing_info;
@@ -300,7 +301,8 @@ typedef struct lar_region_info {
     double volume, true_volume;  /* in the mesh, and in the image, surface or other mesh [m^3] */
     const char *tissue, *source; /* of the starter scene's material: which, from where */
     double shear_modulus, bulk_modulus, density;
-    int held; /* not 0: bone, which the starter scene holds where it is */
+    int held;          /* not 0: bone, which the starter scene holds where it is */
+    double usual_most; /* more than such organs hold in anybody [m^3]; 0: not known */
 } lar_region_info;
 
 LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);

@@ -128,6 +128,37 @@ static int inspect(mesh_report *report) {
     return status;
 }
 
+/* A liver of 36 cubic metres is one in another unit: says so once, and whether millimetres would
+ * make it a liver. False: nothing is odd. */
+static bool doubt_units(const mesh_report *report) {
+    static const double LEAST = 1e-9, LIKELY = 1e-3; /* [m^3], and of the most that there is */
+    const char *remedy = report->info.image ? "look at the voxel sizes in the image's header"
+                                            : "say --scale, the metres per unit of the file";
+    lar_region_info r;
+    double all = 0;
+    for (int32_t i = 0; !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
+        all += r.true_volume;
+        if (!(r.usual_most > 0 && r.true_volume > r.usual_most)) continue;
+        const double millimetres = 1e-9 * r.true_volume;
+        const bool fits = !report->info.image && millimetres < r.usual_most &&
+                          millimetres > LIKELY * r.usual_most;
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: %s holds %s, and no %s is larger than %s: the file may be in another "
+                     "unit%s, or the region be something else; %s",
+                     r.name, cli_volume(r.true_volume).text, r.tissue,
+                     cli_volume(r.usual_most).text,
+                     fits ? ", such as millimetres (--scale 0.001)" : "", remedy);
+        return true;
+    }
+    if (!(all > 0 && all < LEAST)) return false;
+    cli_complain(
+        &cli_mesh, CLI_DONE,
+        "note: the body holds %s, less than a cubic millimetre: the file may be in another "
+        "unit; %s",
+        cli_volume(all).text, remedy);
+    return true;
+}
+
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
 static void doubt(const mesh_report *report, bool cubes) {
     static const double LARGE = 10;
@@ -141,7 +172,7 @@ static void doubt(const mesh_report *report, bool cubes) {
                      "note: %d nodes of the file stand at the place of another one; they are taken "
                      "as one, so that what meets there is connected",
                      (int)report->info.joined);
-    if (size > LARGE)
+    if (!doubt_units(report) && size > LARGE)
         cli_complain(
             &cli_mesh, CLI_DONE,
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
@@ -149,14 +180,16 @@ static void doubt(const mesh_report *report, bool cubes) {
     if (quality->true_volume > 0 && fabs(lost) > LOST)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% %s than the true surface, of which parts are "
-                     "thinner than an element of %.3g m: take more elements or a smaller size",
-                     100 * fabs(lost), lost > 0 ? "less" : "more", report->info.size);
+                     "thinner than an element of %s: take more elements or a smaller size",
+                     100 * fabs(lost), lost > 0 ? "less" : "more",
+                     cli_length(report->info.size).text);
     else if (quality->deviation_mean > FAR * quality->mean_edge)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh is %.0f %% of an edge off the true surface in the mean: parts "
-                     "of it are thinner than an element of %.3g m, and coarse or lost; take more "
+                     "of it are thinner than an element of %s, and coarse or lost; take more "
                      "elements or a smaller size",
-                     100 * quality->deviation_mean / quality->mean_edge, report->info.size);
+                     100 * quality->deviation_mean / quality->mean_edge,
+                     cli_length(report->info.size).text);
 }
 
 static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double seconds) {

@@ -9,6 +9,7 @@
 #include "base/share.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit.h"
+#include "meshing/lattice_check.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 
@@ -254,6 +255,9 @@ static lar_status fill_lattice(work *w) {
         return lar_lattice_from_image(&w->image, boundary, &w->lattice, w->error);
     }
     if (o->size > 0) return lar_lattice_fill(boundary, o->size, &w->lattice, w->error);
+    lar_status status =
+        lar_lattice_check_thickness(boundary, &w->meshing->outer, elements, w->error);
+    if (status) return status;
     return lar_lattice_fill_count(boundary, elements, &w->lattice, w->error);
 }
 
@@ -279,6 +283,7 @@ static lar_status make_mesh(work *w) {
     lar_image_clear(&w->image);
     if (!status) status = tell(w, "cleaning", 0);
     if (!status) status = lar_lattice_clean(&w->lattice, &w->cleaning, w->error);
+    if (!status) status = lar_lattice_check_reach(&m->boundary, &m->outer, &w->lattice, w->error);
     if (!status) status = lar_draft_create(&w->lattice, &m->boundary, &w->draft, w->error);
     lar_lattice_clear(&w->lattice);
     if (!status) status = check_count(w);
@@ -305,7 +310,8 @@ static void count_regions(lar_meshing *m) {
                                     .shear_modulus = g,
                                     .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
                                     .density = tissue->density,
-                                    .held = tissue->rigid};
+                                    .held = tissue->rigid,
+                                    .usual_most = tissue->most};
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -323,6 +329,21 @@ static lar_status measure(const work *w, lar_error *error) {
     lar_status status = lar_fine_surface_drop(&m->mesh, size, &m->outer, error);
     if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
     return status ? status : lar_fine_surface_draw(&m->mesh, size, &m->outer, error);
+}
+
+/* A mesh that holds so much less, or more, than the body is not the body's. Cubes stand off more.
+ */
+static lar_status check_volume(const work *w) {
+    const lar_mesh_quality *quality = &w->meshing->info.quality;
+    const double most = w->meshing->fitted ? 0.2 : 0.5;
+    const double off = quality->volume / quality->true_volume - 1;
+    if (!(quality->true_volume > 0) || fabs(off) <= most) return LAR_OK;
+    return lar_fail(w->error, LAR_ERROR_MODEL,
+                    "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "
+                    "are thinner than an element of %.3g mm; ask for more elements or a smaller "
+                    "size",
+                    w->path[0], 1e6 * quality->volume, 100 * fabs(off), off < 0 ? "less" : "more",
+                    1e3 * w->meshing->info.size);
 }
 
 /* Two that need nothing from each other and take about as long. */
@@ -344,6 +365,7 @@ static lar_status describe(work *w) {
     lar_meshing *m = w->meshing;
     const lar_cleaning *did = &w->cleaning;
     lar_meshing_info *info = &m->info;
+    info->image = m->image;
     info->nodes = m->mesh.node_count;
     info->elements = m->mesh.element_count;
     info->regions = m->boundary.region_count;
@@ -361,7 +383,7 @@ static lar_status describe(work *w) {
         status = both.status[i];
         if (status) *w->error = both.error[i];
     }
-    return status;
+    return status ? status : check_volume(w);
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,

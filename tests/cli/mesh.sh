@@ -40,7 +40,7 @@ surface 0 0 >top.obj
 surface 0 12 >other.obj
 
 expect 0 "$LARIAT" mesh two.nrrd --list
-says '24 x 20 x 16 voxels, 3 labels'
+says '24 x 20 x 16 voxels of 2 x 2 x 2 mm, 3 labels'
 says ' 7  left kidney '
 expect 0 "$LARIAT" mesh two.nrrd --list --json
 has_keys file labels.0.name --numbers voxels.0 labels.2.label labels.2.voxels labels.0.volume
@@ -48,10 +48,12 @@ has_keys file labels.0.name --numbers voxels.0 labels.2.label labels.2.voxels la
 
 expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title "Two organs"
 [ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
-says '^Two organs: [56][0-9][0-9] elements of about 0.00[23]'
+says '^Two organs: [56][0-9][0-9] elements of about [23][.0-9]* mm'
 says 'left kidney (7): [0-9]* elements'
 says '^held  *at the back, and on [1-9] pads* that bears* its weight: [0-9]* nodes'
-says '^deviation  *mean 0.000'
+says '^volume  *[12][0-9.]* mL, the true surface holds'
+says '^shortest edge  *[0-9.]* mm$'
+says '^deviation  *mean 0\.[0-9]* mm ('
 says 'all of the elements are above 0.2'
 says '^lariat view Two_organs/Two_organs.yaml$'
 for file in .vtu .yaml _surface.vtp; do
@@ -84,7 +86,7 @@ value_of speed.why_not >/dev/null 2>&1 && fail "the speed was measured with --no
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --no-speed
 grep -q '^deviation' "$SCRATCH/out" && fail "a deviation from nothing"
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against Two_organs/Two_organs_surface.vtp
-says '^deviation  *mean 0.000'
+says '^deviation  *mean 0\.[0-9]* mm ('
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against top.obj --scale 0.001
 expect 1 "$LARIAT" info Two_organs/Two_organs.vtu --against none.stl
 complains 'none.stl'
@@ -141,7 +143,7 @@ printf 'label,name\n1,liver\n7,spleen\n' >names.csv
 expect 0 "$LARIAT" mesh cut.nrrd --names names.csv --label Spleen --elements 200
 [ -s spleen/spleen.yaml ] || fail "names.csv was not heard"
 expect 0 "$LARIAT" mesh cut.nrrd --label 1 --label 7 --fuse --voxel --out cubes --title cubes
-says '^cubes: [0-9]* elements of about 0.002 m'
+says '^cubes: [0-9]* elements of about 2 mm'
 expect 0 "$LARIAT" mesh two.nrrd --label liver --principal --elements 200 --fix none --out free
 says '^held  *nowhere'
 expect 0 "$LARIAT" run free/liver.yaml
