@@ -500,6 +500,10 @@ typedef struct lar_results lar_results;
  * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
+/* The same, and the fine surface that rides on the mesh, if any, in every frame (.vtp), which takes
+ * many times the room; lar_results_open writes it only where the scene's output says so. */
+LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
+                                            lar_results **results, lar_error *error);
 /* Adds the present state as a frame. LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
                                    lar_error *error);

@@ -232,10 +232,12 @@ static void put_load(const lar_meshing *m, FILE *f) {
 }
 
 static void put_end(const lar_meshing *m, FILE *f) {
-    fputs("# It does not pass through itself: takes some of each step.\n"
-          "# contact: [ { self: true } ]\n\n"
-          "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n",
-          f);
+    fputs(
+        "# It does not pass through itself: takes some of each step.\n"
+        "# contact: [ { self: true } ]\n\n"
+        "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n"
+        "# surface: true   # the true surface in every frame too, for ParaView: takes more room\n",
+        f);
     if (!m->support.handle && !m->support.held) return;
     fputs("  probes:\n", f);
     if (m->support.handle)
