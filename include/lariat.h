@@ -249,10 +249,10 @@ typedef int lar_meshing_watch(void *context, const char *what, double part);
 typedef struct lar_meshing_options {
     double size;               /* edge of an element [m]; 0: from `elements` */
     int32_t elements;          /* about so many; 0: 5,000 */
-    double scale;              /* of surfaces: metres per unit of the file; 0: 1 */
+    double scale;              /* of surfaces and meshes: metres per unit of the file; 0: 1 */
     const char *const *labels; /* of an image: numbers or names, each a region; NULL: all */
     int32_t label_count;
-    int fuse;                 /* not 0: all labels become one region */
+    int fuse;                 /* not 0: all labels, or regions of a mesh, become one region */
     const char *names;        /* a file of label names, "LABEL,NAME" per line; NULL: none */
     int principal;            /* not 0: along the body's principal axes instead of the image's */
     int voxel;                /* not 0: cubes on a grid, not fitted; size and elements 0: the
@@ -268,9 +268,10 @@ typedef struct lar_meshing_options {
 LAR_API lar_meshing_options lar_meshing_options_default(void);
 
 /* Meshes one label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk .vtp), one
- * region each; where surfaces overlap the later one has the place. World: metres, for images +x
- * right, +y front, +z head. docs/meshing.md. Works on all cores that the process may use; what it
- * makes does not depend on how many these are. `options` may be NULL. */
+ * region each, where surfaces overlap the later one has the place; or the boundary of the regions
+ * of one mesh (.msh .vtu .vtk .inp .feb) of tetrahedra, prisms, pyramids or hexahedra. World:
+ * metres, for images +x right, +y front, +z head. docs/meshing.md. Works on all cores that the
+ * process may use; what it makes does not depend on how many these are. `options` may be NULL. */
 LAR_API lar_status lar_meshing_create(const char *const *paths, int32_t count,
                                       const lar_meshing_options *options, lar_meshing **meshing,
                                       lar_error *error);
@@ -289,16 +290,19 @@ typedef struct lar_meshing_info {
     int32_t pads;           /* small places that hold it besides, because its weight asks for them;
                                not when the options say what holds it */
     int32_t fixed_nodes;
+    int image;      /* not 0: made from a label image, which says how large it is */
+    int32_t joined; /* nodes of a mesh that stood at the place of another one, and were joined */
     lar_mesh_quality quality;
 } lar_meshing_info;
 
 typedef struct lar_region_info {
     const char *name;
     int32_t tag, elements;
-    double volume, true_volume;  /* in the mesh, and in the image or surface [m^3] */
+    double volume, true_volume;  /* in the mesh, and in the image, surface or other mesh [m^3] */
     const char *tissue, *source; /* of the starter scene's material: which, from where */
     double shear_modulus, bulk_modulus, density;
-    int held; /* not 0: bone, which the starter scene holds where it is */
+    int held;          /* not 0: bone, which the starter scene holds where it is */
+    double usual_most; /* more than such organs hold in anybody [m^3]; 0: not known */
 } lar_region_info;
 
 LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
@@ -496,6 +500,10 @@ typedef struct lar_results lar_results;
  * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
+/* The same, and the fine surface that rides on the mesh, if any, in every frame (.vtp), which takes
+ * many times the room; lar_results_open writes it only where the scene's output says so. */
+LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
+                                            lar_results **results, lar_error *error);
 /* Adds the present state as a frame. LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
                                    lar_error *error);

@@ -128,6 +128,37 @@ static int inspect(mesh_report *report) {
     return status;
 }
 
+/* A liver of 36 cubic metres is one in another unit: says so once, and whether millimetres would
+ * make it a liver. False: nothing is odd. */
+static bool doubt_units(const mesh_report *report) {
+    static const double LEAST = 1e-9, LIKELY = 1e-3; /* [m^3], and of the most that there is */
+    const char *remedy = report->info.image ? "look at the voxel sizes in the image's header"
+                                            : "say --scale, the metres per unit of the file";
+    lar_region_info r;
+    double all = 0;
+    for (int32_t i = 0; !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
+        all += r.true_volume;
+        if (!(r.usual_most > 0 && r.true_volume > r.usual_most)) continue;
+        const double millimetres = 1e-9 * r.true_volume;
+        const bool fits = !report->info.image && millimetres < r.usual_most &&
+                          millimetres > LIKELY * r.usual_most;
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: %s holds %s, and no %s is larger than %s: the file may be in another "
+                     "unit%s, or the region be something else; %s",
+                     r.name, cli_volume(r.true_volume).text, r.tissue,
+                     cli_volume(r.usual_most).text,
+                     fits ? ", such as millimetres (--scale 0.001)" : "", remedy);
+        return true;
+    }
+    if (!(all > 0 && all < LEAST)) return false;
+    cli_complain(
+        &cli_mesh, CLI_DONE,
+        "note: the body holds %s, less than a cubic millimetre: the file may be in another "
+        "unit; %s",
+        cli_volume(all).text, remedy);
+    return true;
+}
+
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
 static void doubt(const mesh_report *report, bool cubes) {
     static const double LARGE = 10;
@@ -136,7 +167,12 @@ static void doubt(const mesh_report *report, bool cubes) {
     const lar_mesh_quality *quality = &report->info.quality;
     double size = 0, lost = 1 - quality->volume / quality->true_volume;
     for (int i = 0; i < 3; i++) size = fmax(size, report->model.upper[i] - report->model.lower[i]);
-    if (size > LARGE)
+    if (report->info.joined > 0)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: %d nodes of the file stand at the place of another one; they are taken "
+                     "as one, so that what meets there is connected",
+                     (int)report->info.joined);
+    if (!doubt_units(report) && size > LARGE)
         cli_complain(
             &cli_mesh, CLI_DONE,
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
@@ -144,14 +180,16 @@ static void doubt(const mesh_report *report, bool cubes) {
     if (quality->true_volume > 0 && fabs(lost) > LOST)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% %s than the true surface, of which parts are "
-                     "thinner than an element of %.3g m: take more elements or a smaller size",
-                     100 * fabs(lost), lost > 0 ? "less" : "more", report->info.size);
+                     "thinner than an element of %s: take more elements or a smaller size",
+                     100 * fabs(lost), lost > 0 ? "less" : "more",
+                     cli_length(report->info.size).text);
     else if (quality->deviation_mean > FAR * quality->mean_edge)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh is %.0f %% of an edge off the true surface in the mean: parts "
-                     "of it are thinner than an element of %.3g m, and coarse or lost; take more "
+                     "of it are thinner than an element of %s, and coarse or lost; take more "
                      "elements or a smaller size",
-                     100 * quality->deviation_mean / quality->mean_edge, report->info.size);
+                     100 * quality->deviation_mean / quality->mean_edge,
+                     cli_length(report->info.size).text);
 }
 
 static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double seconds) {
@@ -222,15 +260,15 @@ static int mesh_main(int argc, char **argv) {
                   "a label of the image, by name or number, as a region;\nmay be given again; "
                   "without: all labels",
                   &s.labels),
-        CLI_FLAG("--fuse", "all labels become one region", &s.fuse),
+        CLI_FLAG("--fuse", "all labels, or regions of a mesh, become one region", &s.fuse),
         CLI_TEXT("--names", "FILE", "names of the labels, a line LABEL,NAME for each", &s.names),
         CLI_FLAG("--list", "list the image's labels, and do nothing else", &s.list),
         CLI_COUNT("--elements", "N", "about so many elements (5000)", &s.elements, 1, 1e7),
         CLI_REAL("--size", "M", "edge of an element in metres, instead of --elements", &s.size,
                  1e-6, 10),
         CLI_REAL("--scale", "S",
-                 "surfaces: metres per unit of the file, 0.001 for\nmillimetres (1)", &s.scale,
-                 1e-9, 1e9),
+                 "surfaces and meshes: metres per unit of the file,\n0.001 for millimetres (1)",
+                 &s.scale, 1e-9, 1e9),
         CLI_FLAG("--principal", "elements along the body's principal axes, not the\nimage's",
                  &s.principal),
         CLI_FLAG("--voxel",
@@ -258,15 +296,17 @@ static int mesh_main(int argc, char **argv) {
 
 const cli_command cli_mesh = {
     .name = "mesh",
-    .summary = "make a model of a segmented scan or of closed surfaces",
+    .summary = "make a model of a segmented scan, of surfaces or of tetrahedra",
     .arguments = "INPUT...",
     .description =
-        "Meshes a label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk\n"
-        ".vtp), one region each, with hexahedra that lie on the true boundary and run in real\n"
-        "time. Writes the mesh, the fine surface and a scene with materials, a support and a\n"
+        "Meshes a label image (.nii .nii.gz .nrrd .nhdr), closed surfaces (.stl .obj .vtk .vtp),\n"
+        "one region each, or the boundary and regions of a mesh of tetrahedra (.msh .vtu .vtk\n"
+        ".inp .feb) with hexahedra that lie on the true boundary and run in real time. Writes the "
+        "mesh, the fine surface and a scene with materials, a support and a\n"
         "pull, which runs as it is and says in comments what to change. Lengths are metres.",
     .examples = "  lariat mesh scan.nii.gz --list\n"
                 "  lariat mesh scan.nii.gz --label liver --names labels.csv\n"
                 "  lariat mesh scan.seg.nrrd --label 3 --label 4 --elements 20000 --out chest\n"
-                "  lariat mesh liver.stl tumour.stl --scale 0.001 --fix top\n",
+                "  lariat mesh liver.stl tumour.stl --scale 0.001 --fix top\n"
+                "  lariat mesh organ.msh --scale 0.001\n",
     .main = mesh_main};

@@ -34,16 +34,45 @@ void cli_print_jacobians(const lar_mesh_quality *quality) {
            share(quality->above_02, above_02), share(quality->above_05, above_05));
 }
 
+/* ---- units ----------------------------------------------------------------------------------- */
+
+cli_measure cli_length(double metres) {
+    static const double LONG = 10, SHORT = 1e-6; /* [m] */
+    const double size = fabs(metres);
+    cli_measure measure;
+    if (size >= LONG)
+        snprintf(measure.text, sizeof measure.text, "%.4g m", metres);
+    else if (size >= SHORT || size == 0)
+        snprintf(measure.text, sizeof measure.text, "%.4g mm", 1e3 * metres);
+    else
+        snprintf(measure.text, sizeof measure.text, "%.4g um", 1e6 * metres);
+    return measure;
+}
+
+cli_measure cli_volume(double cubic_metres) {
+    static const double LARGE = 0.1, SMALL = 1e-9; /* [m^3] */
+    cli_measure measure;
+    if (cubic_metres >= LARGE)
+        snprintf(measure.text, sizeof measure.text, "%.4g m^3", cubic_metres);
+    else if (cubic_metres >= SMALL || cubic_metres == 0)
+        snprintf(measure.text, sizeof measure.text, cubic_metres < 0.01 ? "%.4g mL" : "%.0f mL",
+                 1e6 * cubic_metres);
+    else
+        snprintf(measure.text, sizeof measure.text, "%.4g mm^3", 1e9 * cubic_metres);
+    return measure;
+}
+
 /* ---- beside the true surface ----------------------------------------------------------------- */
 
 static void print_distance(const lar_mesh_quality *quality, double distance) {
-    printf("%.3g m (%.1f %% of an edge)", distance, 100 * distance / quality->mean_edge);
+    printf("%s (%.1f %% of an edge)", cli_length(distance).text,
+           100 * distance / quality->mean_edge);
 }
 
 void cli_print_deviation(const lar_mesh_quality *quality) {
     if (quality->true_volume > 0)
-        printf("%-17s%.4g m^3, the true surface holds %.4g m^3 (%+.2f %%)\n", "volume",
-               quality->volume, quality->true_volume,
+        printf("%-17s%s, the true surface holds %s (%+.2f %%)\n", "volume",
+               cli_volume(quality->volume).text, cli_volume(quality->true_volume).text,
                100 * (quality->volume / quality->true_volume - 1));
     if (!(quality->deviation_most > 0)) return;
     printf("%-17smean ", "deviation");

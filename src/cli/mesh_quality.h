@@ -7,6 +7,13 @@
 #include "lariat.h"
 #include "study/real_time.h"
 
+/* A length and a volume in the unit that suits them, "6.08 mm", "1126 mL". */
+typedef struct cli_measure {
+    char text[40];
+} cli_measure;
+cli_measure cli_length(double metres);
+cli_measure cli_volume(double cubic_metres);
+
 /* A small chart of the elements by scaled Jacobian, and the shares above 0.2 and 0.5. */
 void cli_print_jacobians(const lar_mesh_quality *quality);
 /* Volumes and distances to the true surface; nothing where there is none. */

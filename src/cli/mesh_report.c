@@ -83,9 +83,12 @@ void mesh_report_labels_json(const char *path, const lar_label_list *list) {
 /* ---- for people ------------------------------------------------------------------------------ */
 
 void mesh_report_labels(const char *path, const lar_label_list *list, FILE *out) {
-    fprintf(out, "%s: %d x %d x %d voxels, %d label%s\n%7s  %-36s%12s%12s\n", path,
-            (int)list->size[0], (int)list->size[1], (int)list->size[2], (int)list->count,
-            list->count == 1 ? "" : "s", "label", "name", "voxels", "mL");
+    fprintf(out,
+            "%s: %d x %d x %d voxels of %.4g x %.4g x %.4g mm, %d label%s\n"
+            "%7s  %-36s%12s%12s\n",
+            path, (int)list->size[0], (int)list->size[1], (int)list->size[2], 1e3 * list->edge[0],
+            1e3 * list->edge[1], 1e3 * list->edge[2], (int)list->count, list->count == 1 ? "" : "s",
+            "label", "name", "voxels", "mL");
     for (int32_t i = 0; i < list->count; i++) {
         const lar_label_row *row = &list->row[i];
         fprintf(out, "%7d  %-36s%12" PRId64 "%12.4g\n", (int)row->label, row->name ? row->name : "",
@@ -99,10 +102,11 @@ static void print_regions(const mesh_report *report) {
     for (int32_t i = 0; i < SHOWN && !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
         printf("%-17s%s (%d): ", i ? "" : "regions", r.name, (int)r.tag);
         if (r.elements > 0)
-            printf("%d elements, %.4g m^3 (%+.2f %%), as %s\n", (int)r.elements, r.volume,
-                   100 * (r.volume / r.true_volume - 1), r.tissue);
+            printf("%d elements, %s (%+.2f %%), as %s\n", (int)r.elements,
+                   cli_volume(r.volume).text, 100 * (r.volume / r.true_volume - 1), r.tissue);
         else
-            printf("left out: %.3g m^3 are too little for elements of this size\n", r.true_volume);
+            printf("left out: %s are too little for elements of this size\n",
+                   cli_volume(r.true_volume).text);
     }
     if (report->info.regions > SHOWN)
         printf("%-17sand %d more (--json lists all)\n", "", (int)(report->info.regions - SHOWN));
@@ -149,8 +153,8 @@ static void print_support(const mesh_report *report) {
 void mesh_report_table(const mesh_report *report) {
     const lar_meshing_info *info = &report->info;
     const lar_model_info *model = &report->model;
-    printf("%s: %d elements of about %.4g m, %d nodes, in %.1f s\n", info->title,
-           (int)info->elements, info->size, (int)info->nodes, report->seconds);
+    printf("%s: %d elements of about %s, %d nodes, in %.1f s\n", info->title, (int)info->elements,
+           cli_length(info->size).text, (int)info->nodes, report->seconds);
     print_regions(report);
     print_cleaning(info);
     print_support(report);
@@ -158,7 +162,7 @@ void mesh_report_table(const mesh_report *report) {
     printf("%-17smean %.3f, worst %.3f (element %" PRId32 "); a box has 1\n", "scaled Jacobian",
            model->scaled_jacobian_mean, model->scaled_jacobian_min, model->scaled_jacobian_worst);
     cli_print_jacobians(&info->quality);
-    printf("%-17s%.4g m\n", "shortest edge", model->shortest_edge);
+    printf("%-17s%s\n", "shortest edge", cli_length(model->shortest_edge).text);
     printf("%-17s%.4g s (stable up to %.4g s)\n", "time step", model->time_step,
            model->stable_step);
     cli_print_speed(&report->speed);

@@ -16,7 +16,7 @@ typedef struct replay_settings {
     const char *recording, *scene, *out;
     double every; /* between frames [s]; 0: not given */
     int isa;
-    bool json;
+    bool json, surface;
     cli_parallel parallel;
     int argc; /* what the command was given */
     char **argv;
@@ -58,7 +58,8 @@ static lar_status open_part(replay *r, lar_error *error) {
         snprintf(folder, sizeof folder, "%s", r->settings.out);
     else
         snprintf(folder, sizeof folder, "%s/part_%d", r->settings.out, r->parts);
-    return lar_results_open(folder, r->simulation, &r->results, error);
+    return (r->settings.surface ? lar_results_open_surface
+                                : lar_results_open)(folder, r->simulation, &r->results, error);
 }
 
 static lar_status add_frame(replay *r, uint64_t step, lar_error *error) {
@@ -227,6 +228,7 @@ static int replay_main(int argc, char **argv) {
     const char *arguments[2];
     const cli_option options[] = {
         CLI_TEXT("--out", "DIR", "write frames, .pvd and probes.csv there", &s.out),
+        CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
         CLI_REAL("--every", "S",
                  "simulated seconds between frames; without: what the\nscene's output says, 0.04 "
                  "when it says nothing",

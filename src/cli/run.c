@@ -16,7 +16,7 @@ typedef struct run_settings {
     double time, time_step; /* 0: not given */
     int64_t steps;          /* 0: not given */
     int element, isa;       /* as lar_element_kind, lar_isa */
-    bool realtime, json, verify;
+    bool realtime, json, verify, surface;
     cli_parallel parallel;
     int argc; /* what the command was given */
     char **argv;
@@ -229,7 +229,8 @@ static int compute(run *r) {
     lar_error error;
     int status = choose_length(r);
     if (!status && r->settings.out &&
-        lar_results_open(r->settings.out, r->simulation, &r->results, &error))
+        (r->settings.surface ? lar_results_open_surface : lar_results_open)(
+            r->settings.out, r->simulation, &r->results, &error))
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status) {
         cli_catch_stop();
@@ -293,6 +294,7 @@ static int run_main(int argc, char **argv) {
                    "results are the same",
                    &s.isa, cli_isa_names),
         CLI_TEXT("--out", "DIR", "write frames, .pvd, probes.csv and run.json there", &s.out),
+        CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
         CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
         CLI_PARALLEL(s.parallel),
         CLI_FLAG("--verify",

@@ -1,5 +1,5 @@
 /* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv; where a
- * fine surface rides on the mesh also that (results_surface.h).
+ * fine surface rides on the mesh also that, when it is asked for (results_surface.h).
  *
  * After every frame the folder can be opened as it is: frames and series appear whole (written
  * beside and renamed). Positions are those of the reference; the point array "displacement"
@@ -67,11 +67,12 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
 }
 
 static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
-                              lar_error *error) {
+                              bool surface, lar_error *error) {
     char *name = series_name(model);
     if (!name) return lar_fail_memory(error, strlen(folder), "the paths of results");
     lar_status status = lar_series_open(&results->series, folder, name, ".vtu", error);
-    if (!status) status = lar_surface_results_open(&results->surface, folder, name, model, error);
+    if (!status && (surface || model->output.surface))
+        status = lar_surface_results_open(&results->surface, folder, name, model, error);
     free(name);
     if (!status) status = lar_folder_make(folder, error);
     if (!status) status = prepare_arrays(results, model, error);
@@ -82,8 +83,8 @@ static lar_status open_folder(lar_results *results, const char *folder, const la
     return status;
 }
 
-lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
-                            lar_results **results, lar_error *error) {
+static lar_status open_results(const char *folder, const lar_simulation *simulation, bool surface,
+                               lar_results **results, lar_error *error) {
     if (!folder || !*folder || !simulation || !results)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_results_open needs a folder, a simulation and a place for the "
@@ -91,12 +92,22 @@ lar_status lar_results_open(const char *folder, const lar_simulation *simulation
     lar_results *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the results");
     made->probes.descriptor = -1;
-    lar_status status = open_folder(made, folder, simulation->domain.model, error);
+    lar_status status = open_folder(made, folder, simulation->domain.model, surface, error);
     if (status)
         lar_results_close(made, NULL);
     else
         *results = made;
     return status;
+}
+
+lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
+                            lar_results **results, lar_error *error) {
+    return open_results(folder, simulation, false, results, error);
+}
+
+lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
+                                    lar_results **results, lar_error *error) {
+    return open_results(folder, simulation, true, results, error);
 }
 
 lar_status lar_results_close(lar_results *results, lar_error *error) {

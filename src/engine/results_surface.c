@@ -28,7 +28,7 @@ lar_status lar_surface_results_add(lar_surface_results *results, const lar_simul
     if (!status) {
         lar_simulation_displacements(simulation, results->u);
         lar_model_embedded_move(model, (const double(*)[3])results->u, results->placed.vertex);
-        status = lar_vtp_write(path, &results->placed, error);
+        status = lar_vtp_write_small(path, &results->placed, error);
     }
     free(path);
     if (status) return status;

@@ -2,7 +2,8 @@
  *
  *     label image --boundary_image.c--.
  *                                      +--> lar_boundary --> lattice, fit, deviation, fine surface
- *     closed surfaces --boundary.c----'
+ *     closed surfaces --boundary.c----+
+ *     mesh of solids --boundary_mesh.c'
  *
  * Regions are numbered from 1, in the order they were asked for; 0 is outside. Where the image ends
  * in the middle of an organ the organ is cut off flat: what lies beyond counts as outside, but has
@@ -81,6 +82,12 @@ lar_status lar_boundary_from_image(const lar_image *image, const lar_label_choic
  * region's name. */
 lar_status lar_boundary_from_surfaces(lar_triangles *surfaces, const char *const *names,
                                       int32_t count, lar_boundary *boundary, lar_error *error);
+
+/* The mesh (.msh .vtu .vtk .inp .feb) of any solids: each tag a region, called as the set that
+ * holds just its elements, or `title` when there is one region only; `fuse`: one region in all.
+ * Nodes at one place become one, *joined counts them. `scale`: metres per unit of the file. */
+lar_status lar_boundary_from_mesh(const char *path, double scale, bool fuse, const char *title,
+                                  lar_boundary *boundary, int32_t *joined, lar_error *error);
 
 /* The principal axes of the enclosed body (largest extent first), into boundary->axis. */
 lar_status lar_boundary_principal_axes(lar_boundary *boundary, lar_error *error);

@@ -169,6 +169,11 @@ static lar_status fill_from_text(lar_image *image, const lar_nrrd_header *header
         lar_status status = lar_image_put(image, v, value, error);
         if (status) return status;
     }
+    if (lar_text_skip_space(&text))
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: the header promises %lld numbers, but more follow them; the header or "
+                        "the data are damaged, copy or write the file again",
+                        header->path, (long long)voxels);
     return LAR_OK;
 }
 

@@ -5,7 +5,8 @@
  *
  * The voxels are never held twice: a piece of some thousand is inflated, decoded, checked and
  * stored as labels. So memory is bounded by the file and by two bytes per voxel, and both are known
- * before a voxel is read; what a gzip stream holds beyond the promised voxels is not inflated.
+ * before a voxel is read; what a gzip stream holds beyond the promised voxels is inflated for its
+ * check sum only, and refused.
  */
 #ifndef LAR_MESHING_IMAGE_PARTS_H
 #define LAR_MESHING_IMAGE_PARTS_H
@@ -61,7 +62,8 @@ size_t lar_voxel_bytes(lar_voxel_type type);
 lar_status lar_image_allocate(lar_image *image, const int64_t size[3], size_t bytes_each,
                               const lar_image_stream *stream, lar_error *error);
 
-/* All voxels from the stream: label = slope * value + intercept. */
+/* All voxels from the stream: label = slope * value + intercept. Nothing may follow them but zeros
+ * behind gzip's end. */
 lar_status lar_image_fill(lar_image *image, lar_image_stream *stream, lar_voxel_type type,
                           bool swap, double slope, double intercept, lar_error *error);
 

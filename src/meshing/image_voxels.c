@@ -7,7 +7,8 @@
 enum {
     DEFLATE_MOST = 1032,
     PIECE = 4096 /* voxels */,
-    FEED = 1 << 30 /* bytes, below zlib's int */
+    FEED = 1 << 30,        /* bytes, below zlib's int */
+    SURPLUS_MOST = 1 << 28 /* bytes that are read only to tell how many too many there are */
 };
 
 /* ---- bytes ---------------------------------------------------------------------------------- */
@@ -31,8 +32,14 @@ void lar_image_stream_close(lar_image_stream *stream) {
     *stream = (lar_image_stream){0};
 }
 
+/* Archives fill their last block with zeros, which gzip passes over, too. */
+static const unsigned char *past_zeros(const unsigned char *at, const unsigned char *end) {
+    while (at < end && *at == 0) at++;
+    return at;
+}
+
 /* Inflates into `out` until it is full or the stream ends. Files may be several gzip members, one
- * after the other (RFC 1952, 2.2). */
+ * after the other (RFC 1952, 2.2); nothing else may follow. */
 static void inflate_some(lar_image_stream *stream, unsigned char *out, uInt size) {
     z_stream *z = &stream->inflate;
     z->next_out = out;
@@ -46,6 +53,7 @@ static void inflate_some(lar_image_stream *stream, unsigned char *out, uInt size
         if (result == Z_STREAM_END) {
             left = (size_t)(stream->end - stream->at);
             stream->ended = !lar_image_is_gzip(stream->at, left) || inflateReset(z) != Z_OK;
+            if (stream->ended) stream->at = past_zeros(stream->at, stream->end);
         } else if (result != Z_OK) { /* also Z_BUF_ERROR: more is needed, and there is none */
             stream->ended = stream->damaged = true;
         }
@@ -191,16 +199,34 @@ lar_status lar_image_put(lar_image *image, int64_t voxel, double value, lar_erro
 
 static lar_status cut_short(const lar_image_stream *stream, uint64_t promised, uint64_t found,
                             lar_error *error) {
-    if (found < promised)
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s: the header promises %llu bytes of voxels, the file holds %llu%s; it "
-                        "is cut short or damaged, copy or write it again",
-                        stream->path, (unsigned long long)promised, (unsigned long long)found,
-                        stream->damaged ? " that can be decompressed" : "");
     return lar_fail(error, LAR_ERROR_FORMAT,
-                    "%s: the compressed data do not fit their check sum, or end before it; the "
-                    "file is damaged, copy or write it again",
-                    stream->path);
+                    "%s: the header promises %llu bytes of voxels, the file holds %llu%s; it "
+                    "is cut short or damaged, copy or write it again",
+                    stream->path, (unsigned long long)promised, (unsigned long long)found,
+                    stream->damaged ? " that can be decompressed" : "");
+}
+
+/* gzip's check sum stands behind its last byte, so all is read; and a file that holds more than its
+ * header promises is damaged, or another image than the header says. */
+static lar_status check_end(lar_image_stream *stream, uint64_t promised, lar_error *error) {
+    uint64_t surplus = lar_image_stream_read(stream, NULL, SURPLUS_MOST);
+    if (stream->damaged)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: the compressed data do not fit their check sum, or end before it; the "
+                        "file is damaged, copy or write it again",
+                        stream->path);
+    if (surplus > 0)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: the header promises %llu bytes of voxels, but %s%llu more follow "
+                        "them; the header or the data are damaged, copy or write the file again",
+                        stream->path, (unsigned long long)promised,
+                        surplus == SURPLUS_MOST ? "at least " : "", (unsigned long long)surplus);
+    if (stream->at < stream->end)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: behind the end of the compressed data follow %llu bytes that are no "
+                        "gzip; the file is damaged, copy or write it again",
+                        stream->path, (unsigned long long)(stream->end - stream->at));
+    return LAR_OK;
 }
 
 lar_status lar_image_fill(lar_image *image, lar_image_stream *stream, lar_voxel_type type,
@@ -224,9 +250,7 @@ lar_status lar_image_fill(lar_image *image, lar_image_stream *stream, lar_voxel_
                 return no_label(image, first + (int64_t)n, label, error);
         }
     }
-    /* The check sum comes after the last byte: asking for one more makes zlib look at it. */
-    if (stream->gzip && !stream->ended) lar_image_stream_read(stream, NULL, 1);
-    return stream->damaged ? cut_short(stream, promised, promised, error) : LAR_OK;
+    return check_end(stream, promised, error);
 }
 
 /* ---- the world ------------------------------------------------------------------------------ */

@@ -1,5 +1,5 @@
-/* From label images or closed surfaces to a hexahedral mesh: the public calls, and the line of
- * steps behind them (meshing/lattice.h draws it). */
+/* From label images, closed surfaces or other meshes to a hexahedral mesh: the public calls, and
+ * the line of steps behind them (meshing/lattice.h draws it). */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,9 @@
 #include "base/share.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit.h"
+#include "meshing/lattice_check.h"
 #include "meshing/meshing.h"
+#include "model/format/mesh_io.h"
 
 /* The mesh that is made when nothing is said, and the smallest that is one. */
 enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8 };
@@ -55,18 +57,20 @@ static lar_status check_paths(work *w) {
         const char *path = w->path[i];
         if (!path || !*path)
             return refuse(w, "%s", "the name of a file to mesh is empty; give one");
-        bool image = lar_image_ending(path) != NULL;
-        if (!image && !lar_triangles_named(path))
+        bool image = lar_image_ending(path) != NULL, solids = lar_mesh_named(path);
+        if (!image && !solids && !lar_triangles_named(path))
             return refuse(w,
                           "%.400s: this extension is not known; label images are .nii .nii.gz "
-                          ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp",
+                          ".nrrd .nhdr, surfaces .stl .obj .vtk .vtp, meshes .msh .vtu .vtk .inp "
+                          ".feb",
                           path);
-        if (image && w->count > 1)
-            return refuse(w,
-                          "%.400s is an image, and other files are given besides: mesh one image, "
-                          "or surfaces of one region each",
-                          path);
+        if ((image || solids) && w->count > 1)
+            return lar_fail(w->error, LAR_ERROR_ARGUMENT,
+                            "%.400s is %s, and other files are given besides: mesh one image, one "
+                            "mesh, or surfaces of one region each",
+                            path, image ? "an image" : "a mesh");
         w->meshing->image = image;
+        w->meshing->solids = solids;
     }
     return LAR_OK;
 }
@@ -78,13 +82,17 @@ static lar_status check_image_options(const work *w) {
                       w->path[0]);
     if (w->meshing->image) return LAR_OK;
     if (o->label_count > 0)
-        return refuse(w, "%.400s: a surface has no labels; each file is one region", w->path[0]);
+        return refuse(w,
+                      w->meshing->solids
+                          ? "%.400s: labels are for images; all regions of a mesh are taken"
+                          : "%.400s: a surface has no labels; each file is one region",
+                      w->path[0]);
     if (o->names)
         return refuse(w,
                       "%.400s: names of labels are for images; surfaces are called as their "
-                      "files are",
+                      "files are, regions of meshes as their sets",
                       w->path[0]);
-    if (o->fuse)
+    if (o->fuse && !w->meshing->solids)
         return refuse(w,
                       "%.400s: only labels of an image can be fused; join the surfaces in the "
                       "program that made them",
@@ -208,9 +216,23 @@ static lar_status boundary_of_surfaces(work *w) {
     return status;
 }
 
+static lar_status boundary_of_mesh(work *w) {
+    double scale = w->options.scale > 0 ? w->options.scale : 1;
+    char *name = name_of_file(w->path[0]);
+    if (!name) return lar_fail_memory(w->error, strlen(w->path[0]), "a name");
+    lar_status status = tell(w, "reading", 0);
+    if (!status)
+        status = lar_boundary_from_mesh(w->path[0], scale, w->options.fuse != 0, name,
+                                        &w->meshing->boundary, &w->meshing->info.joined, w->error);
+    free(name);
+    return status;
+}
+
 static lar_status make_boundary(work *w) {
     lar_meshing *m = w->meshing;
-    lar_status status = m->image ? boundary_of_image(w) : boundary_of_surfaces(w);
+    lar_status status = m->image    ? boundary_of_image(w)
+                        : m->solids ? boundary_of_mesh(w)
+                                    : boundary_of_surfaces(w);
     if (!status) status = name_meshing(w);
     if (!status && w->options.principal)
         status = lar_boundary_principal_axes(&m->boundary, w->error);
@@ -233,6 +255,9 @@ static lar_status fill_lattice(work *w) {
         return lar_lattice_from_image(&w->image, boundary, &w->lattice, w->error);
     }
     if (o->size > 0) return lar_lattice_fill(boundary, o->size, &w->lattice, w->error);
+    lar_status status =
+        lar_lattice_check_thickness(boundary, &w->meshing->outer, elements, w->error);
+    if (status) return status;
     return lar_lattice_fill_count(boundary, elements, &w->lattice, w->error);
 }
 
@@ -258,6 +283,7 @@ static lar_status make_mesh(work *w) {
     lar_image_clear(&w->image);
     if (!status) status = tell(w, "cleaning", 0);
     if (!status) status = lar_lattice_clean(&w->lattice, &w->cleaning, w->error);
+    if (!status) status = lar_lattice_check_reach(&m->boundary, &m->outer, &w->lattice, w->error);
     if (!status) status = lar_draft_create(&w->lattice, &m->boundary, &w->draft, w->error);
     lar_lattice_clear(&w->lattice);
     if (!status) status = check_count(w);
@@ -284,7 +310,8 @@ static void count_regions(lar_meshing *m) {
                                     .shear_modulus = g,
                                     .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
                                     .density = tissue->density,
-                                    .held = tissue->rigid};
+                                    .held = tissue->rigid,
+                                    .usual_most = tissue->most};
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -302,6 +329,21 @@ static lar_status measure(const work *w, lar_error *error) {
     lar_status status = lar_fine_surface_drop(&m->mesh, size, &m->outer, error);
     if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
     return status ? status : lar_fine_surface_draw(&m->mesh, size, &m->outer, error);
+}
+
+/* A mesh that holds so much less, or more, than the body is not the body's. Cubes stand off more.
+ */
+static lar_status check_volume(const work *w) {
+    const lar_mesh_quality *quality = &w->meshing->info.quality;
+    const double most = w->meshing->fitted ? 0.2 : 0.5;
+    const double off = quality->volume / quality->true_volume - 1;
+    if (!(quality->true_volume > 0) || fabs(off) <= most) return LAR_OK;
+    return lar_fail(w->error, LAR_ERROR_MODEL,
+                    "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "
+                    "are thinner than an element of %.3g mm; ask for more elements or a smaller "
+                    "size",
+                    w->path[0], 1e6 * quality->volume, 100 * fabs(off), off < 0 ? "less" : "more",
+                    1e3 * w->meshing->info.size);
 }
 
 /* Two that need nothing from each other and take about as long. */
@@ -323,6 +365,7 @@ static lar_status describe(work *w) {
     lar_meshing *m = w->meshing;
     const lar_cleaning *did = &w->cleaning;
     lar_meshing_info *info = &m->info;
+    info->image = m->image;
     info->nodes = m->mesh.node_count;
     info->elements = m->mesh.element_count;
     info->regions = m->boundary.region_count;
@@ -340,7 +383,7 @@ static lar_status describe(work *w) {
         status = both.status[i];
         if (status) *w->error = both.error[i];
     }
-    return status;
+    return status ? status : check_volume(w);
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,

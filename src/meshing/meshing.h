@@ -29,9 +29,10 @@ typedef struct lar_support {
 
 struct lar_meshing {
     char *title;
-    char *stem; /* the title as a file's name */
-    char *from; /* the files that it was made from, for the scene's head */
-    bool image; /* from an image, not from surfaces */
+    char *stem;  /* the title as a file's name */
+    char *from;  /* the files that it was made from, for the scene's head */
+    bool image;  /* from an image, not from surfaces */
+    bool solids; /* from the mesh of a volume */
     bool fitted;
     lar_boundary boundary;
     lar_mesh mesh;
@@ -45,8 +46,8 @@ struct lar_meshing {
 /* Whether the rule is one, or NULL. */
 lar_status lar_support_check(const char *rule, lar_error *error);
 
-/* Adds the node sets "support", "pads" and "handle" to the mesh. `rule` as lar_meshing_options.fix. The
- * regions' information must be there. */
+/* Adds the node sets "support", "pads" and "handle" to the mesh. `rule` as lar_meshing_options.fix.
+ * The regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
 
 /* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */

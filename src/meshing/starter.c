@@ -120,7 +120,7 @@ static void put_head(const lar_meshing *m, FILE *f) {
             info->elements, m->fitted ? "on the true boundary" : "on a grid, as cubes",
             1e3 * info->size, m->stem, m->stem, m->stem);
     fputs(m->image ? "# x points to the patient's right, y to the front, z to the head.\n"
-                   : "# Axes are those of the surface's file.\n",
+                   : "# Axes are those of the file.\n",
           f);
     fputs("lariat: 1\ntitle: ", f);
     put(f, m->title, true);
@@ -232,10 +232,12 @@ static void put_load(const lar_meshing *m, FILE *f) {
 }
 
 static void put_end(const lar_meshing *m, FILE *f) {
-    fputs("# It does not pass through itself: takes some of each step.\n"
-          "# contact: [ { self: true } ]\n\n"
-          "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n",
-          f);
+    fputs(
+        "# It does not pass through itself: takes some of each step.\n"
+        "# contact: [ { self: true } ]\n\n"
+        "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n"
+        "# surface: true   # the true surface in every frame too, for ParaView: takes more room\n",
+        f);
     if (!m->support.handle && !m->support.held) return;
     fputs("  probes:\n", f);
     if (m->support.handle)

@@ -23,9 +23,11 @@
 static const double TENTH = 0.1;
 /* What the pull would stretch a bar of the handle's cross-section by. */
 static const double STRETCH = 0.3;
-/* What the pull would move the handle by at most, as part of the body's length: thin bodies that
- * are pulled across bend long before they stretch. */
-static const double BEND = 0.2;
+/* What the pull would move the handle by at most, as part of the body's length. Thin bodies that
+ * are pulled across bend long before they stretch; and of most others, too, this is the less, so
+ * that their pull does not go with the handle's cross-section and with the pads near it, which are
+ * others on every mesh. */
+static const double BEND = 0.02;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };

@@ -13,6 +13,13 @@ const uint8_t lar_edge_node[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5
 const int8_t lar_node_sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
+const uint8_t *lar_solid_corners(int corners) {
+    static const uint8_t TETRAHEDRON[8] = {0, 1, 2, 2, 3, 3, 3, 3};
+    static const uint8_t PYRAMID[8] = {0, 1, 2, 3, 4, 4, 4, 4};
+    static const uint8_t PRISM[8] = {0, 1, 2, 2, 3, 4, 5, 5};
+    return corners == 4 ? TETRAHEDRON : corners == 5 ? PYRAMID : corners == 6 ? PRISM : NULL;
+}
+
 void lar_mesh_clear(lar_mesh *mesh) {
     for (int32_t s = 0; s < mesh->set_count; s++) {
         free(mesh->set[s].name);

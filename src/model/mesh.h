@@ -47,7 +47,22 @@ typedef struct lar_mesh {
     int32_t set_count;
     lar_set *set;
     int32_t dropped_node_count; /* nodes of the file that no element uses and that were left out */
+
+    /* Other solids of the file (tetrahedra, prisms, pyramids) stand among the elements as
+     * hexahedra with a node more than once (lar_solid_corners). Only `lariat mesh` takes them, for
+     * their faces; lar_mesh_check refuses them. */
+    int32_t collapsed_count;
+    const char *collapsed_name; /* what the first of them is, static */
+    int64_t collapsed_id;
+    int collapsed_line; /* 0: the format has none */
+
+    bool turned; /* all elements were left-handed in the file (lar_mesh_turn) */
 } lar_mesh;
+
+/* Which corner of a solid with so many corners (4 tetrahedron, 5 pyramid, 6 prism) is each node of
+ * the hexahedron that stands for it; NULL: there is no such solid. A face of it has one corner
+ * twice where it is a triangle, and two at most where it is none. */
+const uint8_t *lar_solid_corners(int corners);
 
 /* Corners of local face f, counter-clockwise seen from outside. */
 extern const uint8_t lar_face_node[6][4];
@@ -67,11 +82,25 @@ const lar_set *lar_mesh_find_set(const lar_mesh *mesh, const char *name, lar_set
 lar_status lar_mesh_add_set(lar_mesh *mesh, const char *name, lar_set_kind kind, int32_t *index,
                             int32_t count, lar_error *error);
 
+/* A mesh whose elements are all left-handed numbers them the other way round: nodes 1-4 and 5-8 of
+ * every element, and its faces in sets, change places, and mesh->turned is set. Others stay. */
+void lar_mesh_turn(lar_mesh *mesh);
+
+/* Nodes at the place of another one, to a millionth of the mean edge: what meets there is not
+ * connected. *leader, when not NULL, becomes the first node at each one's place, [node_count]; the
+ * caller frees it. */
+lar_status lar_mesh_doubled_nodes(const lar_mesh *mesh, int32_t *doubled, int32_t **leader,
+                                  lar_error *error);
+
 /* Everything that must hold before a mesh can be simulated: finite coordinates; no node twice in
  * an element; every element right-handed with a positive Jacobian at its eight corners and a
  * volume that is not zero; no two elements with the same nodes. The message names file, element
  * id and remedy. Called by lar_mesh_read after every reader. */
 lar_status lar_mesh_check(const lar_mesh *mesh, lar_error *error);
+
+/* What must hold before the faces of a mesh of any solids can be taken: elements, and finite
+ * coordinates. */
+lar_status lar_mesh_check_solids(const lar_mesh *mesh, lar_error *error);
 
 /* The boundary of the mesh: faces that belong to one element only, as element * 6 + face,
  * ascending. The caller frees *faces. */

@@ -51,6 +51,10 @@ struct lar_mesh_builder {
     size_t set_count, set_capacity;
     built_set *set;
     built_set *open;
+    int32_t collapsed_count; /* as in lar_mesh */
+    const char *collapsed_name;
+    int64_t collapsed_id;
+    int collapsed_line;
     /* Hash table of the sets by name and kind: set number + 1, 0 where free. Readers ask for a set
      * once per element. */
     uint16_t *set_slot;
@@ -130,6 +134,24 @@ lar_status lar_mesh_builder_hexahedron(lar_mesh_builder *builder, int64_t id, in
     *element = (built_element){.id = id, .tag = tag, .line = line};
     memcpy(element->node_ids, node_ids, sizeof element->node_ids);
     return LAR_OK;
+}
+
+lar_status lar_mesh_builder_solid(lar_mesh_builder *builder, int64_t id, int32_t tag,
+                                  const char *name, int corners, const int64_t *node_ids, int line,
+                                  lar_error *error) {
+    const uint8_t *corner = lar_solid_corners(corners);
+    int64_t node[8];
+    for (int a = 0; a < 8; a++) node[a] = node_ids[corner[a]];
+    if (builder->collapsed_count++ == 0) {
+        builder->collapsed_name = name;
+        builder->collapsed_id = id;
+        builder->collapsed_line = line;
+    }
+    return lar_mesh_builder_hexahedron(builder, id, tag, node, line, error);
+}
+
+bool lar_mesh_builder_has_solids(const lar_mesh_builder *builder) {
+    return builder->collapsed_count > 0;
 }
 
 /* The slot of that set, or the free one where it belongs. */
@@ -287,6 +309,10 @@ static lar_status move_elements(const lar_mesh_builder *builder, resolver *ids, 
         mesh->element_tag[e] = element->tag;
     }
     mesh->element_count = (int32_t)builder->element_count;
+    mesh->collapsed_count = builder->collapsed_count;
+    mesh->collapsed_name = builder->collapsed_name;
+    mesh->collapsed_id = builder->collapsed_id;
+    mesh->collapsed_line = builder->collapsed_line;
     return LAR_OK;
 }
 
@@ -345,6 +371,7 @@ static lar_status resolve_quads(const lar_mesh_builder *builder, const built_set
         }
         lar_face_sort_nodes(node);
         const lar_face_key *key = lar_face_table_find(&ids->faces, node);
+        if (!key && builder->collapsed_count > 0) continue;
         if (!key)
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s: the quadrilateral %lld %lld %lld %lld of set '%s' is not a face "

@@ -23,6 +23,13 @@ lar_status lar_mesh_builder_node(lar_mesh_builder *builder, int64_t id, const do
 lar_status lar_mesh_builder_hexahedron(lar_mesh_builder *builder, int64_t id, int32_t tag,
                                        const int64_t node_ids[8], int line, lar_error *error);
 
+/* Another solid, by its first corners (lar_solid_corners); `name` says what it is, and is static.
+ */
+lar_status lar_mesh_builder_solid(lar_mesh_builder *builder, int64_t id, int32_t tag,
+                                  const char *name, int corners, const int64_t *node_ids, int line,
+                                  lar_error *error);
+bool lar_mesh_builder_has_solids(const lar_mesh_builder *builder);
+
 /* Opens the set of that name and kind (made when new, extended when there) for the adds below. */
 lar_status lar_mesh_builder_set(lar_mesh_builder *builder, const char *name, lar_set_kind kind,
                                 lar_error *error);
@@ -37,7 +44,7 @@ lar_status lar_mesh_builder_set_quad(lar_mesh_builder *builder, const int64_t no
                                      lar_error *error);
 
 /* Moves everything into *mesh (zeroed before). A set of nodes of which some were dropped keeps
- * the others. */
+ * the others; among other solids a set of faces keeps those that it finds. */
 lar_status lar_mesh_builder_finish(lar_mesh_builder *builder, lar_mesh *mesh, lar_error *error);
 
 #endif

@@ -1,5 +1,7 @@
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/mesh.h"
 
@@ -189,14 +191,34 @@ static lar_status check_sets(const lar_mesh *mesh, lar_error *error) {
     return LAR_OK;
 }
 
+void lar_mesh_turn(lar_mesh *mesh) {
+    if (mesh->collapsed_count > 0) return;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(mesh, e, corner);
+        if (shape_of((const double(*)[3])corner) != SHAPE_LEFT_HANDED) return;
+    }
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 0; a < 4; a++) {
+            int32_t low = mesh->element[e][a];
+            mesh->element[e][a] = mesh->element[e][a + 4];
+            mesh->element[e][a + 4] = low;
+        }
+    for (int32_t s = 0; s < mesh->set_count; s++)
+        for (int32_t i = 0; mesh->set[s].kind == LAR_SET_FACES && i < mesh->set[s].count; i++) {
+            int32_t *face = &mesh->set[s].index[i];
+            if (*face % 6 >= 4) *face ^= 1; /* 6 e + 4 and 6 e + 5: below and above */
+        }
+    mesh->turned = mesh->element_count > 0;
+}
+
 static lar_status check_shapes(const lar_mesh *mesh, lar_error *error) {
-    int32_t bad = -1, left_handed = 0;
+    int32_t bad = -1;
     element_shape shape_of_bad = SHAPE_GOOD;
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
         lar_mesh_corners(mesh, e, corner);
         element_shape shape = shape_of((const double(*)[3])corner);
-        left_handed += shape == SHAPE_LEFT_HANDED;
         if (shape == SHAPE_GOOD || bad >= 0) continue;
         bad = e;
         shape_of_bad = shape;
@@ -204,12 +226,6 @@ static lar_status check_shapes(const lar_mesh *mesh, lar_error *error) {
     if (bad < 0) return LAR_OK;
 
     long long id = (long long)mesh->element_id[bad];
-    if (left_handed == mesh->element_count)
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: the mesh is inside out: all %d elements are left-handed (the first is "
-                        "element %lld); mirror the geometry back or write nodes 5-8 of every "
-                        "element before nodes 1-4",
-                        source_of(mesh), mesh->element_count, id);
     if (shape_of_bad == SHAPE_FLAT)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: element %lld has no volume: its nodes lie in one plane or in one "
@@ -224,11 +240,35 @@ static lar_status check_shapes(const lar_mesh *mesh, lar_error *error) {
                     shape_of_bad == SHAPE_LEFT_HANDED ? "inside out" : "inverted or too distorted");
 }
 
+/* The command for a file, in quotes where a shell needs them. */
+static lar_status refuse_collapsed(const lar_mesh *mesh, lar_error *error) {
+    const char *source = source_of(mesh), *quote = "";
+    char line[16] = "";
+    if (mesh->collapsed_line > 0) snprintf(line, sizeof line, ":%d", mesh->collapsed_line);
+    for (const char *c = source; *c; c++)
+        if (strchr(" \t'\"\\$&;|<>()*?[]#~`!{}", *c)) quote = strchr(source, '\'') ? "\"" : "'";
+    return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                    "%s%s: element %lld is a %s, but Lariat computes with eight-node hexahedra; "
+                    "make them of the mesh's boundary and regions: lariat mesh %s%s%s",
+                    source, line, (long long)mesh->collapsed_id, mesh->collapsed_name, quote,
+                    source, quote);
+}
+
+lar_status lar_mesh_check_solids(const lar_mesh *mesh, lar_error *error) {
+    if (mesh->element_count <= 0)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: holds no solid elements; save the volume mesh, or give its surface as "
+                        ".stl .obj .vtk .vtp",
+                        source_of(mesh));
+    return check_positions(mesh, error);
+}
+
 lar_status lar_mesh_check(const lar_mesh *mesh, lar_error *error) {
     if (mesh->element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: holds no eight-node hexahedra; mesh the volume with hexahedra",
                         source_of(mesh));
+    if (mesh->collapsed_count > 0) return refuse_collapsed(mesh, error);
     lar_status status = check_positions(mesh, error);
     if (!status) status = check_connectivity(mesh, error);
     if (!status) status = check_sets(mesh, error);

@@ -314,6 +314,30 @@ static lar_status check_tools(const lar_model *model, lar_error *error) {
     return LAR_OK;
 }
 
+/* What was done with the mesh, and what looks as if it were meant otherwise. Bodies that touch each
+ * other by contact may well have nodes at one place. */
+static lar_status notice_mesh(lar_model *model, lar_error *error) {
+    const lar_mesh *mesh = &model->mesh;
+    const char *source = mesh->source ? mesh->source : lar_model_source(model);
+    lar_status status = LAR_OK;
+    if (mesh->turned)
+        status = lar_model_notice(model, error,
+                                  "%.300s: all elements are left-handed, as in a mirrored body; "
+                                  "their corners are taken in the other direction",
+                                  source);
+    for (int i = 0; i < model->contact_count; i++)
+        if (model->contact[i].kind != LAR_CONTACT_PLANE) return status;
+    int32_t doubled = 0;
+    if (!status) status = lar_mesh_doubled_nodes(mesh, &doubled, NULL, error);
+    if (!status && doubled > 0)
+        status = lar_model_notice(model, error,
+                                  "%.300s: %d nodes stand at the place of another one, and nothing "
+                                  "connects them: parts that meet there come apart; merge these "
+                                  "nodes where the body is one",
+                                  source, (int)doubled);
+    return status;
+}
+
 lar_status lar_model_check(lar_model *model, lar_error *error) {
     if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -329,5 +353,5 @@ lar_status lar_model_check(lar_model *model, lar_error *error) {
         status = lar_surface_build(&model->mesh, &model->surface, error);
     if (!status) status = check_contacts(model, error);
     if (!status) status = check_tools(model, error);
-    return status;
+    return status ? status : notice_mesh(model, error);
 }

@@ -54,6 +54,9 @@ lar_status lar_triangles_join(lar_triangles *triangles, lar_error *error);
 /* Writes a .vtp, whole or not at all (as lar_vtu_write); the tags go along as cell array "tag". */
 lar_status lar_vtp_write(const char *path, const lar_triangles *triangles, lar_error *error);
 
+/* The same for one frame of many: places in single precision, compressed more. */
+lar_status lar_vtp_write_small(const char *path, const lar_triangles *triangles, lar_error *error);
+
 /* Twice the area times the unit normal of a triangle. */
 void lar_triangles_normal(const lar_triangles *triangles, int32_t triangle, double normal[3]);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/vector.h"
 #include "meshing/image.h"
 
 void lar_label_list_clear(lar_label_list *list) {
@@ -30,6 +31,11 @@ static lar_status fill(const lar_image *image, lar_label_list *list, lar_error *
     if (!good) return lar_fail_memory(error, rows * sizeof *list->row, "a list of labels");
     memcpy(list->size, image->size, sizeof list->size);
     list->voxel = lar_image_voxel_volume(image);
+    for (int a = 0; a < 3; a++) {
+        double step[3];
+        for (int d = 0; d < 3; d++) step[d] = image->to_world[d][a];
+        list->edge[a] = lar_length(step);
+    }
     return LAR_OK;
 }
 

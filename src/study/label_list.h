@@ -18,6 +18,7 @@ typedef struct lar_label_list {
     lar_label_row *row; /* ascending labels that have voxels; without 0 */
     int32_t size[3];    /* of the image, voxels */
     double voxel;       /* volume of one [m^3] */
+    double edge[3];     /* of one [m] */
 } lar_label_list;
 
 /* Reads an image, and names of its labels from a file (`names` may be NULL). */

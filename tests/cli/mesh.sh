@@ -40,7 +40,7 @@ surface 0 0 >top.obj
 surface 0 12 >other.obj
 
 expect 0 "$LARIAT" mesh two.nrrd --list
-says '24 x 20 x 16 voxels, 3 labels'
+says '24 x 20 x 16 voxels of 2 x 2 x 2 mm, 3 labels'
 says ' 7  left kidney '
 expect 0 "$LARIAT" mesh two.nrrd --list --json
 has_keys file labels.0.name --numbers voxels.0 labels.2.label labels.2.voxels labels.0.volume
@@ -48,16 +48,39 @@ has_keys file labels.0.name --numbers voxels.0 labels.2.label labels.2.voxels la
 
 expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title "Two organs"
 [ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
-says '^Two organs: [56][0-9][0-9] elements of about 0.00[23]'
+says '^Two organs: [56][0-9][0-9] elements of about [23][.0-9]* mm'
 says 'left kidney (7): [0-9]* elements'
 says '^held  *at the back, and on [1-9] pads* that bears* its weight: [0-9]* nodes'
-says '^deviation  *mean 0.000'
+says '^volume  *[12][0-9.]* mL, the true surface holds'
+says '^shortest edge  *[0-9.]* mm$'
+says '^deviation  *mean 0\.[0-9]* mm ('
 says 'all of the elements are above 0.2'
 says '^lariat view Two_organs/Two_organs.yaml$'
 for file in .vtu .yaml _surface.vtp; do
     [ -s "Two_organs/Two_organs$file" ] || fail "no Two_organs$file"
 done
 find . -name '*.part' | grep -q . && fail "a part file is left"
+
+# The pull moves the handle alike whatever the mesh; frames hold the fine surface when asked to.
+furthest() { # the largest mean displacement of the handle in a run's probes
+    awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /^"*handle/) at[++n] = c; next }
+        { d = 0; for (c = 1; c <= n; c++) d += $at[c] ^ 2; if (d > most) most = d }
+        END { print sqrt(most) }' "$1/probes.csv"
+}
+for elements in 150 600 2400; do
+    expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements $elements --title pull \
+        --out pull$elements
+    expect 0 "$LARIAT" run pull$elements/pull.yaml --time 1 --out pull$elements/out
+done
+awk "BEGIN { a = $(furthest pull150/out); b = $(furthest pull600/out); c = $(furthest pull2400/out)
+    exit !(a > 0.5e-3 && b / a < 1.25 && a / b < 1.25 && c / b < 1.25 && b / c < 1.25) }" ||
+    fail "pulls of $(furthest pull150/out), $(furthest pull600/out), $(furthest pull2400/out) m"
+[ ! -e pull600/out/surface_000000.vtp ] || fail "a fine surface that nobody asked for"
+expect 0 "$LARIAT" run pull600/pull.yaml --time 0.05 --surface --out pull600/fine
+[ -s pull600/fine/surface_000000.vtp ] && [ -s pull600/fine/surface.pvd ] || fail "no fine surface"
+sed 's/^# surface: true.*/  surface: true/' pull600/pull.yaml >pull600/asks.yaml
+expect 0 "$LARIAT" run pull600/asks.yaml --time 0.05 --out pull600/asked
+[ -s pull600/asked/surface_000000.vtp ] || fail "the scene asks for the fine surface in vain"
 
 # One core or many: the same files.
 if taskset -c 0 true 2>/dev/null; then
@@ -84,7 +107,7 @@ value_of speed.why_not >/dev/null 2>&1 && fail "the speed was measured with --no
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --no-speed
 grep -q '^deviation' "$SCRATCH/out" && fail "a deviation from nothing"
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against Two_organs/Two_organs_surface.vtp
-says '^deviation  *mean 0.000'
+says '^deviation  *mean 0\.[0-9]* mm ('
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --against top.obj --scale 0.001
 expect 1 "$LARIAT" info Two_organs/Two_organs.vtu --against none.stl
 complains 'none.stl'
@@ -141,7 +164,7 @@ printf 'label,name\n1,liver\n7,spleen\n' >names.csv
 expect 0 "$LARIAT" mesh cut.nrrd --names names.csv --label Spleen --elements 200
 [ -s spleen/spleen.yaml ] || fail "names.csv was not heard"
 expect 0 "$LARIAT" mesh cut.nrrd --label 1 --label 7 --fuse --voxel --out cubes --title cubes
-says '^cubes: [0-9]* elements of about 0.002 m'
+says '^cubes: [0-9]* elements of about 2 mm'
 expect 0 "$LARIAT" mesh two.nrrd --label liver --principal --elements 200 --fix none --out free
 says '^held  *nowhere'
 expect 0 "$LARIAT" run free/liver.yaml

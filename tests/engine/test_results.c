@@ -288,6 +288,26 @@ static void let_ball_ride(fixture *f) {
                             6);
     if (lar_embedding_bind(&f->model->mesh, &ball, &f->model->embedding, &f->error))
         fail_msg("%s", f->error.message);
+    f->model->output.surface = true;
+}
+
+/* It takes many times the room of the mesh, so it is written only when it is asked for. */
+static void a_riding_surface_waits_to_be_asked(void **state) {
+    fixture *f = *state;
+    remove(FOLDER "/surface_000000.vtp");
+    remove(FOLDER "/surface.pvd");
+    let_ball_ride(f);
+    f->model->output.surface = false;
+    open_results(f);
+    add(f);
+    assert_int_not_equal(access(FOLDER "/surface_000000.vtp", F_OK), 0);
+    assert_int_not_equal(access(FOLDER "/surface.pvd", F_OK), 0);
+    assert_int_equal(lar_results_close(f->results, &f->error), LAR_OK);
+    f->results = NULL;
+    if (lar_results_open_surface(FOLDER, f->simulation, &f->results, &f->error))
+        fail_msg("%s", f->error.message);
+    add(f);
+    assert_int_equal(access(FOLDER "/surface_000000.vtp", F_OK), 0);
 }
 
 static void a_riding_surface_has_frames_of_its_own(void **state) {
@@ -458,6 +478,7 @@ int main(void) {
                                        WITH_FIXTURE(probes_have_names_units_and_values),
                                        WITH_FIXTURE(without_probes_there_is_the_time),
                                        WITH_FIXTURE(a_line_is_whole_or_not_there),
+                                       WITH_FIXTURE(a_riding_surface_waits_to_be_asked),
                                        WITH_FIXTURE(a_riding_surface_has_frames_of_its_own),
                                        WITH_FIXTURE(the_frames_of_the_mesh_keep_their_name),
                                        WITH_FIXTURE(the_surface_it_was_read_from_is_spared),

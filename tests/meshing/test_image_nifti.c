@@ -432,6 +432,30 @@ static void damaged_gzip(void **state) {
     lar_bytes_free(&bytes);
 }
 
+/* The check sum of a file that holds more than its header promises is looked at all the same; and
+ * what follows is refused, within the stream and behind it. */
+static void more_than_promised(void **state) {
+    (void)state;
+    for (int more = 1; more < 100000; more *= 7) {
+        lar_bytes bytes = file_of(plain());
+        append(&bytes, NULL, (size_t)more);
+        expect_bad(lar_nifti_parse, "a.nii", &bytes, LAR_ERROR_FORMAT,
+                   "promises 12 bytes|more follow them|damaged");
+        gzip_from(&bytes, 0);
+        expect_bad(lar_nifti_parse, "a.nii.gz", &bytes, LAR_ERROR_FORMAT,
+                   "promises 12 bytes|more follow them|damaged");
+        bytes.data[bytes.size - 6] ^= 1;
+        expect_bad(lar_nifti_parse, "a.nii.gz", &bytes, LAR_ERROR_FORMAT, "check sum|damaged");
+        lar_bytes_free(&bytes);
+    }
+    nifti n = plain();
+    n.packed = true;
+    lar_bytes bytes = file_of(n);
+    append(&bytes, "\0\0more", 6);
+    expect_bad(lar_nifti_parse, "a.nii.gz", &bytes, LAR_ERROR_FORMAT, "4 bytes that are no gzip");
+    lar_bytes_free(&bytes);
+}
+
 /* A build without the library says how to get it. */
 static int without_library(void) {
     lar_bytes bytes = file_of(plain());
@@ -459,6 +483,7 @@ int main(void) {
         cmocka_unit_test(bad_values),
         cmocka_unit_test(cut_short),
         cmocka_unit_test(damaged_gzip),
+        cmocka_unit_test(more_than_promised),
     };
     return with_library ? cmocka_run_group_tests(tests, NULL, NULL) : without_library();
 }

@@ -347,6 +347,7 @@ static void bad_values(void **state) {
                {"1 2 3 4 5 6 7 8 9 10 11 liver", "something that is no number comes after 11"},
                {"1 2 3 4 5 6 7 8 9 10 11.5 12", "voxel (1, 1, 1) has the value 11.5|no label map"},
                {"1 2 3 4 5 6 7 8 9 10 nan 12", "voxel (1, 1, 1) has the value no number"},
+               {"1 2 3 4 5 6 7 8 9 10 11 12 \n 13", "12 numbers|more follow them"},
                {"1 2 3 4 5 6 7 8 9 10 -1 12", "the value -1"}};
     for (size_t b = 0; b < sizeof BAD / sizeof BAD[0]; b++) {
         lar_bytes bytes = {0};
@@ -367,6 +368,30 @@ static void bad_values(void **state) {
     lar_bytes_free(&bytes);
 }
 
+/* Data longer than the header says, in the file itself and beside it, packed or not. */
+static void too_long(void **state) {
+    (void)state;
+    for (int packed = 0; packed < 2; packed++) {
+        lar_bytes bytes = file_of(PLAIN);
+        size_t start = bytes.size - VOXELS;
+        if (packed) memcpy(strstr((char *)bytes.data, "raw"), "gz ", 3);
+        append(&bytes, "\1", 1);
+        if (packed) gzip_from(&bytes, start);
+        expect_bad(lar_nrrd_parse, "a.nrrd", &bytes, LAR_ERROR_FORMAT,
+                   "12 bytes of voxels, but 1 more|damaged");
+        lar_bytes data = {0};
+        append(&data, bytes.data + start, bytes.size - start);
+        mkdir(FOLDER, 0777);
+        save(&data, FOLDER "/long.raw");
+        bytes.size = start - 1; /* the empty line */
+        append(&bytes, "data file: long.raw\n", 20);
+        expect_bad(lar_nrrd_parse, FOLDER "/a.nhdr", &bytes, LAR_ERROR_FORMAT,
+                   "12 bytes of voxels, but 1 more|damaged");
+        lar_bytes_free(&data);
+        lar_bytes_free(&bytes);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type),
@@ -381,6 +406,7 @@ int main(void) {
         cmocka_unit_test(four_axes),
         cmocka_unit_test(claims),
         cmocka_unit_test(bad_values),
+        cmocka_unit_test(too_long),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -147,7 +147,7 @@ static void a_thin_body_is_at_rest_at_the_end(void **state) {
     assert_true(lar_model_duration(model) > 2);
     check_run(model, 0.8, &pulled);
     check_run(model, lar_model_duration(model), &after);
-    assert_true(pulled > 2e-3 && pulled < 0.06);
+    assert_true(pulled > 8e-4 && pulled < 0.06);
     assert_below(after, 0.01 * pulled);
     lar_model_destroy(model);
 }

@@ -192,12 +192,16 @@ static void refuses_damage(void **state) {
 static void refuses_unsupported(void **state) {
     (void)state;
     const lar_status unsupported = LAR_ERROR_UNSUPPORTED;
-    static const char *const types[] = {"C3D4", "C3D20R", "C3D6", "SC8R", "B31", "DC3D8", "S4R5"};
+    static const char *const types[] = {"C3D27", "C3D20R", "CPE", "SC8R", "B31", "DC3D8", "S4R5"};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         char part[100];
         snprintf(part, sizeof part, "bad.inp:26: elements of type '%s' are not read", types[i]);
         refused_with("CPS4", types[i], unsupported, part);
     }
+    refused_with("CPS4", "C3D4", unsupported,
+                 "bad.inp:27: element 20 is a four-node tetrahedron, but Lariat computes with "
+                 "eight-node hexahedra; make them of the mesh's boundary and regions: lariat mesh "
+                 "bad.inp");
     refused_with("*HEADING\n", "*Include, Input=nodes.inp\n", unsupported,
                  "bad.inp:2: *Include is not read here; copy the included file into this one");
     refused_with("*Node, nset=All", "*NODE, INPUT=n.txt", unsupported, "copy the nodes");

@@ -227,8 +227,57 @@ static void check_refuses(void **state) {
     assert_check_fails(&mesh, LAR_ERROR_MODEL, "element 5 is inverted or too distorted");
 
     mesh = boxes(2);
+    mesh.collapsed_count = 1;
+    mesh.collapsed_name = "four-node tetrahedron";
+    mesh.collapsed_id = 6;
+    assert_check_fails(&mesh, LAR_ERROR_UNSUPPORTED,
+                       "box.vtu: element 6 is a four-node tetrahedron, but");
+}
+
+/* A mirrored mesh has its own corners and faces in the end; one that is mirrored in part stays. */
+static void turns(void **state) {
+    (void)state;
+    lar_mesh mesh = boxes(2);
+    lar_error error;
+    int32_t *face = lar_calloc(4, sizeof *face);
+    for (int i = 0; i < 4; i++) face[i] = (const int32_t[4]){4, 5, 0, 11}[i];
+    assert_int_equal(lar_mesh_add_set(&mesh, "some", LAR_SET_FACES, face, 4, &error), LAR_OK);
+    lar_mesh_turn(&mesh);
+    assert_false(mesh.turned);
     for (int n = 0; n < 12; n++) mesh.position[n][1] *= -1;
-    assert_check_fails(&mesh, LAR_ERROR_MODEL, "box.vtu: the mesh is inside out: all 2 elements");
+    assert_int_equal(lar_mesh_check(&mesh, &error), LAR_ERROR_MODEL);
+    int32_t corner[4], low = mesh.element[0][0];
+    for (int c = 0; c < 4; c++) corner[c] = mesh.element[0][lar_face_node[4][c]];
+    lar_mesh_turn(&mesh);
+    assert_true(mesh.turned);
+    assert_int_equal(mesh.element[0][4], low);
+    assert_int_equal(lar_mesh_check(&mesh, &error), LAR_OK);
+    const lar_set *set = lar_mesh_find_set(&mesh, "some", LAR_SET_FACES);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(set->index[i], ((const int32_t[4]){5, 4, 0, 10}[i]));
+    for (int c = 0; c < 4; c++) {
+        bool there = false;
+        for (int k = 0; k < 4; k++)
+            there = there || mesh.element[0][lar_face_node[5][k]] == corner[c];
+        assert_true(there);
+    }
+    lar_mesh_clear(&mesh);
+}
+
+static void doubled_nodes(void **state) {
+    (void)state;
+    lar_mesh mesh = boxes(2);
+    lar_error error;
+    int32_t doubled = -1, *leader = NULL;
+    assert_int_equal(lar_mesh_doubled_nodes(&mesh, &doubled, NULL, &error), LAR_OK);
+    assert_int_equal(doubled, 0);
+    memcpy(mesh.position[9], mesh.position[2], sizeof mesh.position[9]);
+    mesh.position[9][0] += 1e-8;
+    assert_int_equal(lar_mesh_doubled_nodes(&mesh, &doubled, &leader, &error), LAR_OK);
+    assert_int_equal(doubled, 1);
+    for (int n = 0; n < 12; n++) assert_int_equal(leader[n], n == 9 ? 2 : n);
+    free(leader);
+    lar_mesh_clear(&mesh);
 }
 
 /* A thin layer and a very small or large mesh are good meshes. */
@@ -312,6 +361,8 @@ int main(void) {
         cmocka_unit_test(boundary),
         cmocka_unit_test(sets),
         cmocka_unit_test(set_limit),
+        cmocka_unit_test(turns),
+        cmocka_unit_test(doubled_nodes),
         cmocka_unit_test(check_refuses),
         cmocka_unit_test(check_accepts),
         cmocka_unit_test(read_scales),

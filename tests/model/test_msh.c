@@ -342,12 +342,13 @@ static void refuses_other_cells(void **state) {
     const lar_status unsupported = LAR_ERROR_UNSUPPORTED;
     refused_with(version_2, "1 15 2 1 1 5", "1 4 2 1 1 5 6 7 8", unsupported,
                  "bad.msh:33: element 1 is a four-node tetrahedron, but Lariat computes with "
-                 "eight-node hexahedra; mesh the volume with hexahedra (Gmsh: transfinite");
+                 "eight-node hexahedra; make them of the mesh's boundary and regions: lariat mesh "
+                 "bad.msh");
     refused_with(version_2, "1 15 2 1 1 5", "1 17 2 1 1 5", unsupported, "a 20-node hexahedron");
-    refused_with(version_1, "9 3 2 1 4", "9 6 2 1 6", unsupported,
-                 "bad.msh:21: element 9 is a six-node prism");
-    refused_with(version_4, "0 1 15 1\n1 5", "3 1 7 1\n1 5", unsupported,
-                 "element 1 is a five-node pyramid");
+    refused_with(version_1, "9 3 2 1 4", "9 12 2 1 27", unsupported,
+                 "bad.msh:21: element 9 is a 27-node hexahedron");
+    refused_with(version_4, "0 1 15 1\n1 5", "3 1 92 1\n1 5", unsupported,
+                 "element 1 is a 64-node hexahedron");
     refused_with(version_4, "0 1 15 1\n1 5", "3 1 77 1\n1 5", unsupported,
                  "element 1 has the type 77, which is not known");
     refused_with(version_2, "3 3 2 2 1 9 10 12 11", "3 2 2 2 1 9 10 12", unsupported,
@@ -474,7 +475,7 @@ static void shared_tetrahedra(void **state) {
     (void)state;
     static const char *const names[] = {"volumes/liver_tet.msh", "volumes/msh4_cube.msh"};
     static const char *const parts[] = {"liver_tet.msh:187: element 1 is a four-node tetrahedron",
-                                        "msh4_cube.msh:164: element 45 is a four-node tetra"};
+                                        "msh4_cube.msh:165: element 45 is a four-node tetra"};
     for (int i = 0; i < 2; i++) {
         lar_mesh mesh;
         lar_error error = {0};

@@ -272,8 +272,11 @@ static void test_bad_text(void **state) {
         {" 4 12 20\n", " 14 12 20\n", LAR_ERROR_FORMAT, "offsets must ascend"},
         {" 4 12 20\n", " 4 99 20\n", LAR_ERROR_FORMAT, "offsets must ascend"},
         {" 4 12 20\n", " 5 12 20\n", LAR_ERROR_FORMAT, "7 corners instead of 8"},
-        {" 9 12 12\n", " 9 12 10\n", LAR_ERROR_UNSUPPORTED,
-         "cell 2 is a tetrahedron (VTK cell type 10); Lariat computes with eight-node hexahedra"},
+        {" 9 12 12\n", " 9 12 15\n", LAR_ERROR_UNSUPPORTED,
+         "cell 2 is a pentagonal prism (VTK cell type 15); Lariat computes with eight-node "
+         "hexahedra"},
+        {" 9 12 12\n", " 9 12 10\n", LAR_ERROR_FORMAT, "tetrahedron 2 has 8 corners instead of 4"},
+        {" 9 12 12\n", " 9 12 24\n", LAR_ERROR_FORMAT, "tetrahedron 2 has 8 corners instead of 10"},
         {" 9 12 12\n", " 9 25 12\n", LAR_ERROR_UNSUPPORTED, "first-order"},
         {" 9 12 12\n", " 9 -5 12\n", LAR_ERROR_UNSUPPORTED, "unknown kind"},
         {" 9 12 12\n", " 9 9 9\n", LAR_ERROR_MODEL, "no hexahedra"},
@@ -448,6 +451,37 @@ static void test_zlib_bomb(void **state) {
     free(zeros);
 }
 
+/* Bytes behind the end of a zlib stream, or of an array that has its text for itself. */
+static void test_left_over(void **state) {
+    (void)state;
+    const double points[30] = {0};
+    unsigned char packed[256];
+    uLongf length = sizeof packed;
+    assert_int_equal(compress2(packed, &length, (const Bytef *)points, sizeof points, 9), Z_OK);
+    for (int k = 0; k < 3; k++) {
+        vtu_style style = plain_style;
+        style.format = k == 1 ? APPENDED_RAW : INLINE;
+        style.compressed = k < 2;
+        sample_file data = {0};
+        if (style.compressed) {
+            put_word(&data, 1, 8, false);
+            put_word(&data, sizeof points, 8, false);
+            put_word(&data, 0, 8, false);
+            put_word(&data, length + 3, 8, false);
+            put(&data, packed, length);
+            put(&data, "123", 3);
+            expect_bad_points(&style, "10", &data, "cannot be decompressed");
+            data.data[24] = (unsigned char)length; /* little-endian, as the file says */
+        } else {
+            put_word(&data, sizeof points, 8, false);
+            put(&data, points, sizeof points);
+            put(&data, "123", 3);
+        }
+        if (k != 1) expect_bad_points(&style, "10", &data, "are more than");
+        free(data.data);
+    }
+}
+
 static void test_base64_garbage(void **state) {
     (void)state;
     static const char *const garbage[] = {
@@ -514,6 +548,7 @@ int main(void) {
         cmocka_unit_test(test_entity_bomb_and_nesting),
         cmocka_unit_test(test_false_claims),
         cmocka_unit_test(test_zlib_bomb),
+        cmocka_unit_test(test_left_over),
         cmocka_unit_test(test_base64_garbage),
         cmocka_unit_test(test_long_text),
         cmocka_unit_test(test_liver),

@@ -218,6 +218,7 @@ static lar_status read_model(lar_feb *feb) {
     if (!status) status = find_step(feb, &step);
     if (!status) status = lar_feb_list_materials(feb);
     if (!status) status = lar_feb_read_mesh(feb);
+    if (!status) lar_mesh_turn(feb->mesh);
     if (!status) status = lar_mesh_check(feb->mesh, feb->error);
     if (!status) status = lar_feb_read_materials(feb);
     if (status) return status;

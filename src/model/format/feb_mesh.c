@@ -59,18 +59,46 @@ static lar_status read_nodes(mesh_reader *reader, const xmlNode *block) {
     return status;
 }
 
+/* The solids of FEBio by their corners; those of a mesh without a model may be any. */
+static const struct solid_type {
+    const char *type;
+    int nodes, corners;
+    const char *name;
+} solid_types[] = {{"hex8", 8, 8, "hexahedron"},
+                   {"tet4", 4, 4, "four-node tetrahedron"},
+                   {"tet10", 10, 4, "ten-node tetrahedron"},
+                   {"tet15", 15, 4, "15-node tetrahedron"},
+                   {"penta6", 6, 6, "six-node prism"},
+                   {"penta15", 15, 6, "15-node prism"},
+                   {"pyra5", 5, 5, "five-node pyramid"},
+                   {"pyra13", 13, 5, "13-node pyramid"}};
+enum { SOLID_TYPES = sizeof solid_types / sizeof solid_types[0], NODES_MOST = 15 };
+
+static const struct solid_type *find_solid(const char *type) {
+    for (int i = 0; i < SOLID_TYPES; i++)
+        if (strcmp(type, solid_types[i].type) == 0) return &solid_types[i];
+    return NULL;
+}
+
 /* Refuses parts that Lariat cannot make of hexahedra, by name. */
 static lar_status check_part(mesh_reader *reader, const xmlNode *block,
-                             const lar_feb_material *material) {
+                             const lar_feb_material *material, const struct solid_type **solid) {
     lar_feb *feb = reader->feb;
     const char *type, *name = lar_feb_attribute(feb, block, "name");
     lar_status status = lar_feb_need_attribute(feb, block, "type", &type);
     if (status) return status;
-    if (strcmp(type, "hex8") != 0)
+    *solid = find_solid(type);
+    if (!*solid)
         return lar_feb_fail(feb, block, LAR_ERROR_UNSUPPORTED,
                             "part '%.100s' has elements of type %.40s; Lariat computes with "
                             "eight-node hexahedra (hex8), mesh the part with those",
                             name ? name : "", type);
+    if (feb->model && (*solid)->corners < 8)
+        return lar_feb_fail(feb, block, LAR_ERROR_UNSUPPORTED,
+                            "part '%.100s' has elements of type %.40s; Lariat computes with "
+                            "eight-node hexahedra (hex8), make them of the mesh's boundary and "
+                            "parts: lariat mesh %s",
+                            name ? name : "", type, feb->path);
     if (!feb->model || !material) return LAR_OK;
     const char *law = lar_feb_attribute(feb, material->node, "type");
     if (law && strcmp(law, "rigid body") == 0)
@@ -85,7 +113,8 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
     lar_feb *feb = reader->feb;
     const lar_feb_material *material = NULL;
     lar_status status = lar_feb_part_material(feb, block, &material);
-    if (!status) status = check_part(reader, block, material);
+    const struct solid_type *solid = NULL;
+    if (!status) status = check_part(reader, block, material, &solid);
     const char *name = lar_feb_attribute(feb, block, "name");
     bool named = name && *name;
     if (!status && named) status = define_name(reader, block, "element set", name);
@@ -98,13 +127,17 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
                                 "<%s> stands among the elements; only <elem id=\"...\"> belongs "
                                 "there",
                                 (const char *)element->name);
-        int64_t id, corner[8];
+        int64_t id, corner[NODES_MOST];
         int line = lar_feb_line(element);
+        int32_t tag = material ? material->id : 0;
         status = lar_feb_id_attribute(feb, element, "id", &id);
-        if (!status) status = lar_feb_ids(feb, element, corner, 8);
+        if (!status) status = lar_feb_ids(feb, element, corner, solid->nodes);
         if (!status)
-            status = lar_mesh_builder_hexahedron(reader->builder, id, material ? material->id : 0,
-                                                 corner, line, feb->error);
+            status = solid->corners == 8
+                         ? lar_mesh_builder_hexahedron(reader->builder, id, tag, corner, line,
+                                                       feb->error)
+                         : lar_mesh_builder_solid(reader->builder, id, tag, solid->name,
+                                                  solid->corners, corner, line, feb->error);
         if (!status && named)
             status = lar_mesh_builder_set_id(reader->builder, id, line, feb->error);
     }
@@ -148,6 +181,7 @@ static lar_status read_set_ids(mesh_reader *reader, const xmlNode *set, const ch
 static lar_status read_surface(mesh_reader *reader, const xmlNode *surface) {
     lar_feb *feb = reader->feb;
     lar_status status = LAR_OK;
+    if (lar_mesh_builder_has_solids(reader->builder)) return LAR_OK; /* only its parts count */
     for (xmlNode *face = lar_feb_first(surface); face && !status; face = lar_feb_next(face)) {
         if (!lar_feb_is(face, "quad4"))
             return lar_feb_fail(feb, face, LAR_ERROR_UNSUPPORTED,

@@ -143,13 +143,34 @@ static lar_status read_nodes(inp_reader *reader, const inp_card *card) {
 typedef struct element_type {
     const char *name; /* letters may follow: C3D8R, C3D8RH, S4R */
     int nodes;
+    int corners; /* of a solid, 8 of hexahedra; 0: none */
+    const char *what;
 } element_type;
+enum { NODES_MOST = 15 };
 
-/* Faces and lines that mesh programs write beside the volume. */
+/* Solids, then faces and lines that mesh programs write beside the volume. */
 static const element_type element_types[] = {
-    {"C3D8", 8}, {"S4", 4},   {"CPS4", 4}, {"CPE4", 4}, {"M3D4", 4},   {"SFM3D4", 4},
-    {"S3", 3},   {"CPS3", 3}, {"CPE3", 3}, {"M3D3", 3}, {"SFM3D3", 3}, {"STRI3", 3},
-    {"T3D2", 2}, {"CPS6", 6}, {"CPS8", 8}, {"T3D3", 3},
+    {"C3D8", 8, 8, "hexahedron"},
+    {"C3D4", 4, 4, "four-node tetrahedron"},
+    {"C3D10", 10, 4, "ten-node tetrahedron"},
+    {"C3D6", 6, 6, "six-node prism"},
+    {"C3D15", 15, 6, "15-node prism"},
+    {"C3D5", 5, 5, "five-node pyramid"},
+    {"S4", 4, 0, NULL},
+    {"CPS4", 4, 0, NULL},
+    {"CPE4", 4, 0, NULL},
+    {"M3D4", 4, 0, NULL},
+    {"SFM3D4", 4, 0, NULL},
+    {"S3", 3, 0, NULL},
+    {"CPS3", 3, 0, NULL},
+    {"CPE3", 3, 0, NULL},
+    {"M3D3", 3, 0, NULL},
+    {"SFM3D3", 3, 0, NULL},
+    {"STRI3", 3, 0, NULL},
+    {"T3D2", 2, 0, NULL},
+    {"CPS6", 6, 0, NULL},
+    {"CPS8", 8, 0, NULL},
+    {"T3D3", 3, 0, NULL},
 };
 
 static const element_type *find_type(lar_span name) {
@@ -210,6 +231,15 @@ static lar_status add_boundary(inp_reader *reader, const int64_t *number, int no
     return LAR_OK;
 }
 
+static lar_status add_solid(inp_reader *reader, const element_type *type, int32_t tag,
+                            const int64_t *number, int line) {
+    if (type->corners < 8)
+        return lar_mesh_builder_solid(reader->builder, number[0], tag, type->what, type->corners,
+                                      number + 1, line, reader->error);
+    return lar_mesh_builder_hexahedron(reader->builder, number[0], tag, number + 1, line,
+                                       reader->error);
+}
+
 static lar_status read_elements(inp_reader *reader, const inp_card *card) {
     lar_span type_name, value, line;
     if (inp_parameter(card, "INPUT", &value))
@@ -219,7 +249,7 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
                         "%s:%d: *ELEMENT has no TYPE; add TYPE=C3D8", reader->path, card->line);
     const element_type *type = find_type(type_name);
     if (!type) return refuse_type(reader, card, type_name);
-    bool solid = type == &element_types[0];
+    bool solid = type->corners > 0;
 
     inp_set *set = NULL;
     if (inp_parameter(card, "ELSET", &value)) {
@@ -229,13 +259,11 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
     }
     lar_status status = LAR_OK;
     while (!status && inp_data_line(reader, &line)) {
-        int64_t number[9];
+        int64_t number[1 + NODES_MOST];
         int at = reader->line;
         status = read_connectivity(reader, line, number, type->nodes);
         if (!status) status = remember_id(reader, &reader->elements, number[0]);
-        if (!status && solid)
-            status = lar_mesh_builder_hexahedron(reader->builder, number[0], set ? set->tag : 0,
-                                                 number + 1, at, reader->error);
+        if (!status && solid) status = add_solid(reader, type, set ? set->tag : 0, number, at);
         if (!status && !solid) status = add_boundary(reader, number, type->nodes, at);
         if (!status && set) status = inp_add_entry(reader, set, number[0], at);
     }

@@ -168,6 +168,7 @@ static lar_status add_face(inp_reader *reader, int64_t id, lar_span label, int a
     const inp_boundary *boundary = find_boundary(reader, id);
     if (boundary && boundary->is_quad)
         return lar_mesh_builder_set_quad(reader->builder, boundary->node_ids, at, reader->error);
+    if (lar_mesh_builder_has_solids(reader->builder)) return LAR_OK; /* only its regions count */
     if (boundary)
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
                         "%s:%d: element %lld is neither a hexahedron nor a four-node face; take it "

@@ -112,7 +112,24 @@ static lar_status fail_extension(const char *path, lar_error *error) {
                     "%s: no mesh format has this extension; the known ones are%s", path, known);
 }
 
-lar_status lar_mesh_read(const char *path, double scale, lar_mesh *mesh, lar_error *error) {
+/* The data set is named in the fourth line of the head, which is two short lines and a title. */
+static bool holds_grid(const char *path) {
+    char head[1024] = "";
+    FILE *file = fopen(path, "rb");
+    if (!file) return false;
+    size_t length = fread(head, 1, sizeof head - 1, file);
+    fclose(file);
+    for (size_t c = 0; c < length; c++)
+        if (strncasecmp(head + c, "UNSTRUCTURED_GRID", 17) == 0) return true;
+    return false;
+}
+
+bool lar_mesh_named(const char *path) {
+    const format_row *format = find_format(path);
+    return format && (format->parse != lar_vtk_parse || holds_grid(path));
+}
+
+static lar_status read_unchecked(const char *path, double scale, lar_mesh *mesh, lar_error *error) {
     const format_row *format = find_format(path);
     if (!format) return fail_extension(path, error);
     if (!isfinite(scale) || !(scale > 0))
@@ -124,18 +141,35 @@ lar_status lar_mesh_read(const char *path, double scale, lar_mesh *mesh, lar_err
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
 
-    lar_mesh read = {0};
     if (!format->looks_right(&bytes))
         status = fail_content(path, format, &bytes, error);
     else
-        status = format->parse(path, &bytes, &read, error);
+        status = format->parse(path, &bytes, mesh, error);
     lar_bytes_free(&bytes);
-    for (int32_t n = 0; n < read.node_count && !status; n++)
-        for (int i = 0; i < 3; i++) read.position[n][i] *= scale;
-    if (!status) status = lar_mesh_check(&read, error);
-    if (status)
-        lar_mesh_clear(&read);
-    else
-        *mesh = read;
+    for (int32_t n = 0; n < mesh->node_count && !status; n++)
+        for (int i = 0; i < 3; i++) mesh->position[n][i] *= scale;
     return status;
+}
+
+static lar_status take(lar_mesh *read, lar_status status, lar_mesh *mesh) {
+    if (status)
+        lar_mesh_clear(read);
+    else
+        *mesh = *read;
+    return status;
+}
+
+lar_status lar_mesh_read(const char *path, double scale, lar_mesh *mesh, lar_error *error) {
+    lar_mesh read = {0};
+    lar_status status = read_unchecked(path, scale, &read, error);
+    if (!status) lar_mesh_turn(&read);
+    if (!status) status = lar_mesh_check(&read, error);
+    return take(&read, status, mesh);
+}
+
+lar_status lar_mesh_read_solids(const char *path, double scale, lar_mesh *mesh, lar_error *error) {
+    lar_mesh read = {0};
+    lar_status status = read_unchecked(path, scale, &read, error);
+    if (!status) status = lar_mesh_check_solids(&read, error);
+    return take(&read, status, mesh);
 }

@@ -1,8 +1,9 @@
 /* Mesh files in and out.
  *
  * One row per format: extension, a check of the first bytes, the reader. A reader gets the whole
- * file in memory (bounded by its real size), never trusts a count before lar_claim_fits, and
- * refuses cells that are not eight-node hexahedra with a sentence that says what to do. It fills
+ * file in memory (bounded by its real size) and never trusts a count before lar_claim_fits.
+ * Tetrahedra, prisms and pyramids it takes as collapsed hexahedra (lar_mesh), other cells it
+ * refuses with a sentence that says what to do. It fills
  * a zeroed lar_mesh; on failure the caller clears it.
  */
 #ifndef LAR_MODEL_MESH_IO_H
@@ -10,9 +11,17 @@
 
 #include "model/mesh.h"
 
-/* Reads a mesh by the extension of `path` (.vtu .vtk .msh .inp .feb), checks it with
- * lar_mesh_check. Positions as in the file (no unit is known there); `scale` multiplies them. */
+/* Reads a mesh by the extension of `path` (.vtu .vtk .msh .inp .feb), turns it where it is
+ * left-handed throughout, checks it with lar_mesh_check. Positions as in the file (no unit is known
+ * there); `scale` multiplies them. */
 lar_status lar_mesh_read(const char *path, double scale, lar_mesh *mesh, lar_error *error);
+
+/* The same for a mesh of any solids, whose faces are wanted: lar_mesh_check_solids. */
+lar_status lar_mesh_read_solids(const char *path, double scale, lar_mesh *mesh, lar_error *error);
+
+/* True when the path's extension is one of a mesh; a .vtk, which may be a surface as well, must
+ * hold an unstructured grid. */
+bool lar_mesh_named(const char *path);
 
 /* The readers, also entry points for fuzzing. `path` is for messages only. */
 lar_status lar_vtu_parse(const char *path, const lar_bytes *bytes, lar_mesh *mesh,

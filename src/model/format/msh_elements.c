@@ -1,4 +1,5 @@
-/* The elements of a Gmsh file: hexahedra to compute with; faces, lines and points for sets. */
+/* The elements of a Gmsh file: hexahedra to compute with, other solids whose boundary is meshed;
+ * faces, lines and points for sets. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,51 +8,52 @@
 typedef struct cell_type {
     int number, dimension, nodes;
     const char *name;
+    int corners; /* of a solid that is taken as a collapsed hexahedron, which come first */
 } cell_type;
 
 /* Gmsh reference manual, "MSH file format", element types. */
 static const cell_type cell_types[] = {
-    {1, 1, 2, "two-node line"},
-    {2, 2, 3, "three-node triangle"},
-    {3, 2, 4, "four-node quadrilateral"},
-    {4, 3, 4, "four-node tetrahedron"},
-    {5, 3, 8, "eight-node hexahedron"},
-    {6, 3, 6, "six-node prism"},
-    {7, 3, 5, "five-node pyramid"},
-    {8, 1, 3, "three-node line"},
-    {9, 2, 6, "six-node triangle"},
-    {10, 2, 9, "nine-node quadrilateral"},
-    {11, 3, 10, "ten-node tetrahedron"},
-    {12, 3, 27, "27-node hexahedron"},
-    {13, 3, 18, "18-node prism"},
-    {14, 3, 14, "14-node pyramid"},
-    {15, 0, 1, "point"},
-    {16, 2, 8, "eight-node quadrilateral"},
-    {17, 3, 20, "20-node hexahedron"},
-    {18, 3, 15, "15-node prism"},
-    {19, 3, 13, "13-node pyramid"},
-    {20, 2, 9, "nine-node triangle"},
-    {21, 2, 10, "ten-node triangle"},
-    {22, 2, 12, "twelve-node triangle"},
-    {23, 2, 15, "15-node triangle"},
-    {24, 2, 15, "15-node triangle"},
-    {25, 2, 21, "21-node triangle"},
-    {26, 1, 4, "four-node line"},
-    {27, 1, 5, "five-node line"},
-    {28, 1, 6, "six-node line"},
-    {29, 3, 20, "20-node tetrahedron"},
-    {30, 3, 35, "35-node tetrahedron"},
-    {31, 3, 56, "56-node tetrahedron"},
-    {36, 2, 16, "16-node quadrilateral"},
-    {37, 2, 25, "25-node quadrilateral"},
-    {90, 3, 40, "40-node prism"},
-    {91, 3, 75, "75-node prism"},
-    {92, 3, 64, "64-node hexahedron"},
-    {93, 3, 125, "125-node hexahedron"},
+    {1, 1, 2, "two-node line", 0},
+    {2, 2, 3, "three-node triangle", 0},
+    {3, 2, 4, "four-node quadrilateral", 0},
+    {4, 3, 4, "four-node tetrahedron", 4},
+    {5, 3, 8, "eight-node hexahedron", 0},
+    {6, 3, 6, "six-node prism", 6},
+    {7, 3, 5, "five-node pyramid", 5},
+    {8, 1, 3, "three-node line", 0},
+    {9, 2, 6, "six-node triangle", 0},
+    {10, 2, 9, "nine-node quadrilateral", 0},
+    {11, 3, 10, "ten-node tetrahedron", 4},
+    {12, 3, 27, "27-node hexahedron", 0},
+    {13, 3, 18, "18-node prism", 6},
+    {14, 3, 14, "14-node pyramid", 5},
+    {15, 0, 1, "point", 0},
+    {16, 2, 8, "eight-node quadrilateral", 0},
+    {17, 3, 20, "20-node hexahedron", 0},
+    {18, 3, 15, "15-node prism", 6},
+    {19, 3, 13, "13-node pyramid", 5},
+    {20, 2, 9, "nine-node triangle", 0},
+    {21, 2, 10, "ten-node triangle", 0},
+    {22, 2, 12, "twelve-node triangle", 0},
+    {23, 2, 15, "15-node triangle", 0},
+    {24, 2, 15, "15-node triangle", 0},
+    {25, 2, 21, "21-node triangle", 0},
+    {26, 1, 4, "four-node line", 0},
+    {27, 1, 5, "five-node line", 0},
+    {28, 1, 6, "six-node line", 0},
+    {29, 3, 20, "20-node tetrahedron", 4},
+    {30, 3, 35, "35-node tetrahedron", 4},
+    {31, 3, 56, "56-node tetrahedron", 4},
+    {36, 2, 16, "16-node quadrilateral", 0},
+    {37, 2, 25, "25-node quadrilateral", 0},
+    {90, 3, 40, "40-node prism", 6},
+    {91, 3, 75, "75-node prism", 6},
+    {92, 3, 64, "64-node hexahedron", 0},
+    {93, 3, 125, "125-node hexahedron", 0},
 };
 enum { QUADRILATERAL = 3, HEXAHEDRON = 5 };
-/* Of the cells that are not refused at once, i.e. up to two dimensions. */
-enum { MOST_NODES = 25 };
+/* Of the cells that are not refused at once. */
+enum { MOST_NODES = 75 };
 
 /* One cell with the groups it belongs to. */
 typedef struct cell {
@@ -63,17 +65,16 @@ typedef struct cell {
     int line;
 } cell;
 
-/* Refuses what is unknown and every volume cell but the hexahedron. */
+/* Refuses what is unknown, and hexahedra of second and higher order. */
 static lar_status find_type(msh_reader *reader, int64_t number, int64_t id,
                             const cell_type **type) {
     for (size_t i = 0; i < sizeof cell_types / sizeof *cell_types; i++) {
         if (cell_types[i].number != number) continue;
         *type = &cell_types[i];
-        if ((*type)->dimension < 3 || number == HEXAHEDRON) return LAR_OK;
+        if ((*type)->dimension < 3 || (*type)->corners || number == HEXAHEDRON) return LAR_OK;
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
                         "%s: element %lld is a %s, but Lariat computes with eight-node "
-                        "hexahedra; mesh the volume with hexahedra (Gmsh: transfinite and "
-                        "recombine)",
+                        "hexahedra; save the mesh with elements of first order",
                         msh_here(reader).text, (long long)id, (*type)->name);
     }
     return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
@@ -116,27 +117,32 @@ static lar_status add_face_to_set(msh_reader *reader, const cell *c, const char 
     return lar_mesh_builder_set_quad(reader->builder, c->node, c->line, reader->error);
 }
 
-static lar_status add_hexahedron(msh_reader *reader, const cell *c) {
-    size_t size = 8 * sizeof *c->node;
-    bool again =
-        reader->has_last && reader->version < 4 && memcmp(reader->last_nodes, c->node, size) == 0;
+static lar_status add_solid(msh_reader *reader, const cell *c) {
+    const int corners = c->type->corners ? c->type->corners : 8;
+    int64_t node[8] = {0};
+    memcpy(node, c->node, (size_t)corners * sizeof *node);
+    bool again = reader->has_last && reader->version < 4 &&
+                 memcmp(reader->last_nodes, node, sizeof node) == 0;
     if (again) return LAR_OK;
     reader->has_last = true;
     reader->last_id = c->id;
-    memcpy(reader->last_nodes, c->node, size);
+    memcpy(reader->last_nodes, node, sizeof node);
     int64_t tag = c->group_count > 0 ? c->group[0] : 0;
     if (tag < INT32_MIN || tag > INT32_MAX)
         return lar_fail(reader->error, LAR_ERROR_FORMAT,
                         "%s: element %lld has the physical group %lld, which is too large; the "
                         "file is damaged",
                         msh_here(reader).text, (long long)c->id, (long long)tag);
+    if (corners < 8)
+        return lar_mesh_builder_solid(reader->builder, c->id, (int32_t)tag, c->type->name, corners,
+                                      c->node, c->line, reader->error);
     return lar_mesh_builder_hexahedron(reader->builder, c->id, (int32_t)tag, c->node, c->line,
                                        reader->error);
 }
 
 static lar_status add_cell(msh_reader *reader, const cell *c) {
     bool volume = c->type->dimension == 3;
-    lar_status status = volume ? add_hexahedron(reader, c) : LAR_OK;
+    lar_status status = volume ? add_solid(reader, c) : LAR_OK;
     for (size_t g = 0; g < c->group_count && !status; g++) {
         const char *name = msh_group_name(reader, c->type->dimension, c->group[g]);
         if (!name) continue;
@@ -155,6 +161,7 @@ static lar_status add_cell(msh_reader *reader, const cell *c) {
 
 lar_status msh_check_faces(msh_reader *reader) {
     if (!reader->has_odd_face || !reader->has_last) return LAR_OK;
+    if (lar_mesh_builder_has_solids(reader->builder)) return LAR_OK;
     char line[16] = "";
     if (reader->odd_face_line > 0) snprintf(line, sizeof line, ":%d", reader->odd_face_line);
     return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,

@@ -51,7 +51,7 @@ typedef struct msh_reader {
      * a small file could ask for any amount. */
     size_t entries_left;
 
-    /* The hexahedron read last, because version 2 repeats an element for each of its groups. */
+    /* The solid read last, because version 2 repeats an element for each of its groups. */
     bool has_last;
     int64_t last_id, last_nodes[8];
 

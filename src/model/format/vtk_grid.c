@@ -17,59 +17,62 @@ static const char *const tag_names[] = {"tag",           "material",      "regio
                                         "CellEntityIds", "gmsh:physical", "PhysicalGroup", "part"};
 enum { TAG_NAME_COUNT = sizeof tag_names / sizeof *tag_names };
 
-enum { HEXAHEDRON = 12, VOXEL = 11, FACES = 6 };
+enum { VOXEL = 11, LAGRANGE_TETRAHEDRON = 71, FACES = 6 };
 
-/* What a cell type is called, and its dimension. Types not listed are solids for our purpose:
- * refused, with their number. */
-static const struct {
+/* What a cell type is called, its dimension, and of solids how many corners they have, which come
+ * first, and how many points at least. Types not listed are solids for our purpose: refused, with
+ * their number, as those without corners are. */
+typedef struct cell_kind {
     int type, dimension;
     const char *name;
-} cell_kinds[] = {
-    {0, 0, "empty cell"},
-    {1, 0, "vertex"},
-    {2, 0, "poly-vertex"},
-    {3, 1, "line"},
-    {4, 1, "poly-line"},
-    {5, 2, "triangle"},
-    {6, 2, "triangle strip"},
-    {7, 2, "polygon"},
-    {8, 2, "pixel"},
-    {9, 2, "quad"},
-    {21, 1, "quadratic edge"},
-    {22, 2, "quadratic triangle"},
-    {23, 2, "quadratic quad"},
-    {28, 2, "biquadratic quad"},
-    {30, 2, "quadratic linear quad"},
-    {34, 2, "biquadratic triangle"},
-    {35, 1, "cubic line"},
-    {36, 2, "quadratic polygon"},
-    {10, 3, "tetrahedron"},
-    {13, 3, "wedge"},
-    {14, 3, "pyramid"},
-    {15, 3, "pentagonal prism"},
-    {16, 3, "hexagonal prism"},
-    {24, 3, "quadratic tetrahedron"},
-    {25, 3, "20-node hexahedron"},
-    {26, 3, "quadratic wedge"},
-    {27, 3, "quadratic pyramid"},
-    {29, 3, "27-node hexahedron"},
-    {33, 3, "24-node hexahedron"},
-    {42, 3, "polyhedron"},
-    {68, 1, "Lagrange curve"},
-    {69, 2, "Lagrange triangle"},
-    {70, 2, "Lagrange quad"},
-    {71, 3, "Lagrange tetrahedron"},
-    {72, 3, "Lagrange hexahedron"},
+    int corners, points;
+} cell_kind;
+
+static const cell_kind cell_kinds[] = {
+    {0, 0, "empty cell", 0, 0},
+    {1, 0, "vertex", 0, 0},
+    {2, 0, "poly-vertex", 0, 0},
+    {3, 1, "line", 0, 0},
+    {4, 1, "poly-line", 0, 0},
+    {5, 2, "triangle", 0, 0},
+    {6, 2, "triangle strip", 0, 0},
+    {7, 2, "polygon", 0, 0},
+    {8, 2, "pixel", 0, 0},
+    {9, 2, "quad", 0, 0},
+    {21, 1, "quadratic edge", 0, 0},
+    {22, 2, "quadratic triangle", 0, 0},
+    {23, 2, "quadratic quad", 0, 0},
+    {28, 2, "biquadratic quad", 0, 0},
+    {30, 2, "quadratic linear quad", 0, 0},
+    {34, 2, "biquadratic triangle", 0, 0},
+    {35, 1, "cubic line", 0, 0},
+    {36, 2, "quadratic polygon", 0, 0},
+    {12, 3, "hexahedron", 8, 8},
+    {11, 3, "voxel", 8, 8},
+    {10, 3, "tetrahedron", 4, 4},
+    {13, 3, "wedge", 6, 6},
+    {14, 3, "pyramid", 5, 5},
+    {15, 3, "pentagonal prism", 0, 0},
+    {16, 3, "hexagonal prism", 0, 0},
+    {24, 3, "quadratic tetrahedron", 4, 10},
+    {25, 3, "20-node hexahedron", 0, 0},
+    {26, 3, "quadratic wedge", 6, 15},
+    {27, 3, "quadratic pyramid", 5, 13},
+    {29, 3, "27-node hexahedron", 0, 0},
+    {33, 3, "24-node hexahedron", 0, 0},
+    {42, 3, "polyhedron", 0, 0},
+    {68, 1, "Lagrange curve", 0, 0},
+    {69, 2, "Lagrange triangle", 0, 0},
+    {70, 2, "Lagrange quad", 0, 0},
+    {71, 3, "Lagrange tetrahedron", 4, 4},
+    {72, 3, "Lagrange hexahedron", 0, 0},
 };
 
-static int cell_dimension(int64_t type, const char **name) {
+static const cell_kind *kind_of(int64_t type) {
+    static const cell_kind UNKNOWN = {-1, 3, "cell of an unknown kind", 0, 0};
     for (size_t i = 0; i < sizeof cell_kinds / sizeof *cell_kinds; i++)
-        if (cell_kinds[i].type == type) {
-            *name = cell_kinds[i].name;
-            return cell_kinds[i].dimension;
-        }
-    *name = "cell of an unknown kind";
-    return 3;
+        if (cell_kinds[i].type == type) return &cell_kinds[i];
+    return &UNKNOWN;
 }
 
 void lar_vtk_cells_clear(lar_vtk_cells *cells) {
@@ -178,20 +181,18 @@ char *lar_vtk_decode_name(const char *name, size_t length) {
 }
 
 static lar_status refuse_cell(const char *path, int64_t cell, int64_t type, lar_error *error) {
-    const char *name;
-    cell_dimension(type, &name);
     const char *remedy = type == 25 || type == 29 || type == 33 || type == 72
                              ? "save the mesh with first-order (eight-node) elements"
                              : "mesh the body with hexahedra, or remove these cells";
     return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                     "%s: cell %" PRId64 " is a %s (VTK cell type %" PRId64
                     "); Lariat computes with eight-node hexahedra; %s",
-                    path, cell, name, type, remedy);
+                    path, cell, kind_of(type)->name, type, remedy);
 }
 
-/* Checks the cells one by one and counts the hexahedra. */
-static lar_status count_hexahedra(const char *path, const lar_vtk_grid *grid, int32_t *count,
-                                  lar_error *error) {
+/* Checks the cells one by one and counts the solids. */
+static lar_status count_solids(const char *path, const lar_vtk_grid *grid, int32_t *count,
+                               lar_error *error) {
     int64_t start = 0;
     *count = 0;
     for (int64_t cell = 0; cell < grid->cell_count; cell++) {
@@ -202,15 +203,16 @@ static lar_status count_hexahedra(const char *path, const lar_vtk_grid *grid, in
                             ", but offsets must ascend from %" PRId64 " to at most %" PRId64
                             ", the length of the connectivity; write the file again",
                             path, cell, end, start, grid->corner_count);
-        const char *name;
-        if (type == HEXAHEDRON || type == VOXEL) {
-            if (end - start != 8)
+        const cell_kind *kind = kind_of(type);
+        if (kind->corners > 0) {
+            bool exact = kind->points == kind->corners && type != LAGRANGE_TETRAHEDRON;
+            if (end - start < kind->points || (exact && end - start > kind->points))
                 return lar_fail(error, LAR_ERROR_FORMAT,
-                                "%s: hexahedron %" PRId64 " has %" PRId64
-                                " corners instead of 8; write the file again",
-                                path, cell, end - start);
+                                "%s: %s %" PRId64 " has %" PRId64
+                                " corners instead of %d; write the file again",
+                                path, kind->name, cell, end - start, kind->points);
             ++*count;
-        } else if (cell_dimension(type, &name) == 3) {
+        } else if (kind->dimension == 3) {
             return refuse_cell(path, cell, type, error);
         }
         start = end;
@@ -226,15 +228,23 @@ static lar_status count_hexahedra(const char *path, const lar_vtk_grid *grid, in
 /* Elements with the file's point indices; element_of[cell] is the element or -1. */
 static lar_status fill_elements(const char *path, const lar_vtk_grid *grid, lar_mesh *mesh,
                                 int32_t *element_of, lar_error *error) {
-    static const int voxel_order[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+    static const uint8_t voxel_order[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+    static const uint8_t own_order[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     int32_t e = 0;
     int64_t start = 0;
     for (int64_t cell = 0; cell < grid->cell_count; start = grid->cell_end[cell++]) {
-        int64_t type = grid->cell_type[cell];
+        const cell_kind *kind = kind_of(grid->cell_type[cell]);
         element_of[cell] = -1;
-        if (type != HEXAHEDRON && type != VOXEL) continue;
+        if (kind->corners == 0) continue;
+        const uint8_t *order = kind->type == VOXEL  ? voxel_order
+                               : kind->corners == 8 ? own_order
+                                                    : lar_solid_corners(kind->corners);
+        if (kind->corners < 8 && mesh->collapsed_count++ == 0) {
+            mesh->collapsed_name = kind->name;
+            mesh->collapsed_id = cell;
+        }
         for (int a = 0; a < 8; a++) {
-            int64_t point = grid->corner[start + (type == VOXEL ? voxel_order[a] : a)];
+            int64_t point = grid->corner[start + order[a]];
             if (point < 0 || point >= grid->point_count)
                 return lar_fail(error, LAR_ERROR_FORMAT,
                                 "%s: cell %" PRId64 " names point %" PRId64
@@ -397,12 +407,12 @@ static lar_status check_counts(const char *path, const lar_vtk_grid *grid, lar_e
 
 lar_status lar_vtk_grid_to_mesh(const char *path, lar_vtk_grid *grid, lar_mesh *mesh,
                                 lar_error *error) {
-    int32_t hexahedra = 0;
+    int32_t solids = 0;
     lar_status status = check_counts(path, grid, error);
-    if (!status) status = count_hexahedra(path, grid, &hexahedra, error);
+    if (!status) status = count_solids(path, grid, &solids, error);
     if (status) return status;
 
-    size_t elements = (size_t)hexahedra, points = (size_t)grid->point_count;
+    size_t elements = (size_t)solids, points = (size_t)grid->point_count;
     int32_t *node_of = lar_calloc(points, sizeof *node_of);
     int32_t *element_of = lar_calloc((size_t)grid->cell_count, sizeof *element_of);
     mesh->source = lar_strdup(path);
@@ -410,7 +420,7 @@ lar_status lar_vtk_grid_to_mesh(const char *path, lar_vtk_grid *grid, lar_mesh *
     mesh->element = lar_calloc(elements, sizeof *mesh->element);
     mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
     mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
-    mesh->element_count = hexahedra;
+    mesh->element_count = solids;
     if (!node_of || !element_of || !mesh->source || !mesh->node_id || !mesh->element ||
         !mesh->element_id || !mesh->element_tag)
         status = lar_fail_memory(error, elements * sizeof *mesh->element, path);

@@ -7,11 +7,11 @@
  * The readers only bring numbers into memory, in the file's own order. What the cells mean is
  * decided here, once for both formats:
  *   - VTK_HEXAHEDRON (12) and VTK_VOXEL (11, its corners put into hexahedron order) become
- *     elements; points, lines and surface cells beside them are passed over; any other solid cell
- *     is refused by name;
+ *     elements, tetrahedra, wedges and pyramids of any order collapsed ones (lar_mesh); points,
+ *     lines and surface cells beside them are passed over; any other solid cell is refused by name;
  *   - ids are the 0-based indices in the file, as ParaView shows them (cells that are passed over
  *     count too);
- *   - points that no hexahedron uses are dropped, so that every node has mass;
+ *   - points that no element uses are dropped, so that every node has mass;
  *   - the first of the well-known integer cell arrays (lar_vtk_wants) is the element tag;
  *   - named sets: field arrays "set:nodes:NAME", "set:elements:NAME" and "set:faces:NAME" hold
  *     0-based point indices, cell indices and cell * 6 + face (lar_mesh's face order); integer

@@ -188,6 +188,7 @@ static lar_status describe_array(const lar_vtk_xml *file, const xmlNode *node,
                         "%s:%d: the offset of array \"%s\" does not lie in the %zu bytes of "
                         "appended data; the file is damaged or cut short, write it again",
                         file->path, array->line, array->name, file->split.appended.length);
+    array->appended = true;
     if (file->appended_raw) array->encoding = LAR_VTU_RAW;
     const lar_span *appended = &file->split.appended;
     array->payload = appended->at

@@ -9,7 +9,7 @@
 
 #include "model/format/vtk_scalar.h"
 
-enum { BLOCK = 32768, LEVEL = 1 };
+enum { BLOCK = 32768, LEVEL = 1, LEVEL_SMALL = 6 };
 
 /* ---- a file that appears whole --------------------------------------------------------- */
 
@@ -129,7 +129,7 @@ static lar_status pack_array(lar_vtk_writer *w, lar_vtk_out_array *array) {
         status = reserve_packed(w, packed);
         if (status) break;
         if (compress2(w->packed + w->packed_size, &packed, (const Bytef *)array->data + from, size,
-                      LEVEL) != Z_OK)
+                      w->small ? LEVEL_SMALL : LEVEL) != Z_OK)
             return lar_fail_memory(w->error, packed, w->out.path);
         uint64_t word = packed;
         memcpy(w->packed + array->offset + (3 + i) * sizeof word, &word, sizeof word);

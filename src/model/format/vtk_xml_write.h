@@ -63,6 +63,7 @@ typedef struct lar_vtk_writer {
     lar_vtk_out_array *array;
     unsigned char *packed;
     size_t packed_size, packed_capacity;
+    bool small; /* compressed more, which takes longer */
 } lar_vtk_writer;
 
 lar_status lar_vtk_writer_open(lar_vtk_writer *writer, const char *path, lar_error *error);

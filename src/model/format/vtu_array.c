@@ -131,7 +131,8 @@ static bool inflate_block(byte_source *source, size_t packed, unsigned char *scr
         source->at += packed;
     }
     uLongf got = size;
-    return uncompress(out, &got, from, packed) == Z_OK && got == size;
+    uLong used = packed;
+    return uncompress2(out, &got, from, &used) == Z_OK && got == size && used == packed;
 }
 
 /* The compressed sizes, each checked against the bytes there. False when they cannot be. */
@@ -146,6 +147,13 @@ static bool read_packed_sizes(const lar_vtu_array_text *array, byte_source *sour
         if (packed[i] > *largest) *largest = packed[i];
     }
     return *sum <= source_most(source);
+}
+
+/* An array that has its text for itself must end with it. */
+static bool more_follows(const lar_vtu_array_text *array, const byte_source *source) {
+    if (array->appended) return false;
+    lar_text rest = {(const char *)source->at, (const char *)source->end, 1};
+    return source->pending_count > 0 || lar_text_skip_space(&rest);
 }
 
 /* Inflates all blocks into `size` bytes, allocated once the claim is plausible. */
@@ -178,6 +186,8 @@ static lar_status unpack(const lar_vtu_array_text *array, size_t size, unsigned 
             status = damaged(array, "cannot be decompressed", error);
         filled += want;
     }
+    if (!status && more_follows(array, &source))
+        status = damaged(array, "are more than the file's counts ask for", error);
     free(scratch);
     free(packed);
     if (status) {
@@ -199,9 +209,13 @@ static lar_status copy_plain(const lar_vtu_array_text *array, size_t size, unsig
     if (size > source_most(&source)) return damaged(array, "end too early", error);
     unsigned char *data = malloc(size + 1);
     if (!data) return lar_fail_memory(error, size, array->name);
-    if (!source_read(&source, data, size)) {
+    bool read = source_read(&source, data, size);
+    if (!read || more_follows(array, &source)) {
         free(data);
-        return damaged(array, "are no base64 text of that size", error);
+        return damaged(array,
+                       read ? "are more than the file's counts ask for"
+                            : "are no base64 text of that size",
+                       error);
     }
     *out = data;
     return LAR_OK;

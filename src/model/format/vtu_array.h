@@ -27,7 +27,8 @@ typedef struct lar_vtu_array_text {
     lar_vtk_scalar type;
     enum { LAR_VTU_ASCII, LAR_VTU_BASE64, LAR_VTU_RAW } encoding;
     bool compressed, header64, swap;
-    lar_span payload; /* may be followed by other bytes, except for ascii */
+    lar_span payload; /* where appended, other arrays' bytes may follow */
+    bool appended;
 } lar_vtu_array_text;
 
 /* Reads exactly `count` values as doubles; the caller frees *out. */

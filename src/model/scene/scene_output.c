@@ -108,7 +108,7 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
 }
 
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {
-    static const char *const keys[] = {"every", "fields", "probes", NULL};
+    static const char *const keys[] = {"every", "fields", "probes", "surface", NULL};
     lar_output *output = &scene->model->output;
     lar_status status = lar_scene_keys(scene, node, "output", keys);
     const lar_yaml *every = lar_yaml_get(node, "every"), *fields = lar_yaml_get(node, "fields");
@@ -116,6 +116,14 @@ lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {
     if (!status && every)
         status = lar_scene_not_negative(scene, every, LAR_IN_SECONDS, &output->every);
     if (!status && fields) status = read_fields(scene, fields);
+    const lar_yaml *surface = lar_yaml_get(node, "surface");
+    if (!status && surface) {
+        output->surface = lar_scene_is_word(surface, "true");
+        if (!output->surface && !lar_scene_is_word(surface, "false"))
+            status = lar_scene_fail(scene, surface, LAR_ERROR_FORMAT,
+                                    "surface: expected true or false: whether frames hold the fine "
+                                    "surface, too");
+    }
     if (!status && probes) status = lar_scene_list(scene, probes, "probes, {node: 12}");
     for (const lar_yaml *entry = probes ? probes->first : NULL; !status && entry;
          entry = entry->next)
