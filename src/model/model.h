@@ -124,6 +124,7 @@ struct lar_model {
     double time_step; /* seconds, 0: automatic */
     double view[3];   /* where viewers look from at first, a unit vector; 0 0 0: they choose */
     double duration;  /* seconds that the description lasts, 0: open */
+    bool until_rest;  /* a run goes on until the body is at rest, see model/rest.h */
 
     int fix_count, move_count, load_count, pressure_count, initial_count;
     lar_fix *fix;
