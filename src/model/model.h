@@ -179,10 +179,17 @@ lar_status lar_model_check(lar_model *model, lar_error *error);
 /* The readers of whole models; lar_model_open chooses by extension. */
 lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error);
 lar_status lar_feb_read(const char *path, lar_model **model, lar_error *error);
+/* Abaqus and CalculiX. */
+lar_status lar_inp_read(const char *path, lar_model **model, lar_error *error);
 /* From memory, for tests and fuzzing. `path` is for messages and relative files. */
 lar_status lar_scene_parse(const char *path, const lar_bytes *bytes, lar_model **model,
                            lar_error *error);
 lar_status lar_feb_parse(const char *path, const lar_bytes *bytes, lar_model **model,
                          lar_error *error);
+lar_status lar_inp_deck_parse(const char *path, const lar_bytes *bytes, lar_model **model,
+                              lar_error *error);
+/* Whether such a file says more than a mesh: materials, supports, loads, a step. A *SOLID SECTION
+ * whose material is not in the file says nothing. */
+bool lar_inp_is_deck(const lar_bytes *bytes);
 
 #endif
