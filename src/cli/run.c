@@ -379,7 +379,7 @@ const cli_command cli_run = {
     .summary = "simulate a scene",
     .arguments = "SCENE",
     .description =
-        "Simulates a scene (.yaml), a FEBio deck (.feb) or a bare mesh, and ends with a summary.\n"
+        "Simulates a scene (.yaml), a deck (.feb .inp) or a bare mesh, and ends with a summary.\n"
         "With --out the folder can be opened in ParaView while the run goes on. Ctrl-C ends a run\n"
         "with what there is (exit status 130); an unstable run ends with a message and its last\n"
         "state (exit status 3), one that was to come to rest and does not with status 4.",

@@ -80,11 +80,11 @@ lar_status lar_model_open(const char *path, lar_model **model, lar_error *error)
             return reader[i].read(path, model, error);
     if (!*extension)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s: has no extension that says what it is; give a scene (.yaml), a FEBio "
-                        "deck (.feb) or a mesh (.vtu .vtk .msh .inp)",
+                        "%s: has no extension that says what it is; give a scene (.yaml), a deck "
+                        "(.feb .inp) or a mesh (.vtu .vtk .msh .inp)",
                         *path ? path : "\"\"");
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s: the extension \".%s\" is not known; give a scene (.yaml), a FEBio deck "
-                    "(.feb) or a mesh (.vtu .vtk .msh .inp)",
+                    "%s: the extension \".%s\" is not known; give a scene (.yaml), a deck "
+                    "(.feb .inp) or a mesh (.vtu .vtk .msh .inp)",
                     path, extension);
 }
