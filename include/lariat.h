@@ -67,8 +67,8 @@ LAR_API const char *lar_version(void);
 typedef struct lar_model lar_model;
 
 /* Reads a model: a scene (.yaml, docs/formats.md), a deck of FEBio (.feb) or of Abaqus and CalculiX
- * (.inp), or a bare mesh (.vtu .vtk .msh, and .inp without more), which gets a soft default material
- * and no supports. The caller destroys it. */
+ * (.inp), or a bare mesh (.vtu .vtk .msh, and .inp without more), which gets a soft default
+ * material and no supports. The caller destroys it. */
 LAR_API lar_status lar_model_open(const char *path, lar_model **model, lar_error *error);
 LAR_API void lar_model_destroy(lar_model *model);
 
