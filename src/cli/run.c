@@ -385,7 +385,6 @@ const cli_command cli_run = {
         "state (exit status 3), one that was to come to rest and does not with status 4.",
     .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
                 "  lariat run demo/uterus.yaml --time 2 --realtime\n"
-                "  lariat run demo/uterus.yaml --until-rest\n"
                 "  lariat run demo/uterus.yaml --steps 1000 --json\n"
                 "  lariat run demo/uterus.yaml --grid 2x1x1\n"
                 "  lariat run demo/uterus.yaml --grid 2x2x1 --threads 2 --scheme local --comm shm\n"
