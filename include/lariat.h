@@ -66,8 +66,9 @@ LAR_API const char *lar_version(void);
 
 typedef struct lar_model lar_model;
 
-/* Reads a model: a scene (.yaml, docs/formats.md), a FEBio deck (.feb), or a bare mesh (.vtu .vtk
- * .msh .inp), which gets a soft default material and no supports. The caller destroys it. */
+/* Reads a model: a scene (.yaml, docs/formats.md), a deck of FEBio (.feb) or of Abaqus and CalculiX
+ * (.inp), or a bare mesh (.vtu .vtk .msh, and .inp without more), which gets a soft default
+ * material and no supports. The caller destroys it. */
 LAR_API lar_status lar_model_open(const char *path, lar_model **model, lar_error *error);
 LAR_API void lar_model_destroy(lar_model *model);
 
@@ -514,6 +515,53 @@ LAR_API lar_status lar_results_close(lar_results *results, lar_error *error);
 LAR_API double lar_model_output_interval(const lar_model *model);
 /* Seconds that the model's own description lasts (its last ramp or table), at least 0. */
 LAR_API double lar_model_duration(const lar_model *model);
+
+/* ---- coming to rest ------------------------------------------------------------------------
+ *
+ * Static answers are states of rest. The measure is the kinetic energy over the strain energy, from
+ * the moment on at which loads and prescribed values are constant:
+ *
+ *     lar_rest rest;
+ *     lar_rest_begin(&rest, simulation);
+ *     while (!lar_rest_look(&rest, simulation) && rest.next <= rest.limit)
+ *         if (lar_simulation_advance(simulation, rest.next - lar_simulation_steps(simulation), &e))
+ *             ...
+ *
+ * The step in which rest is found is the same on every grid and instruction set. */
+
+/* Steps of the simulation, from `begin` to `end`, and what was seen there. */
+typedef struct lar_rest_window {
+    uint64_t begin, end;
+    double largest, sum; /* kinetic energy [J] */
+    int32_t looks;
+} lar_rest_window;
+
+typedef struct lar_rest {
+    uint64_t next;  /* the step at which to look next */
+    uint64_t limit; /* the step at which to give up: 1000 times the period of a slow shear wave
+                       after `since` */
+    int reached;    /* 1: the body is at rest */
+    int looked;     /* 1: `left` is known */
+    double since;   /* no load or prescribed value changes after that time [s] */
+    double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
+    double left;            /* largest kinetic energy lately and what damping will still take, as a
+                               share of the strain energy */
+    double share;           /* at rest `left` is at most that */
+    /* The rest is its own. */
+    uint64_t since_step, every;
+    double mean_before;
+    lar_rest_window window;
+} lar_rest;
+
+LAR_API void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation);
+/* Looks when simulation has come to `rest.next`, otherwise costs nothing; as long as some ten
+ * steps. Returns rest.reached. */
+LAR_API int lar_rest_look(lar_rest *rest, const lar_simulation *simulation);
+
+/* Damping in proportion to mass [1/s]. */
+LAR_API double lar_model_damping(const lar_model *model);
+/* 1: the model asks for a run until it is at rest (a static analysis, `duration: rest`). */
+LAR_API int lar_model_until_rest(const lar_model *model);
 
 /* ---- sessions: people and devices ----------------------------------------------------------
  *

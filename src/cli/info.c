@@ -61,7 +61,7 @@ const cli_command cli_info = {
     .summary = "what a scene or a mesh holds",
     .arguments = "FILE",
     .description =
-        "Reads a scene (.yaml), a FEBio deck (.feb) or a mesh (.vtu .vtk .msh .inp) and\n"
+        "Reads a scene (.yaml), a deck (.feb .inp) or a mesh (.vtu .vtk .msh .inp) and\n"
         "prints sizes, materials, sets, mesh quality, the time step and how fast it runs on\n"
         "one core of this machine. A bare mesh is taken to be in metres and gets a soft\n"
         "default material. What the file asks for and Lariat does not do is named on\n"

@@ -81,6 +81,7 @@ void info_report_json(const info_report *report) {
     json_number(&json, "time_step", info->time_step);
     if (report->timed) cli_write_speed(&json, &report->speed);
     json_number(&json, "duration", lar_model_duration(model));
+    json_boolean(&json, "until_rest", lar_model_until_rest(model));
     json_number(&json, "output_interval", lar_model_output_interval(model));
     json_open(&json, "materials", '[');
     lar_material_info material;
@@ -160,7 +161,9 @@ static void print_tools(const lar_model *model) {
 
 static void print_duration(const lar_model *model) {
     double duration = lar_model_duration(model), interval = lar_model_output_interval(model);
-    if (duration > 0)
+    if (lar_model_until_rest(model))
+        printf("%-17suntil it is at rest, ", "duration");
+    else if (duration > 0)
         printf("%-17s%g s, ", "duration", duration);
     else
         printf("%-17sopen, ", "duration");

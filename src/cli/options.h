@@ -69,7 +69,14 @@ typedef struct cli_command {
     int (*main)(int argc, char **argv); /* behind the command's name; returns the exit status */
 } cli_command;
 
-enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2, CLI_UNSTABLE = 3, CLI_INTERRUPTED = 130 };
+enum {
+    CLI_DONE = 0,
+    CLI_FAILED = 1,
+    CLI_USAGE = 2,
+    CLI_UNSTABLE = 3,
+    CLI_RESTLESS = 4,
+    CLI_INTERRUPTED = 130
+};
 
 /* Parses the arguments behind the command's name. Options go to their values; at most
  * `argument_count` others to arguments[] (NULL where fewer are given). Returns -1 to go on, or the

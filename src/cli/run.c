@@ -16,7 +16,7 @@ typedef struct run_settings {
     double time, time_step; /* 0: not given */
     int64_t steps;          /* 0: not given */
     int element, isa;       /* as lar_element_kind, lar_isa */
-    bool realtime, json, verify, surface;
+    bool realtime, json, verify, surface, until_rest;
     cli_parallel parallel;
     int argc; /* what the command was given */
     char **argv;
@@ -34,6 +34,8 @@ typedef struct run {
     lar_results *results; /* NULL without --out */
     lar_step_clock clock;
     uint64_t last_step; /* where the run ends */
+    bool follows;       /* the run goes on until it is at rest, at most to its last step */
+    lar_rest rest;      /* then */
     double interval;    /* between frames [s], 0: only the end */
     int64_t next_frame; /* number of the next one, in intervals */
     uint64_t framed;    /* the step of the latest frame, UINT64_MAX: none */
@@ -49,8 +51,15 @@ static void show_progress(run *r) {
     double elapsed = lar_step_clock_elapsed(&r->clock);
     if (elapsed < QUIET || elapsed < r->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
     double done = (double)lar_simulation_steps(r->simulation) / (double)r->last_step;
-    fprintf(stderr, "\r%5.1f %%  %.4g s simulated, %.0f s to go \033[K", 100 * done,
-            lar_simulation_time(r->simulation), ceil(elapsed * (1 - done) / done));
+    double time = lar_simulation_time(r->simulation);
+    if (r->follows && r->rest.looked)
+        fprintf(stderr, "\r%.4g s simulated, motion %.1e of the strain, at rest %.0e \033[K", time,
+                r->rest.left, r->rest.share);
+    else if (r->follows)
+        fprintf(stderr, "\r%.4g s simulated, until it is at rest \033[K", time);
+    else
+        fprintf(stderr, "\r%5.1f %%  %.4g s simulated, %.0f s to go \033[K", 100 * done, time,
+                ceil(elapsed * (1 - done) / done));
     fflush(stderr);
     r->progress_at = elapsed;
 }
@@ -89,13 +98,26 @@ static int add_frame(run *r) {
 }
 
 /* The step nearest to the next frame, at least one ahead; the end when there are no more. */
-static uint64_t next_stop(const run *r) {
+static uint64_t next_frame(const run *r) {
     uint64_t now = lar_simulation_steps(r->simulation);
     if (r->interval <= 0) return r->last_step;
     double step =
         round((double)r->next_frame * r->interval / lar_simulation_time_step(r->simulation));
     if (step >= (double)r->last_step) return r->last_step;
     return (uint64_t)step > now ? (uint64_t)step : now + 1;
+}
+
+/* What a run leaves for the next one: its state, beside the frames. */
+static int save_state(run *r) {
+    const char *slash = strrchr(r->settings.scene, '/');
+    const char *name = slash ? slash + 1 : r->settings.scene, *dot = strrchr(name, '.');
+    char path[4096];
+    lar_error error;
+    int length = snprintf(path, sizeof path, "%s/%.*s.checkpoint", r->settings.out,
+                          (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)), name);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return fail(r, CLI_FAILED, "the name of the folder for results is too long");
+    return lar_simulation_save(r->simulation, path, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 
 static run_report report_of(const run *r) {
@@ -106,6 +128,7 @@ static run_report report_of(const run *r) {
                         .parallel = &r->parallel,
                         .folder = r->settings.out,
                         .frames = r->frames,
+                        .rest = r->follows ? &r->rest : NULL,
                         .simulation = r->simulation,
                         .clock = &r->clock,
                         .elapsed = r->elapsed,
@@ -159,25 +182,53 @@ static int report_failure(run *r, const lar_error *error) {
     return status;
 }
 
-static int advance(run *r) {
+/* Up to the next frame or look, whichever comes first. */
+static int advance_stretch(run *r) {
     const lar_step_glance glance = {.every = 0.1, .look = look, .context = r};
+    uint64_t now = lar_simulation_steps(r->simulation), frame = next_frame(r), stop = frame;
+    lar_error error;
+    if (r->follows && r->rest.next < stop) stop = r->rest.next;
+    if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &cli_stop_asked,
+                               &error))
+        return report_failure(r, &error);
+    int status = CLI_DONE;
+    if (r->interval > 0 && lar_simulation_steps(r->simulation) == frame) {
+        status = add_frame(r);
+        r->next_frame++;
+    }
+    if (r->follows) lar_rest_look(&r->rest, r->simulation);
+    return status;
+}
+
+static int advance(run *r) {
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
     r->next_frame = 1;
     lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
-    while (!status && !cli_stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
-        uint64_t now = lar_simulation_steps(r->simulation), stop = next_stop(r);
-        lar_error error;
-        if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &cli_stop_asked,
-                                   &error))
-            return report_failure(r, &error);
-        if (r->interval > 0 && lar_simulation_steps(r->simulation) == stop) {
-            status = add_frame(r);
-            r->next_frame++;
-        }
-    }
+    while (!status && !cli_stop_asked && !(r->follows && r->rest.reached) &&
+           lar_simulation_steps(r->simulation) < r->last_step)
+        status = advance_stretch(r);
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     clear_progress(r);
-    return status ? status : add_frame(r);
+    if (!status) status = add_frame(r);
+    return !status && r->results ? save_state(r) : status;
+}
+
+/* A run that was to end at rest and did not has no answer, only a last state. */
+static int complain_restless(const run *r) {
+    double damping = lar_model_damping(r->model), time = lar_simulation_time(r->simulation);
+    char left[64] = "its motion could not be judged yet";
+    if (r->rest.looked && isinf(r->rest.left))
+        snprintf(left, sizeof left, "it moves, and nothing strains it");
+    else if (r->rest.looked)
+        snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", r->rest.left);
+    return cli_complain(&cli_run, CLI_RESTLESS,
+                        "%s: not at rest after %.4g s, the limit of this run: %s, and at rest that "
+                        "is below %.0e; %s",
+                        r->settings.scene, time, left, r->rest.share,
+                        damping > 0 ? "look whether something still falls or turns freely, or "
+                                      "give more time with --time"
+                                    : "without damping nothing takes the motion away, give the "
+                                      "scene a damping");
 }
 
 /* Where the run ends: the step nearest to its time, as for frames. */
@@ -185,7 +236,12 @@ static int choose_length(run *r) {
     const run_settings *settings = &r->settings;
     r->interval = lar_model_output_interval(r->model);
     r->last_step = (uint64_t)settings->steps;
-    if (settings->steps > 0) return CLI_DONE;
+    bool open = settings->steps == 0 && settings->time <= 0;
+    r->follows =
+        settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
+    if (r->follows) lar_rest_begin(&r->rest, r->simulation);
+    if (r->follows && open) r->last_step = r->rest.limit;
+    if (r->last_step > 0) return CLI_DONE;
     double time = settings->time;
     if (time <= 0) time = fmax(lar_model_duration(r->model), r->interval);
     if (time <= 0) time = 1;
@@ -239,7 +295,8 @@ static int compute(run *r) {
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status) status = report(r);
-    return !status && cli_stop_asked ? CLI_INTERRUPTED : status;
+    if (!status && cli_stop_asked) return CLI_INTERRUPTED;
+    return !status && r->follows && !r->rest.reached ? complain_restless(r) : status;
 }
 
 /* Processor zero hears Ctrl-C too, and ends the run for all. */
@@ -253,7 +310,7 @@ static int run_scene(const run_settings *settings) {
     run r = {.settings = *settings, .framed = UINT64_MAX};
     int status = prepare(&r);
     if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compute(&r);
-    bool failed = status && status != CLI_INTERRUPTED;
+    bool failed = status && status != CLI_INTERRUPTED && status != CLI_RESTLESS;
     lar_simulation_destroy(r.simulation);
     lar_model_destroy(r.model);
     if (failed && !r.failure) r.failure = LAR_ERROR_IO;
@@ -265,6 +322,10 @@ static int run_scene(const run_settings *settings) {
 static int check_settings(const run_settings *s) {
     if (s->time > 0 && s->steps > 0)
         return cli_complain(&cli_run, CLI_USAGE, "--time and --steps both say how long; give one");
+    if (s->verify && s->until_rest)
+        return cli_complain(&cli_run, CLI_USAGE,
+                            "--verify moves nothing, so nothing comes to rest; give one of "
+                            "--verify and --until-rest");
     if (s->verify && s->out)
         return cli_complain(&cli_run, CLI_USAGE,
                             "--verify moves nothing, there would be nothing to see in %s; leave "
@@ -281,6 +342,10 @@ static int run_main(int argc, char **argv) {
                  "output interval, 1 when it has none",
                  &s.time, 1e-12, 1e9),
         CLI_COUNT("--steps", "N", "the same in steps", &s.steps, 1, 1e15),
+        CLI_FLAG("--until-rest",
+                 "until loads are constant and the body at rest; --time\nand --steps then are the "
+                 "most; static decks and scenes\nwith duration: rest do so by themselves",
+                 &s.until_rest),
         CLI_REAL("--time-step", "S",
                  "seconds, instead of the scene's; above the stable\nstep an "
                  "error",
@@ -293,7 +358,9 @@ static int run_main(int argc, char **argv) {
                    "instruction set: auto (default), c, neon, avx2,\navx512; the "
                    "results are the same",
                    &s.isa, cli_isa_names),
-        CLI_TEXT("--out", "DIR", "write frames, .pvd, probes.csv and run.json there", &s.out),
+        CLI_TEXT("--out", "DIR",
+                 "write frames, .pvd, probes.csv, the last state\n(.checkpoint) and run.json there",
+                 &s.out),
         CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
         CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
         CLI_PARALLEL(s.parallel),
@@ -314,10 +381,10 @@ const cli_command cli_run = {
     .summary = "simulate a scene",
     .arguments = "SCENE",
     .description =
-        "Simulates a scene (.yaml), a FEBio deck (.feb) or a bare mesh, and ends with a summary.\n"
+        "Simulates a scene (.yaml), a deck (.feb .inp) or a bare mesh, and ends with a summary.\n"
         "With --out the folder can be opened in ParaView while the run goes on. Ctrl-C ends a run\n"
         "with what there is (exit status 130); an unstable run ends with a message and its last\n"
-        "state (exit status 3).",
+        "state (exit status 3), one that was to come to rest and does not with status 4.",
     .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
                 "  lariat run demo/uterus.yaml --time 2 --realtime\n"
                 "  lariat run demo/uterus.yaml --steps 1000 --json\n"

@@ -58,6 +58,23 @@ static void write_contact(json_writer *json, const lar_simulation *simulation) {
     json_close(json);
 }
 
+/* Only what is known. */
+static void write_rest(json_writer *json, const run_report *report) {
+    const lar_rest *rest = report->rest;
+    json_open(json, "rest", '{');
+    json_boolean(json, "followed", rest != NULL);
+    json_boolean(json, "reached", rest && rest->reached);
+    if (rest) {
+        double step = lar_simulation_time_step(report->simulation);
+        json_number(json, "since", rest->since);
+        json_number(json, "limit", step * (double)rest->limit);
+        if (rest->strain > 0)
+            json_number(json, "kinetic_over_strain", rest->kinetic / rest->strain);
+        if (rest->looked && isfinite(rest->left)) json_number(json, "left", rest->left);
+    }
+    json_close(json);
+}
+
 void run_report_json(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     int32_t most_parts;
@@ -87,6 +104,7 @@ void run_report_json(const run_report *report, FILE *out) {
     json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     write_contact(&json, simulation);
+    write_rest(&json, report);
     json_integer(&json, "divided_steps", (int64_t)divided);
     json_integer(&json, "most_parts", most_parts);
     json_text(&json, "state_hash", hash);
@@ -135,6 +153,18 @@ static void print_parts(const lar_simulation *simulation, FILE *out) {
                 (int)most);
 }
 
+static void print_rest(const run_report *report, FILE *out) {
+    const lar_rest *rest = report->rest;
+    if (!rest) return;
+    fprintf(out, "%-17s%s; loads constant from %.4g s", "rest", rest->reached ? "yes" : "NO",
+            rest->since);
+    if (rest->strain > 0)
+        fprintf(out, ", kinetic over strain energy %.2g", rest->kinetic / rest->strain);
+    if (rest->looked && isfinite(rest->left))
+        fprintf(out, ", motion to come %.2g (at rest: %.0e)", rest->left, rest->share);
+    fputc('\n', out);
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
@@ -144,6 +174,7 @@ static void print_body(const run_report *report, FILE *out) {
     fprintf(out, "; external %.4g\n", energy.external);
     print_contact(report->simulation, out);
     print_parts(report->simulation, out);
+    print_rest(report, out);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
 }
 
@@ -184,6 +215,6 @@ void run_report_table(const run_report *report, FILE *out) {
     else
         print_body(report, out);
     if (report->folder)
-        fprintf(out, "%-17s%s: %d frame%s, .pvd, probes.csv, run.json\n", "results", report->folder,
-                report->frames, report->frames == 1 ? "" : "s");
+        fprintf(out, "%-17s%s: %d frame%s, .pvd, probes.csv, .checkpoint, run.json\n", "results",
+                report->folder, report->frames, report->frames == 1 ? "" : "s");
 }

@@ -17,6 +17,7 @@ typedef struct run_report {
     const lar_parallel *parallel;
     const char *folder; /* of the results, NULL: none */
     int frames;
+    const lar_rest *rest; /* NULL: the run was not to end at rest */
     const lar_simulation *simulation;
     const lar_step_clock *clock;
     double elapsed; /* wall time from the first step to the last, frames included [s] */

@@ -157,6 +157,11 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
     }
 }
 
+double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double hourglass, energy = element_energy(domain, state, e, &hourglass);
+    return energy + hourglass;
+}
+
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]) {
     double corner[8][3], u[8][3];

@@ -10,6 +10,9 @@
  * of the state is used and left zero; no memory is asked for. */
 void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy);
 
+/* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
+double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
+
 /* Mean Cauchy stress of global element e [Pa]: xx yy zz xy yz zx. Returns the strain energy per
  * reference volume [J/m^3]. */
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,

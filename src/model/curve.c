@@ -48,6 +48,16 @@ double lar_curve_value(const lar_curve *curve, double time) {
     return curve->kind == LAR_CURVE_RAMP ? ramp_value(curve->over, time) : table_value(curve, time);
 }
 
+void lar_curve_hold_from(lar_curve *curve, double time) {
+    if (curve->kind != LAR_CURVE_TABLE || lar_curve_end(curve) <= time) return;
+    double value = table_value(curve, time);
+    int before = 0; /* points up to that time stay; one more begins what is held */
+    while (curve->point[before][0] <= time) before++;
+    curve->point[before][0] = time;
+    curve->point[before][1] = value;
+    curve->count = before + 1;
+}
+
 double lar_curve_end(const lar_curve *curve) {
     double end = 0.0;
     if (curve->kind == LAR_CURVE_RAMP)

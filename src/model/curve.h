@@ -32,4 +32,7 @@ double lar_curve_value(const lar_curve *curve, double time);
 /* Time after which the value no longer changes [s], at least 0. */
 double lar_curve_end(const lar_curve *curve);
 
+/* Keeps the value that a table has at `time` for ever after. */
+void lar_curve_hold_from(lar_curve *curve, double time);
+
 #endif

@@ -1,4 +1,5 @@
 #include "model/contact_check.h"
+#include "model/rest.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -103,12 +104,15 @@ double lar_model_output_interval(const lar_model *model) {
 
 double lar_model_duration(const lar_model *model) {
     if (model->duration > 0.0) return model->duration;
-    double end = 0.0;
-    for (int i = 0; i < model->curve_count; i++) {
-        double curve_end = lar_curve_end(&model->curve[i]);
-        if (curve_end > end) end = curve_end;
-    }
-    return end;
+    return lar_model_loads_end(model);
+}
+
+double lar_model_damping(const lar_model *model) {
+    return model->damping;
+}
+
+int lar_model_until_rest(const lar_model *model) {
+    return model->until_rest;
 }
 
 /* ---- the check -------------------------------------------------------------------------- */

@@ -125,6 +125,7 @@ struct lar_model {
     double time_step; /* seconds, 0: automatic */
     double view[3];   /* where viewers look from at first, a unit vector; 0 0 0: they choose */
     double duration;  /* seconds that the description lasts, 0: open */
+    bool until_rest;  /* a run goes on until the body is at rest, see model/rest.h */
 
     int fix_count, move_count, load_count, pressure_count, initial_count;
     lar_fix *fix;
@@ -179,10 +180,17 @@ lar_status lar_model_check(lar_model *model, lar_error *error);
 /* The readers of whole models; lar_model_open chooses by extension. */
 lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error);
 lar_status lar_feb_read(const char *path, lar_model **model, lar_error *error);
+/* Abaqus and CalculiX. */
+lar_status lar_inp_read(const char *path, lar_model **model, lar_error *error);
 /* From memory, for tests and fuzzing. `path` is for messages and relative files. */
 lar_status lar_scene_parse(const char *path, const lar_bytes *bytes, lar_model **model,
                            lar_error *error);
 lar_status lar_feb_parse(const char *path, const lar_bytes *bytes, lar_model **model,
                          lar_error *error);
+lar_status lar_inp_deck_parse(const char *path, const lar_bytes *bytes, lar_model **model,
+                              lar_error *error);
+/* Whether such a file says more than a mesh: materials, supports, loads, a step. A *SOLID SECTION
+ * whose material is not in the file says nothing. */
+bool lar_inp_is_deck(const lar_bytes *bytes);
 
 #endif

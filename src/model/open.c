@@ -51,6 +51,16 @@ static lar_status read_bare(const char *path, lar_model **model, lar_error *erro
     return status;
 }
 
+/* Mesh programs write .inp without anything else, and name materials that stand nowhere. */
+lar_status lar_inp_read(const char *path, lar_model **model, lar_error *error) {
+    lar_bytes bytes = {0};
+    lar_status status = lar_bytes_read(path, &bytes, error);
+    bool deck = !status && lar_inp_is_deck(&bytes);
+    if (deck) status = lar_inp_deck_parse(path, &bytes, model, error);
+    lar_bytes_free(&bytes);
+    return status || deck ? status : read_bare(path, model, error);
+}
+
 /* ---- by extension ------------------------------------------------------------------------- */
 
 lar_status lar_model_open(const char *path, lar_model **model, lar_error *error) {
@@ -59,7 +69,7 @@ lar_status lar_model_open(const char *path, lar_model **model, lar_error *error)
         lar_status (*read)(const char *path, lar_model **model, lar_error *error);
     } reader[] = {{"yaml", lar_scene_read}, {"yml", lar_scene_read}, {"feb", lar_feb_read},
                   {"vtu", read_bare},       {"vtk", read_bare},      {"msh", read_bare},
-                  {"inp", read_bare}};
+                  {"inp", lar_inp_read}};
     if (!path || !model)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_model_open needs a path and a place for the model; neither may be "
@@ -70,11 +80,11 @@ lar_status lar_model_open(const char *path, lar_model **model, lar_error *error)
             return reader[i].read(path, model, error);
     if (!*extension)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s: has no extension that says what it is; give a scene (.yaml), a FEBio "
-                        "deck (.feb) or a mesh (.vtu .vtk .msh .inp)",
+                        "%s: has no extension that says what it is; give a scene (.yaml), a deck "
+                        "(.feb .inp) or a mesh (.vtu .vtk .msh .inp)",
                         *path ? path : "\"\"");
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s: the extension \".%s\" is not known; give a scene (.yaml), a FEBio deck "
-                    "(.feb) or a mesh (.vtu .vtk .msh .inp)",
+                    "%s: the extension \".%s\" is not known; give a scene (.yaml), a deck "
+                    "(.feb .inp) or a mesh (.vtu .vtk .msh .inp)",
                     path, extension);
 }

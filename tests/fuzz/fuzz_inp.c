@@ -1,9 +1,11 @@
-/* Fuzz target: the reader of Abaqus and CalculiX input files (.inp). */
+/* Fuzz target: the readers of Abaqus and CalculiX files (.inp): the whole deck, and the mesh alone.
+ */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/format/mesh_io.h"
+#include "model/model.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -16,6 +18,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     lar_error error = {0};
     if (lar_inp_parse("fuzz.inp", &bytes, &mesh, &error) == LAR_OK) lar_mesh_check(&mesh, &error);
     lar_mesh_clear(&mesh);
+    lar_model *model = NULL;
+    (void)lar_inp_is_deck(&bytes);
+    if (lar_inp_deck_parse("fuzz.inp", &bytes, &model, &error) == LAR_OK) lar_model_destroy(model);
     lar_bytes_free(&bytes);
     return 0;
 }

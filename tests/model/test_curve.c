@@ -84,13 +84,29 @@ static void test_values_have_fixed_bits(void **state) {
     expect(&ramp, 0.1, 0x1.097b425ed097cp-2); /* 7/27 in IEEE arithmetic, operation by operation */
 }
 
+static void test_hold_from(void **state) {
+    (void)state;
+    const lar_curve_shape shapes[] = {LAR_CURVE_LINEAR, LAR_CURVE_STEP, LAR_CURVE_HOLD};
+    const double times[] = {0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 9.0};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 7; k++) {
+            double points[3][2] = {{1.0, 2.0}, {2.0, 6.0}, {4.0, -2.0}};
+            lar_curve whole = table(shapes[i]), held = whole;
+            held.point = points;
+            lar_curve_hold_from(&held, times[k]);
+            assert_true(lar_curve_end(&held) <= times[k]);
+            for (double t = 0; t < times[k]; t += 0.25)
+                expect(&held, t, lar_curve_value(&whole, t));
+            expect(&held, times[k], lar_curve_value(&whole, times[k]));
+            expect(&held, 20.0, lar_curve_value(&whole, times[k]));
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ramp),
-        cmocka_unit_test(test_table_is_held_outside),
-        cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_odd_tables),
-        cmocka_unit_test(test_values_have_fixed_bits),
+        cmocka_unit_test(test_ramp),      cmocka_unit_test(test_table_is_held_outside),
+        cmocka_unit_test(test_shapes),    cmocka_unit_test(test_odd_tables),
+        cmocka_unit_test(test_hold_from), cmocka_unit_test(test_values_have_fixed_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -443,6 +443,18 @@ static void test_static_and_step(void **state) {
     assert_int_equal(notices_with(model, "the analysis is static"), 1);
     /* pi sqrt(1200 / 1000) / 2: the body is 2 long */
     assert_true(fabs(model->damping - 1.7207) < 1e-3);
+    assert_int_equal(lar_model_until_rest(model), 1);
+    lar_model_destroy(model);
+
+    /* the loads end with the deck's last step, 1 s, whatever their curves do behind it */
+    model = read_deck(HEAD4 CONTROL("STATIC") MATERIAL MESH4 DOMAINS
+                      "<Boundary><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof>"
+                      "<scale lc=\"1\">1</scale></bc></Boundary>\n<LoadData>" CURVE(
+                          "1", "LINEAR", "CONSTANT",
+                          "<pt>0,0</pt><pt>0.5,1</pt><pt>2,4</pt>") "</LoadData>" TAIL);
+    const lar_curve *curve = &model->curve[model->move[0].curve];
+    assert_true(lar_curve_end(curve) == 1.0);
+    assert_true(lar_curve_value(curve, 0.75) == 1.5 && lar_curve_value(curve, 9) == 2.0);
     lar_model_destroy(model);
 
     model = read_deck(HEAD4 MATERIAL MESH4 DOMAINS "<Step><step id=\"1\">" CONTROL(

@@ -94,7 +94,8 @@ static void test_root(void **state) {
         {"damping: {}\n", "4:10", "found a mapping"},
         {"duration: 0\n", "4:11", "more than zero"},
         {"duration: 2 s\n", "4:11",
-         "duration: expected a number in seconds (SI units), for example 0.2, but found \"2 s\""},
+         "duration: expected rest, or a number in seconds (SI units), for example 0.2, but found "
+         "\"2 s\""},
         {"title: []\n", "4:8", "title: expected a text, but found a list"},
     };
     REFUSES(whole, "");

@@ -82,6 +82,40 @@ static void mi27_a_graded_block(void **unused) {
     static_deck("mi27");
 }
 
+/* As `lariat run` follows a static deck: to where lar_rest says that it is at rest, and no farther.
+ * What is left of the way counts, so it is held against the same run ten times as long. */
+static void followed_deck(const char *deck, double left) {
+    lar_model *model = open_deck(deck);
+    lar_error error;
+    assert_int_equal(lar_model_until_rest(model), 1);
+    lar_simulation *simulation = start(model, LAR_ELEMENT_HEX8);
+    lar_rest rest;
+    lar_rest_begin(&rest, simulation);
+    while (!lar_rest_look(&rest, simulation) && rest.next <= rest.limit)
+        if (lar_simulation_advance(simulation, rest.next - lar_simulation_steps(simulation),
+                                   &error))
+            fail_msg("%s", error.message);
+    assert_int_equal(rest.reached, 1);
+    double found = free_norm(simulation), time = lar_simulation_time(simulation);
+    run_until(simulation, 10 * time);
+    double far = free_norm(simulation);
+    print_message("%s: at rest after %.3g s, %.2g%% from the gold standard, %.2g%% from the norm "
+                  "after %.3g s\n",
+                  deck, time, 100 * fabs(found / gold_standard(deck) - 1),
+                  100 * fabs(found / far - 1), 10 * time);
+    assert_within(fabs(found / far - 1), left);
+    assert_within(fabs(found / gold_standard(deck) - 1), 2e-4);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
+static void static_decks_are_followed_to_rest(void **unused) {
+    (void)unused;
+    NEED_REFERENCE();
+    followed_deck("mi27", 1e-5);
+    followed_deck("tu01", 1e-5);
+}
+
 /* The norm at the model's end for one time step (0: automatic), and the largest on the way. */
 static double dynamic_norm(const char *deck, lar_element_kind kind, double step, double *largest) {
     lar_model *model = open_deck(deck);
@@ -179,9 +213,13 @@ static void other_decks_are_refused_by_name(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tu01_a_stretched_block), cmocka_unit_test(mi27_a_graded_block),
-        cmocka_unit_test(dy01_free_fall),         cmocka_unit_test(dy02_a_board_that_swings),
-        cmocka_unit_test(dy02_as_febio_steps),    cmocka_unit_test(other_decks_are_refused_by_name),
+        cmocka_unit_test(tu01_a_stretched_block),
+        cmocka_unit_test(mi27_a_graded_block),
+        cmocka_unit_test(static_decks_are_followed_to_rest),
+        cmocka_unit_test(dy01_free_fall),
+        cmocka_unit_test(dy02_a_board_that_swings),
+        cmocka_unit_test(dy02_as_febio_steps),
+        cmocka_unit_test(other_decks_are_refused_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

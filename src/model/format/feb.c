@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "model/format/mesh_io.h"
+#include "model/rest.h"
 
 /* ---- control -----------------------------------------------------------------------------------
  */
@@ -44,36 +45,24 @@ static lar_status read_analysis(lar_feb *feb, const xmlNode *control, bool *is_s
                         (int)(word.length < 40 ? word.length : 40), word.at);
 }
 
-/* Damping that lets the slowest motion die out without swinging. Its frequency is guessed as that
- * of a shear wave in a bar as long as the body: omega = pi/2 sqrt(G / rho) / L; 2 omega is
- * critical for mass-proportional damping. */
-static double rest_damping(const lar_model *model) {
-    const lar_mesh *mesh = &model->mesh;
-    double length = 0.0, slowest = INFINITY;
-    for (int axis = 0; axis < 3; axis++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int32_t i = 0; i < mesh->node_count; i++) {
-            low = fmin(low, mesh->position[i][axis]);
-            high = fmax(high, mesh->position[i][axis]);
-        }
-        length = fmax(length, high - low);
-    }
-    for (int i = 0; i < model->material_count; i++)
-        slowest = fmin(slowest,
-                       sqrt(lar_material_shear(&model->material[i]) / model->material[i].density));
-    double damping = 3.14159265358979 * slowest / length;
-    return isfinite(damping) ? damping : 0.0;
-}
-
+/* What an analysis without time becomes: see model/rest.h. */
 static lar_status damp_static(lar_feb *feb, const xmlNode *control) {
     bool is_static;
     lar_status status = read_analysis(feb, control, &is_static);
     if (status || !is_static) return status;
-    feb->model->damping = rest_damping(feb->model);
+    feb->model->damping = lar_model_rest_damping(feb->model);
+    feb->model->until_rest = true;
     return lar_feb_notice(feb, control ? control : feb->root,
                           "the analysis is static: Lariat follows it in time, with a damping of "
-                          "%.3g 1/s, and comes to rest after the loads are complete",
+                          "%.3g 1/s, until it is at rest",
                           feb->model->damping);
+}
+
+/* The analysis ends with the deck's last step, and so do its loads, whatever their curves would do
+ * behind it. */
+static void hold_loads(lar_model *model) {
+    for (int i = 0; model->until_rest && model->duration > 0.0 && i < model->curve_count; i++)
+        lar_curve_hold_from(&model->curve[i], model->duration);
 }
 
 /* Of the solver's settings one is physics: the explicit solver can damp by a factor per step. */
@@ -230,6 +219,7 @@ static lar_status read_model(lar_feb *feb) {
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
+    hold_loads(feb->model);
     return status ? status : lar_model_check(feb->model, feb->error);
 }
 

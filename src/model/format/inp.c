@@ -38,8 +38,7 @@ lar_status inp_expected(inp_reader *reader, int line, const char *what, lar_span
                     text);
 }
 
-/* Reads a keyword line; a comma at its end continues it. False at the end of the file. */
-static bool next_card(inp_reader *reader, inp_card *card, lar_status *status) {
+bool inp_next_card(inp_reader *reader, inp_card *card, lar_status *status) {
     lar_span line;
     do {
         card->line = reader->text.line;
@@ -329,7 +328,7 @@ static lar_status walk_file(inp_reader *reader, lar_text start, int walk) {
     lar_span line;
     lar_status status = LAR_OK;
     reader->text = start;
-    while (!status && next_card(reader, &card, &status)) {
+    while (!status && inp_next_card(reader, &card, &status)) {
         for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
             if (keywords[i].walk == walk &&
                 lar_span_equal_nocase(card.keyword, keywords[i].keyword)) {

@@ -67,6 +67,10 @@ typedef struct inp_reader {
     size_t entries_left;
 } inp_reader;
 
+/* Reads a keyword line; a comma at its end continues it. False at the end of the file, and when
+ * something else stands there (*status then says so). */
+bool inp_next_card(inp_reader *reader, inp_card *card, lar_status *status);
+
 /* Next data line of the card; false at the next card or the end. */
 bool inp_data_line(inp_reader *reader, lar_span *line);
 
@@ -80,6 +84,9 @@ lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line)
 
 /* Fails with "expected WHAT, found 'text'". */
 lar_status inp_expected(inp_reader *reader, int line, const char *what, lar_span found);
+
+/* Our local face of the digit in S1 to S6 or P1 to P6; -1: no such face. */
+int inp_face_of(char digit);
 
 /* *NSET and *ELSET, *SURFACE. */
 lar_status inp_read_nset(inp_reader *reader, const inp_card *card);

@@ -157,11 +157,13 @@ static const inp_boundary *find_boundary(const inp_reader *reader, int64_t id) {
 
 /* ---- *SURFACE ----------------------------------------------------------------------------- */
 
-/* Our local face of Abaqus S1..S6; -1: no such label. */
-static int face_of_label(lar_span label) {
+int inp_face_of(char digit) {
     static const int face[6] = {4, 5, 2, 1, 3, 0};
-    if (label.length != 2 || (label.at[0] | 32) != 's') return -1;
-    return label.at[1] >= '1' && label.at[1] <= '6' ? face[label.at[1] - '1'] : -1;
+    return digit >= '1' && digit <= '6' ? face[digit - '1'] : -1;
+}
+
+static int face_of_label(lar_span label) {
+    return label.length == 2 && (label.at[0] | 32) == 's' ? inp_face_of(label.at[1]) : -1;
 }
 
 static lar_status add_face(inp_reader *reader, int64_t id, lar_span label, int at) {

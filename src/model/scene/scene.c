@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/rest.h"
+
 static lar_status check_root(const lar_scene *scene) {
     static const char *const keys[] = {"lariat",    "title",    "mesh",      "scale",   "gravity",
                                        "time_step", "damping",  "materials", "sets",    "fix",
@@ -31,6 +33,24 @@ static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
     const char *const expected = "auto, or a number in seconds (SI units), for example 1.0e-4";
     if (lar_scene_is_word(node, "auto")) return LAR_OK;
     return lar_scene_positive(scene, node, expected, &scene->model->time_step);
+}
+
+/* Seconds, or "rest". Without a damping of its own such a scene is damped as static decks are. */
+static lar_status read_duration(lar_scene *scene, const lar_yaml *node) {
+    const char *const expected = "rest, or a number in seconds (SI units), for example 0.2";
+    scene->model->until_rest = lar_scene_is_word(node, "rest");
+    if (scene->model->until_rest) return LAR_OK;
+    return lar_scene_positive(scene, node, expected, &scene->model->duration);
+}
+
+static lar_status damp_to_rest(lar_scene *scene) {
+    lar_model *model = scene->model;
+    if (!model->until_rest || lar_yaml_get(scene->root, "damping")) return LAR_OK;
+    model->damping = lar_model_rest_damping(model);
+    return lar_model_notice(model, scene->error,
+                            "%s: duration: rest without a damping: it is %.3g 1/s, with which "
+                            "the slowest motion dies out; the key damping says otherwise",
+                            scene->path, model->damping);
 }
 
 static lar_status read_title(lar_scene *scene, const lar_yaml *node) {
@@ -62,8 +82,7 @@ static lar_status read_plain_values(lar_scene *scene, double *scale) {
     if (!status && (value = lar_yaml_get(root, "damping")))
         status = lar_scene_not_negative(scene, value, "a number in 1/s, for example 2.0",
                                         &model->damping);
-    if (!status && (value = lar_yaml_get(root, "duration")))
-        status = lar_scene_positive(scene, value, LAR_IN_SECONDS, &model->duration);
+    if (!status && (value = lar_yaml_get(root, "duration"))) status = read_duration(scene, value);
     if (!status && (value = lar_yaml_get(root, "view")))
         status = lar_scene_direction(scene, value, model->view);
     return status;
@@ -95,6 +114,7 @@ static lar_status read_root(lar_scene *scene) {
         const lar_yaml *value = lar_yaml_get(scene->root, part[i].key);
         if (value) status = part[i].read(scene, value);
     }
+    if (!status) status = damp_to_rest(scene);
     return status ? status : lar_model_check(scene->model, scene->error);
 }
 

@@ -1,0 +1,34 @@
+#include "model/rest.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979;
+
+double lar_model_rest_damping(const lar_model *model) {
+    const lar_mesh *mesh = &model->mesh;
+    double length = 0.0, slowest = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int32_t i = 0; i < mesh->node_count; i++) {
+            low = fmin(low, mesh->position[i][axis]);
+            high = fmax(high, mesh->position[i][axis]);
+        }
+        length = fmax(length, high - low);
+    }
+    for (int i = 0; i < model->material_count; i++)
+        slowest = fmin(slowest,
+                       sqrt(lar_material_shear(&model->material[i]) / model->material[i].density));
+    double damping = PI * slowest / length;
+    return isfinite(damping) ? damping : 0.0;
+}
+
+double lar_model_slow_period(const lar_model *model) {
+    double damping = lar_model_rest_damping(model); /* 2 omega */
+    return damping > 0.0 ? 4.0 * PI / damping : 1.0;
+}
+
+double lar_model_loads_end(const lar_model *model) {
+    double end = 0.0;
+    for (int i = 0; i < model->curve_count; i++) end = fmax(end, lar_curve_end(&model->curve[i]));
+    return end;
+}

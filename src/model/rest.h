@@ -1,0 +1,24 @@
+/* What a static analysis becomes: a motion that dies out (docs/theory.md has the engine's step).
+ *
+ * An explicit engine follows everything in time, so a static answer is the state of rest that a
+ * damped body reaches under loads that no longer change. Here are the two figures that this needs
+ * from the model alone: the damping, and the time on which the body answers.
+ */
+#ifndef LAR_MODEL_REST_H
+#define LAR_MODEL_REST_H
+
+#include "model/model.h"
+
+/* Damping that lets the slowest motion die out without swinging [1/s]. Its frequency is guessed as
+ * that of a shear wave in a bar as long as the body: omega = pi/2 sqrt(G / rho) / L, with the
+ * longest side of the bounding box and the least G / rho; 2 omega is critical for damping in
+ * proportion to mass. 0 when there is no such number. */
+double lar_model_rest_damping(const lar_model *model);
+
+/* The period of that motion, 2 pi / omega [s]; 1 when there is no such number. */
+double lar_model_slow_period(const lar_model *model);
+
+/* Time after which no load and no prescribed value changes [s], at least 0. */
+double lar_model_loads_end(const lar_model *model);
+
+#endif

@@ -1,0 +1,98 @@
+#!/bin/sh
+# Runs that end at rest, those that never do, and what every run leaves behind.
+. "$(dirname "$0")/lib.sh"
+bar=$SCRATCH/bar.inp
+cat >"$bar" <<'END'
+*NODE
+1, 0, 0, 0
+2, 0.05, 0, 0
+3, 0.05, 0.05, 0
+4, 0, 0.05, 0
+5, 0, 0, 0.05
+6, 0.05, 0, 0.05
+7, 0.05, 0.05, 0.05
+8, 0, 0.05, 0.05
+9, 0, 0, 0.1
+10, 0.05, 0, 0.1
+11, 0.05, 0.05, 0.1
+12, 0, 0.05, 0.1
+*ELEMENT, TYPE=C3D8
+1, 1, 2, 3, 4, 5, 6, 7, 8
+2, 5, 6, 7, 8, 9, 10, 11, 12
+END
+# scene NAME LINES...: a bar that hangs from its upper end, or falls.
+scene() {
+    name=$SCRATCH/$1.yaml
+    shift
+    printf '%s\n' "lariat: 1" "mesh: bar.inp" "gravity: [0, 0, -9.81]" \
+        "materials: [{cells: all, law: neo-hookean, density: 1000, shear_modulus: 2.0e3, bulk_modulus: 2.0e4}]" \
+        "$@" >"$name"
+}
+hold='fix: [{nodes: {box: [[-1, -1, 0.099], [1, 1, 1]]}, axes: xyz}]'
+
+# A scene that asks for rest: damped by itself, the same step and bits on every grid.
+scene hanging "duration: rest" "$hold"
+expect 0 "$LARIAT" run "$SCRATCH/hanging.yaml" --out "$SCRATCH/hanging"
+says '^rest  *yes; loads constant from 0 s, kinetic over strain energy '
+complains 'note: .*hanging.yaml: duration: rest without a damping: it is '
+expect 0 "$LARIAT" run "$SCRATCH/hanging.yaml" --json
+has_keys rest.followed rest.reached --numbers rest.since rest.limit rest.kinetic_over_strain \
+    rest.left
+[ "$(value_of rest.reached)" = true ] || fail "not at rest"
+steps=$(value_of steps) hash=$(value_of state_hash)
+for division in "--grid 2x1x1" "--grid 1x1x2 --threads 2" "--grid 2x1x1 --comm shm" "--isa c"; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" run "$SCRATCH/hanging.yaml" --json $division
+    [ "$(value_of steps)$(value_of state_hash)" = "$steps$hash" ] || fail "rest with $division"
+done
+expect 0 "$LARIAT" info "$SCRATCH/hanging.yaml" --no-speed
+says '^duration  *until it is at rest, one frame at the end'
+expect 0 "$LARIAT" info "$SCRATCH/hanging.yaml" --no-speed --json
+[ "$(value_of until_rest)" = true ] || fail "info does not say until_rest"
+
+# What a run leaves: its last state, without `every` too, as a frame and to go on from.
+[ -s "$SCRATCH/hanging/hanging_000000.vtu" ] || fail "no frame of the last state"
+[ "$(head -c 8 "$SCRATCH/hanging/hanging.checkpoint")" = LARIATCP ] || fail "no checkpoint"
+grep -q "\"state_hash\": \"*$(echo "$hash" | tr -d '"')" "$SCRATCH/hanging/run.json" || fail "run.json"
+echo "no checkpoint" >"$SCRATCH/hanging/hanging.checkpoint"
+expect 1 "$LARIAT" run "$SCRATCH/hanging.yaml" --steps 10 --out "$SCRATCH/hanging"
+complains 'hanging.checkpoint: '
+
+# Any scene, on request; a time is then the most.
+scene damped "damping: 20" "$hold"
+expect 0 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --json
+[ "$(value_of rest.reached)" = true ] || fail "--until-rest"
+expect 0 "$LARIAT" run "$SCRATCH/damped.yaml" --json
+[ "$(value_of rest.followed)$(value_of time | cut -c 1)" = false1 ] || fail "a run without rest"
+expect 4 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --time 0.1 --json --out "$SCRATCH/damped"
+[ "$(value_of rest.reached)" = false ] || fail "at rest after 0.1 s"
+[ -s "$SCRATCH/damped/damped_000000.vtu" ] || fail "no last state of a run that did not rest"
+complains 'damped.yaml: not at rest after 0.0[0-9]* s, the limit of this run: .*; look whether'
+
+# What never rests ends at its limit and says so.
+scene swinging "damping: 0" "duration: rest" "$hold"
+expect 4 "$LARIAT" run "$SCRATCH/swinging.yaml" --json
+complains 'swinging.yaml: not at rest after [0-9.]* s, the limit of this run: its motion is still'
+complains 'without damping nothing takes the motion away'
+scene falling "damping: 20" "duration: rest"
+expect 4 "$LARIAT" run "$SCRATCH/falling.yaml" --json
+complains 'look whether something still falls or turns freely'
+expect 2 "$LARIAT" run "$SCRATCH/falling.yaml" --until-rest --verify
+complains 'give one of --verify and --until-rest'
+scene wrong "duration: soon"
+expect 1 "$LARIAT" run "$SCRATCH/wrong.yaml"
+complains 'wrong.yaml:5:11: duration: expected rest, or a number in seconds'
+
+# Decks of FEBio's test suite: free displacements at rest as its gold standard has them.
+decks=$SOURCE/../shared/data/bench/febio
+if [ -r "$decks/mi27.feb" ]; then
+    for deck in mi27 tu01; do
+        expect 0 "$LARIAT" run "$decks/$deck.feb" --json
+        [ "$(value_of rest.reached)" = true ] || fail "$deck is not at rest"
+        expect 0 "$LARIAT" run "$decks/$deck.feb" --time 1 --json
+        [ "$(value_of time)$(value_of rest.followed)" = 1false ] || fail "$deck --time 1"
+    done
+else
+    echo "skipped: no shared data"
+fi
+finish "rest: ends where nothing moves any more"

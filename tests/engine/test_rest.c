@@ -1,0 +1,163 @@
+/* When a body is at rest: swinging, creeping, moved and free ones, on every grid. */
+#include "engine/engine_test.h"
+#include "engine/rest.h"
+#include "model/rest.h"
+
+/* A brick held at one end that sinks under gravity; the damping in shares of the critical guess. */
+static lar_model *hanging(double share) {
+    lar_model *model = brick_model(&soft_brick);
+    fix_nodes(model, brick_side(&soft_brick, 0, 0), LAR_AXIS_ALL);
+    model->gravity[2] = -9.81;
+    model->damping = share * lar_model_rest_damping(model);
+    return model;
+}
+
+static lar_rest follow(lar_simulation *simulation, uint64_t most) {
+    lar_rest rest;
+    lar_rest_begin(&rest, simulation);
+    while (!lar_rest_look(&rest, simulation) && rest.next <= most)
+        advance(simulation, rest.next - lar_simulation_steps(simulation));
+    return rest;
+}
+
+static void positions(const lar_simulation *simulation, double (*u)[3]) {
+    lar_simulation_displacements(simulation, u);
+}
+
+/* Largest difference between the displacements now and those after ten times as long. */
+static double still_to_go(lar_simulation *simulation, const lar_model *model, double *largest) {
+    int32_t nodes = model->mesh.node_count;
+    double(*before)[3] = lar_calloc((size_t)nodes, sizeof *before), most = 0;
+    double(*after)[3] = lar_calloc((size_t)nodes, sizeof *after);
+    positions(simulation, before);
+    advance(simulation, 10 * lar_simulation_steps(simulation));
+    positions(simulation, after);
+    *largest = 0;
+    for (int32_t n = 0; n < nodes; n++)
+        for (int i = 0; i < 3; i++) {
+            most = fmax(most, fabs(after[n][i] - before[n][i]));
+            *largest = fmax(*largest, fabs(after[n][i]));
+        }
+    free(before);
+    free(after);
+    return most;
+}
+
+/* From a tenth of the critical damping, where it swings, to twelve times as much, where it creeps:
+ * what is left of the way is below 0.02 %. */
+static void rest_is_rest_at_any_damping(void **state) {
+    (void)state;
+    const double shares[] = {0.1, 1, 5, 12};
+    for (int i = 0; i < 4; i++) {
+        lar_model *model = hanging(shares[i]);
+        lar_simulation *simulation = start(model);
+        lar_rest rest = follow(simulation, UINT64_MAX / 2);
+        uint64_t found = lar_simulation_steps(simulation);
+        double largest, left = still_to_go(simulation, model, &largest);
+        print_message("damping %g of critical: %d steps, %.2g of the way left\n", shares[i],
+                      (int)found, left / largest);
+        assert_true(rest.reached && rest.looked && rest.left <= rest.share);
+        assert_true(found < rest.limit);
+        assert_below(left / largest, 2e-4);
+        finish(simulation, model);
+    }
+}
+
+/* Where it turns round it stands still, and is not at rest. */
+static void a_turning_point_is_no_rest(void **state) {
+    (void)state;
+    lar_model *model = hanging(0);
+    lar_simulation *simulation = start(model);
+    lar_rest rest = follow(simulation, 20000);
+    assert_int_equal(rest.reached, 0);
+    assert_true(rest.looked && rest.left > 0.01);
+    finish(simulation, model);
+}
+
+static void nothing_rests_before_its_loads_are_complete(void **state) {
+    (void)state;
+    lar_model *model = hanging(1);
+    static const double late[3][2] = {{0, 1}, {3, 1}, {3.5, 2}};
+    model->gravity_curve[2] = add_table(model, LAR_CURVE_LINEAR, 3, late);
+    lar_simulation *simulation = start(model);
+    lar_rest rest = follow(simulation, UINT64_MAX / 2);
+    assert_true(rest.since == 3.5);
+    assert_int_equal(rest.reached, 1);
+    assert_true(lar_simulation_time(simulation) > 3.5);
+    finish(simulation, model);
+}
+
+/* A free body falls for ever; one that nothing pulls is at rest. */
+static void free_bodies(void **state) {
+    (void)state;
+    lar_model *model = brick_model(&soft_brick);
+    model->damping = lar_model_rest_damping(model);
+    lar_simulation *simulation = start(model);
+    assert_int_equal(follow(simulation, 20000).reached, 1);
+    finish(simulation, model);
+
+    model = brick_model(&soft_brick);
+    model->damping = lar_model_rest_damping(model);
+    model->gravity[0] = 1;
+    simulation = start(model);
+    lar_rest rest = follow(simulation, 20000);
+    assert_int_equal(rest.reached, 0);
+    assert_true(rest.limit > 20000 && rest.limit < 100000000);
+    finish(simulation, model);
+}
+
+static uint64_t step_of_rest(const lar_model *model, lar_options options, uint64_t *hash) {
+    lar_simulation *simulation = start_with(model, options);
+    lar_rest rest = follow(simulation, UINT64_MAX / 2);
+    assert_int_equal(rest.reached, 1);
+    uint64_t step = lar_simulation_steps(simulation);
+    *hash = lar_simulation_hash(simulation);
+    lar_simulation_destroy(simulation);
+    return step;
+}
+
+/* The energies are compared to the bit too: a step would be the same by luck. */
+static void the_same_step_on_every_grid(void **state) {
+    (void)state;
+    lar_model *model = everything_model(&soft_brick);
+    model->damping = lar_model_rest_damping(model);
+    lar_options options = lar_options_default();
+    uint64_t wanted_hash, hash;
+    uint64_t wanted = step_of_rest(model, options, &wanted_hash);
+    static const char *const grid[] = {"1x1x1", "2x1x1", "1x2x1", "2x2x1"};
+    for (int i = 0; i < 4; i++) {
+        options.grid = grid[i];
+        options.threads = i % 2 ? 1 : 2;
+        assert_true(step_of_rest(model, options, &hash) == wanted);
+        assert_true(hash == wanted_hash);
+    }
+    options = lar_options_default();
+    options.isa = LAR_ISA_C;
+    assert_true(step_of_rest(model, options, &hash) == wanted && hash == wanted_hash);
+
+    lar_simulation *alone = start(model);
+    options = lar_options_default();
+    options.grid = grid[3];
+    lar_simulation *divided = start_with(model, options);
+    for (int i = 0; i < 20; i++) {
+        double kinetic[2], strain[2];
+        advance(alone, 37);
+        advance(divided, 37);
+        lar_rest_energies(&alone->domain, lar_simulation_state(alone), &kinetic[0], &strain[0]);
+        lar_rest_energies(&divided->domain, lar_simulation_state(divided), &kinetic[1], &strain[1]);
+        assert_true(kinetic[0] == kinetic[1] && strain[0] == strain[1] && kinetic[0] > 0);
+    }
+    lar_simulation_destroy(divided);
+    finish(alone, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_is_rest_at_any_damping),
+        cmocka_unit_test(a_turning_point_is_no_rest),
+        cmocka_unit_test(nothing_rests_before_its_loads_are_complete),
+        cmocka_unit_test(free_bodies),
+        cmocka_unit_test(the_same_step_on_every_grid),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,491 @@
+/* Abaqus and CalculiX decks as models: what is read, and by which name and line the rest is
+ * refused. */
+#include "model/model.h"
+#include "testing.h"
+
+/* Two cubes in a row along x, lines 1 to 28. */
+#define MESH                                                                                       \
+    "*NODE, NSET=ALL\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n"    \
+    "7, 1, 1, 1\n8, 0, 1, 1\n9, 2, 0, 0\n10, 2, 1, 0\n11, 2, 0, 1\n12, 2, 1, 1\n99, 9, 9, 9\n"     \
+    "*ELEMENT, TYPE=C3D8R, ELSET=LEFT\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"                                \
+    "*ELEMENT, TYPE=C3D8R, ELSET=RIGHT\n2, 2, 9, 10, 3, 6, 11, 12, 7\n"                            \
+    "*ELSET, ELSET=BOTH\nLEFT, RIGHT\n"                                                            \
+    "*NSET, NSET=Wall\n1, 4, 5, 8\n*NSET, NSET=Tip\n9, 10, 11, 12\n"                               \
+    "*SURFACE, NAME=End\n2, S4\n*SURFACE, NAME=Inside, TYPE=NODE\nWALL\n"
+#define SOFT                                                                                       \
+    "*MATERIAL, NAME=Soft\n*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n*DENSITY\n1000,\n"                 \
+    "*SOLID SECTION, ELSET=BOTH, MATERIAL=soft\n"
+enum { AFTER_MESH = 29, AFTER_SOFT = 35 };
+#define STATIC  "*STEP, NLGEOM\n*STATIC\n0.1, 2\n"
+#define DYNAMIC "*STEP, NLGEOM\n*DYNAMIC\n0.1, 2\n"
+#define END     "*END STEP\n"
+
+static lar_status parse(const char *text, lar_model **model, lar_error *error) {
+    /* A copy of the exact size, so that the address sanitizer sees reads beyond it. */
+    size_t size = strlen(text);
+    lar_bytes bytes = {malloc(size + 1), size};
+    assert_non_null(bytes.data);
+    memcpy(bytes.data, text, size + 1);
+    lar_status status = lar_inp_deck_parse("deck.inp", &bytes, model, error);
+    free(bytes.data);
+    return status;
+}
+
+static lar_model *read_deck(const char *text) {
+    lar_model *model = NULL;
+    lar_error error;
+    if (parse(text, &model, &error)) fail_msg("%s", error.message);
+    return model;
+}
+
+/* The deck must fail with a message that begins with deck.inp:LINE: and has `words`. */
+static void refused(const char *text, lar_status status, int line, const char *words) {
+    lar_model *model = NULL;
+    lar_error error;
+    char start[32];
+    snprintf(start, sizeof start, "deck.inp:%d: ", line);
+    lar_status got = parse(text, &model, &error);
+    if (!got) lar_model_destroy(model);
+    if (got != status || strncmp(error.message, start, strlen(start)) != 0 ||
+        !strstr(error.message, words))
+        fail_msg("status %d, \"%s\" instead of %d, \"%s...%s\"", (int)got, got ? error.message : "",
+                 (int)status, start, words);
+}
+
+static int notices_with(const lar_model *model, const char *words) {
+    int count = 0;
+    for (int i = 0; i < model->notice_count; i++) count += strstr(model->notice[i], words) != NULL;
+    return count;
+}
+
+static void near(double value, double wanted) {
+    if (fabs(value - wanted) > 1e-12 * fabs(wanted)) fail_msg("%.17g, not %.17g", value, wanted);
+}
+
+static double at(const lar_model *model, int curve, double time) {
+    return lar_curve_value(&model->curve[curve], time);
+}
+
+/* ---- materials ----------------------------------------------------------------------------- */
+
+static void test_materials(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n*DENSITY\n1000\n"
+             "*Material, name=B\n*Hyperelastic, mooney-rivlin\n300, 100, 2e-5\n*Density\n1100,\n"
+             "*Material, name=spare\n*Elastic\n1, 0.3\n"
+             "*SOLID SECTION, ELSET=LEFT, MATERIAL=A\n1.,\n*Solid Section, elset=right, "
+             "material=b\n");
+    assert_int_equal(model->material_count, 2);
+    assert_int_equal(model->material[0].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[0]), 1000);
+    near(lar_material_bulk(&model->material[0]), 2e4);
+    near(model->material[0].density, 1000);
+    assert_int_equal(model->material[1].law, LAR_LAW_mooney_rivlin);
+    near(model->material[1].parameter[0], 300);
+    near(model->material[1].parameter[1], 100);
+    near(model->material[1].parameter[2], 1e5);
+    assert_int_equal(model->element_material[0], 0);
+    assert_int_equal(model->element_material[1], 1);
+    assert_int_equal(notices_with(model, "material 'spare' is not used"), 1);
+    assert_int_equal(notices_with(model, "K/2 (ln J)^2 instead of (J - 1)^2 / D1"), 1);
+    lar_model_destroy(model);
+
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*ELASTIC, TYPE=ISO\n3000, 0.25\n*DENSITY\n1\n"
+                           "*DAMPING, ALPHA=2.5\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n");
+    assert_int_equal(model->material[0].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[0]), 1200);
+    near(lar_material_bulk(&model->material[0]), 2000);
+    near(model->damping, 2.5);
+    assert_int_equal(notices_with(model,
+                                  "deck.inp:30: material 'a' is linear elastic; Lariat takes "
+                                  "the neo-Hookean law with the same moduli, which is equal "
+                                  "at small strain only"),
+                     1);
+    assert_int_equal(lar_model_until_rest(model), 0);
+    lar_model_destroy(model);
+}
+
+/* Without gravity the density of a static deck does not matter. */
+static void test_static_without_density(void **state) {
+    (void)state;
+    static const char *const deck =
+        MESH "*MATERIAL, NAME=a\n*ELASTIC\n210e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"
+             "*BOUNDARY\nWALL, 1, 3\n" STATIC "*CLOAD\nTIP, 1, 1\n" END;
+    lar_model *model = read_deck(deck);
+    /* ten periods of 4 L sqrt(rho / G) in the step's 2 s, with L = 2 */
+    near(8 * sqrt(model->material[0].density / lar_material_shear(&model->material[0])), 0.2);
+    assert_int_equal(notices_with(model, "no *DENSITY: the static answer does not depend on it"),
+                     1);
+    lar_model_destroy(model);
+    refused(MESH
+            "*MATERIAL, NAME=a\n*ELASTIC\n2e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n" STATIC
+            "*DLOAD\n, GRAV, 9.81, 0, 0, -1\n" END,
+            LAR_ERROR_MODEL, AFTER_MESH + 1, "has no density; give it *DENSITY");
+    refused(
+        MESH
+        "*MATERIAL, NAME=a\n*ELASTIC\n2e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n" DYNAMIC
+            END,
+        LAR_ERROR_MODEL, AFTER_MESH + 1, "has no density");
+}
+
+static void test_bad_materials(void **state) {
+    (void)state;
+    const int one = AFTER_MESH, two = one + 1, three = one + 2;
+#define OF(rest) MESH "*MATERIAL, NAME=a\n" rest
+    refused(OF("*PLASTIC\n1, 0\n"), LAR_ERROR_UNSUPPORTED, two,
+            "*PLASTIC is not read and would "
+            "change the answer; remove it");
+    refused(OF("*VISCOELASTIC, TIME=PRONY\n"), LAR_ERROR_UNSUPPORTED, two, "*VISCOELASTIC");
+    refused(OF("*HYPERELASTIC, OGDEN, N=1\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "Lariat has NEO HOOKE and MOONEY-RIVLIN");
+    refused(OF("*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n"), LAR_ERROR_UNSUPPORTED, two,
+            "the parameter TEST DATA INPUT of *HYPERELASTIC");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n600, 1e-4\n"), LAR_ERROR_UNSUPPORTED,
+            three + 1, "depends on temperature");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n-5, 1e-4\n"), LAR_ERROR_MODEL, two, "shear modulus");
+    refused(OF("*ELASTIC, TYPE=ORTHO\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two, "isotropic");
+    refused(OF("*ELASTIC\n1000, 0.5\n"), LAR_ERROR_MODEL, three, "Poisson's ratio 0.5");
+    refused(OF("*ELASTIC\n1000, x\n"), LAR_ERROR_FORMAT, three, "expected Poisson's ratio, found");
+    refused(OF("*ELASTIC\n"), LAR_ERROR_FORMAT, two, "*ELASTIC has no line of numbers");
+    refused(OF("*ELASTIC\n1, 0.3\n*ELASTIC\n1, 0.3\n"), LAR_ERROR_FORMAT, two + 2, "second law");
+    refused(OF("*DENSITY\n-1\n"), LAR_ERROR_MODEL, three, "must be positive");
+    refused(OF("*DAMPING, ALPHA=1, BETA=0.1\n"), LAR_ERROR_UNSUPPORTED, two, "leave BETA out");
+    refused(OF("*MATERIAL, NAME=A\n"), LAR_ERROR_FORMAT, two, "a second *MATERIAL");
+    refused(OF("*DENSITY\n1\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"), LAR_ERROR_MODEL, one,
+            "has no law");
+    refused(OF("*SOLID SECTION, ELSET=BOTH, MATERIAL=b\n"), LAR_ERROR_FORMAT, two,
+            "there is no *MATERIAL called 'b'");
+    refused(OF("*SOLID SECTION, ELSET=BOTH, MATERIAL=a, ORIENTATION=o\n"), LAR_ERROR_UNSUPPORTED,
+            two, "ORIENTATION");
+    refused(MESH SOFT "*SHELL SECTION, ELSET=LEFT, MATERIAL=soft\n1\n", LAR_ERROR_UNSUPPORTED,
+            AFTER_SOFT, "*SHELL SECTION");
+    refused(MESH "*ELASTIC\n1, 0.3\n", LAR_ERROR_FORMAT, one, "outside of a material");
+    refused(OF("*BOUNDARY\nWALL, 1\n*ELASTIC\n1, 0.3\n"), LAR_ERROR_FORMAT, two + 2, "outside");
+    refused(OF("*ELASTIC\n1, 0.3\n*DENSITY\n1\n*SOLID SECTION, ELSET=NONE, MATERIAL=a\n"),
+            LAR_ERROR_FORMAT, two + 4, "'NONE' is neither a number nor a set of elements");
+#undef OF
+    lar_model *model = NULL;
+    lar_error error;
+    assert_int_equal(parse(MESH "*MATERIAL, NAME=a\n*ELASTIC\n1, 0.3\n*DENSITY\n1\n"
+                                "*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n",
+                           &model, &error),
+                     LAR_ERROR_MODEL);
+    assert_non_null(strstr(error.message, "element 2 has no material"));
+}
+
+/* ---- supports ------------------------------------------------------------------------------ */
+
+static unsigned fixed(const lar_model *model, int64_t id) {
+    unsigned axes = 0;
+    for (int i = 0; i < model->fix_count; i++)
+        for (int32_t n = 0; n < model->fix[i].nodes.count; n++)
+            if (model->mesh.node_id[model->fix[i].nodes.node[n]] == id) axes |= model->fix[i].axes;
+    return axes;
+}
+
+static const lar_move *moved(const lar_model *model, int64_t id, unsigned axes) {
+    for (int i = 0; i < model->move_count; i++)
+        for (int32_t n = 0; n < model->move[i].nodes.count; n++)
+            if (model->mesh.node_id[model->move[i].nodes.node[n]] == id &&
+                model->move[i].axes == axes)
+                return &model->move[i];
+    return NULL;
+}
+
+static void test_supports(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH SOFT "*BOUNDARY\n1, ENCASTRE\nwall, 1\n4, 2, 6\n9, XSYMM\n"
+                                           "2, 1, 1\n3, 4, 6\n" STATIC
+                                           "*BOUNDARY\nTIP, 1, 1, 0.5\n2, 1, 2, -0.25\n5, 3, 3, 0\n"
+                                           "*BOUNDARY, AMPLITUDE=up\n10, 3, 3, 2\n" END
+                                           "*AMPLITUDE, NAME=UP\n0, 0, 1, 1, 4, 4\n");
+    assert_int_equal(fixed(model, 1), LAR_AXIS_ALL);
+    assert_int_equal(fixed(model, 4), LAR_AXIS_ALL);
+    assert_int_equal(fixed(model, 5), LAR_AXIS_X | LAR_AXIS_Z);
+    assert_int_equal(fixed(model, 3), 0);
+    /* what the step says takes the place of what stands above it */
+    assert_int_equal(fixed(model, 2), 0);
+    assert_int_equal(fixed(model, 9), 0);
+    const lar_move *tip = moved(model, 9, LAR_AXIS_X), *side = moved(model, 2, LAR_AXIS_Y);
+    assert_non_null(tip);
+    assert_non_null(side);
+    near(tip->by, 0.5);
+    assert_int_equal(tip->nodes.count, 4);
+    near(side->by, -0.25);
+    /* a static step's displacements grow over its period; an amplitude ends with it */
+    near(at(model, tip->curve, 1), 0.5);
+    near(at(model, tip->curve, 7), 1);
+    const lar_move *up = moved(model, 10, LAR_AXIS_Z);
+    assert_non_null(up);
+    near(at(model, up->curve, 1), 1);
+    near(at(model, up->curve, 9), 2);
+    assert_int_equal(lar_model_until_rest(model), 1);
+    assert_true(model->damping > 0 && model->duration == 2);
+    lar_model_destroy(model);
+
+    model = read_deck(MESH SOFT "*BOUNDARY\nWALL, 1, 3\n" DYNAMIC
+                                "*BOUNDARY, OP=NEW\n1, 1, 3\n*BOUNDARY, OP=NEW\n2, 1, 3\n" END);
+    assert_int_equal(fixed(model, 4), 0);
+    assert_int_equal(fixed(model, 1), LAR_AXIS_ALL);
+    assert_int_equal(fixed(model, 2), LAR_AXIS_ALL);
+    lar_model_destroy(model);
+}
+
+static void test_bad_supports(void **state) {
+    (void)state;
+    const int line = AFTER_SOFT;
+    refused(MESH SOFT "*BOUNDARY\nWALL, 11, 11, 20\n", LAR_ERROR_UNSUPPORTED, line + 1,
+            "the degrees of freedom 11 to 11 are none of a solid");
+    refused(MESH SOFT "*BOUNDARY\nWALL, CLAMPED\n", LAR_ERROR_FORMAT, line + 1, "ENCASTRE");
+    refused(MESH SOFT "*BOUNDARY\nNONE, 1\n", LAR_ERROR_FORMAT, line + 1, "'NONE' is neither");
+    refused(MESH SOFT "*BOUNDARY\n99, 1\n", LAR_ERROR_FORMAT, line + 1,
+            "there is no node 99 that belongs to a hexahedron");
+    refused(MESH SOFT "*BOUNDARY\nTIP, 1, 1, 0.1\n", LAR_ERROR_FORMAT, line,
+            "*BOUNDARY stands outside of a step");
+    refused(MESH SOFT "*BOUNDARY, TYPE=VELOCITY\nTIP, 1, 1, 0.1\n", LAR_ERROR_UNSUPPORTED, line,
+            "type 'VELOCITY'");
+    refused(MESH SOFT STATIC "*BOUNDARY, FIXED\nTIP, 1\n" END, LAR_ERROR_UNSUPPORTED, line + 3,
+            "the parameter FIXED of *BOUNDARY");
+    refused(MESH SOFT STATIC "*BOUNDARY, AMPLITUDE=no\nTIP, 1, 1, 1\n" END, LAR_ERROR_FORMAT,
+            line + 3, "there is no *AMPLITUDE called 'no'");
+    refused(MESH SOFT "*TRANSFORM, NSET=WALL\n1,0,0,0,1,0\n", LAR_ERROR_UNSUPPORTED, line,
+            "*TRANSFORM");
+    refused(MESH SOFT "*EQUATION\n2\n", LAR_ERROR_UNSUPPORTED, line, "*EQUATION");
+}
+
+/* ---- loads --------------------------------------------------------------------------------- */
+
+static void test_loads(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH SOFT "*AMPLITUDE, NAME=swing, DEFINITION=SMOOTH STEP\n0, 0, "
+                                           "1, 2\n" DYNAMIC "*CLOAD\nTIP, 3, -2\n9, 3, -1\n"
+                                           "*CLOAD, AMPLITUDE=swing\n1, 1, 4\n"
+                                           "*DLOAD\nRIGHT, P4, 100\n2, P2, 100\nLEFT, P6, -7\n"
+                                           "LEFT, GRAV, 9.81, 0, 0, -1\nRIGHT, GRAV, 9.81, 0, 0, "
+                                           "-1\n"
+                                           "*DSLOAD, OP=NEW\nend, P, 5\n" END);
+    assert_int_equal(model->load_count, 3);
+    assert_int_equal(notices_with(model, "1 nodes have a force in this direction already"), 1);
+    assert_int_equal(model->load[0].nodes.count + model->load[1].nodes.count, 4);
+    near(model->load[0].force[2] + model->load[1].force[2], -5);
+    near(model->load[2].force[0], 4);
+    near(at(model, model->load[0].curve, 0), 1); /* at once, in a dynamic step */
+    near(at(model, model->load[2].curve, 0.25), 2 * 0.103515625);
+    near(at(model, model->load[2].curve, 3), 2);
+    /* S4 of element 2 is its far end, local face 1 */
+    assert_int_equal(model->pressure_count, 3);
+    int32_t faces = 0;
+    for (int i = 0; i < 3; i++) {
+        const lar_pressure_load *load = &model->pressure[i];
+        faces += load->count;
+        if (load->pressure == 5) assert_int_equal(load->face[0], 6 + 1);
+        if (load->pressure == -7) assert_int_equal(load->face[0], 0);
+        if (load->pressure == 100) assert_int_equal(load->face[0] + load->face[1], 2 * 6 + 1 + 5);
+    }
+    assert_int_equal(faces, 4);
+    near(model->gravity[2], -9.81);
+    assert_int_equal(model->duration, 2);
+    assert_int_equal(lar_model_until_rest(model), 0);
+    assert_true(model->damping == 0);
+    lar_model_destroy(model);
+
+    model = read_deck(MESH SOFT STATIC "*DLOAD\n, GRAV, 2, 0.6, 0, 0.8\n" END);
+    near(model->gravity[0], 1.2);
+    near(at(model, model->gravity_curve[0], 1), 0.5); /* grows, in a static step */
+    lar_model_destroy(model);
+    model = read_deck(MESH SOFT "*STEP, NLGEOM, AMPLITUDE=STEP\n*STATIC\n*CLOAD\n9, 1, 1\n" END);
+    near(at(model, model->load[0].curve, 0), 1);
+    assert_true(model->duration == 1);
+    lar_model_destroy(model);
+}
+
+static void test_bad_loads(void **state) {
+    (void)state;
+    const int in = AFTER_SOFT + 3;
+    refused(MESH SOFT "*CLOAD\nTIP, 1, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT, "outside of a step");
+    refused(MESH SOFT STATIC "*CLOAD\nTIP, 4, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1, "moments");
+    refused(MESH SOFT STATIC "*CLOAD, FOLLOWER\nTIP, 1, 1\n" END, LAR_ERROR_UNSUPPORTED, in,
+            "FOLLOWER");
+    refused(MESH SOFT STATIC "*CLOAD\nTIP, 1, 1e400\n" END, LAR_ERROR_FORMAT, in + 1,
+            "expected a force");
+    refused(MESH SOFT STATIC "*CLOAD\nTIP, 1, 1, 2\n" END, LAR_ERROR_FORMAT, in + 1,
+            "expected the end of the line");
+    refused(MESH SOFT STATIC "*DLOAD\nBOTH, CENTRIF, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1,
+            "the load 'CENTRIF' is not read");
+    refused(MESH SOFT STATIC "*DLOAD\nBOTH, P7, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1, "'P7'");
+    refused(MESH SOFT STATIC "*DLOAD\nLEFT, GRAV, 9.81, 0, 0, -1\n" END, LAR_ERROR_UNSUPPORTED,
+            in + 1, "GRAV leaves out element 2");
+    refused(MESH SOFT STATIC "*DLOAD\nBOTH, GRAV, 9.81, 0, 0, -2\n" END, LAR_ERROR_FORMAT, in + 1,
+            "length 2");
+    refused(MESH SOFT STATIC "*DLOAD\n, GRAV, 1, 0, 0, 1\n, GRAV, 2, 0, 0, 1\n" END,
+            LAR_ERROR_UNSUPPORTED, in + 2, "another GRAV than in line 39");
+    refused(MESH SOFT STATIC "*DSLOAD\nInside, P, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1,
+            "is one of nodes");
+    refused(MESH SOFT STATIC "*DSLOAD\nEnd, HP, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1,
+            "pressures");
+    refused(MESH SOFT STATIC "*TEMPERATURE\nALL, 20\n" END, LAR_ERROR_UNSUPPORTED, in,
+            "*TEMPERATURE");
+    refused(MESH SOFT "*AMPLITUDE, NAME=a\n0, 0, 0, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 1,
+            "sort the points by time");
+    refused(MESH SOFT "*AMPLITUDE, NAME=a\n0, 0, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 1,
+            "expected a value");
+    refused(MESH SOFT "*AMPLITUDE, NAME=a\n", LAR_ERROR_FORMAT, AFTER_SOFT, "has no points");
+    refused(MESH SOFT "*AMPLITUDE, NAME=a, DEFINITION=PERIODIC\n", LAR_ERROR_UNSUPPORTED,
+            AFTER_SOFT, "TABULAR and SMOOTH STEP");
+}
+
+static void test_initial_velocity(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH SOFT "*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 1, 2\nTip, 1, "
+                                           "3\n9, 3, -1\n" DYNAMIC END);
+    assert_int_equal(model->initial_count, 3);
+    int32_t nodes = 0;
+    for (int i = 0; i < 3; i++) {
+        const lar_initial_velocity *initial = &model->initial[i];
+        nodes += initial->nodes.count;
+        if (initial->nodes.count == 1) near(initial->velocity[2], -1);
+        near(initial->velocity[0], initial->nodes.count == 8 ? 2 : 3);
+    }
+    assert_int_equal(nodes, 12);
+    lar_model_destroy(model);
+    refused(MESH SOFT "*INITIAL CONDITIONS, TYPE=STRESS\nBOTH, 1\n", LAR_ERROR_UNSUPPORTED,
+            AFTER_SOFT, "type 'STRESS' is not read and would change the answer");
+    refused(MESH SOFT "*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 5, 1\n", LAR_ERROR_FORMAT,
+            AFTER_SOFT + 1, "a direction 1, 2 or 3");
+}
+
+/* ---- contact ------------------------------------------------------------------------------- */
+
+#define TWO                                                                                        \
+    "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n"  \
+    "8, 0, 1, 1\n11, 0, 0, 2\n12, 1, 0, 2\n13, 1, 1, 2\n14, 0, 1, 2\n15, 0, 0, 3\n16, 1, 0, 3\n"   \
+    "17, 1, 1, 3\n18, 0, 1, 3\n*ELEMENT, TYPE=C3D8, ELSET=BOTH\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"       \
+    "2, 11, 12, 13, 14, 15, 16, 17, 18\n*SURFACE, NAME=Top\n1, S2\n*SURFACE, NAME=Under\n2, S1\n"  \
+    "*SURFACE, NAME=Points, TYPE=NODE\n11\n" SOFT
+
+static void test_contact(void **state) {
+    (void)state;
+    lar_model *model =
+        read_deck(TWO "*SURFACE INTERACTION, NAME=touch\n1.,\n*SURFACE BEHAVIOR, "
+                      "PRESSURE-OVERCLOSURE=LINEAR\n1e5, 1\n*FRICTION\n0.,\n"
+                      "*CONTACT PAIR, INTERACTION=touch, SMALL SLIDING\nunder, TOP\n");
+    assert_int_equal(model->contact_count, 1);
+    assert_int_equal(model->contact[0].kind, LAR_CONTACT_BETWEEN);
+    assert_int_equal(model->contact[0].face[0], 6 + 4);
+    assert_int_equal(model->contact[0].against[0], 5);
+    assert_int_equal(notices_with(model, "PRESSURE-OVERCLOSURE=LINEAR was left out"), 1);
+    assert_int_equal(notices_with(model, "SMALL SLIDING was left out"), 1);
+    lar_model_destroy(model);
+    const int line = 33;
+    refused(TWO "*FRICTION\n0.3,\n", LAR_ERROR_UNSUPPORTED, line,
+            "*FRICTION is not read from decks");
+    refused(TWO "*CONTACT PAIR, INTERACTION=a\nPoints, Top\n", LAR_ERROR_UNSUPPORTED, line + 1,
+            "the surface 'Points' is one of nodes");
+    refused(TWO "*CONTACT PAIR, TIED\nUnder, Top\n", LAR_ERROR_UNSUPPORTED, line, "TIED");
+    refused(TWO "*CONTACT PAIR\nUnder, Nothing\n", LAR_ERROR_FORMAT, line + 1,
+            "there is no surface 'Nothing' of faces");
+    refused(TWO "*TIE, NAME=a\nUnder, Top\n", LAR_ERROR_UNSUPPORTED, line, "*TIE");
+    refused(TWO "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n", LAR_ERROR_UNSUPPORTED, line,
+            "join their nodes");
+    refused(MESH "*SURFACE, NAME=Mid\n1, S4\n" SOFT "*CONTACT PAIR\nMid, End\n", LAR_ERROR_MODEL,
+            AFTER_SOFT + 3, "is inside the body");
+}
+
+/* ---- steps --------------------------------------------------------------------------------- */
+
+static void test_steps(void **state) {
+    (void)state;
+    lar_model *model = read_deck("*HEADING\nA bar of\ntwo cubes\n" MESH SOFT
+                                 "*RESTART, WRITE\n*STEP\nwords\n*DYNAMIC, DIRECT\n*NODE PRINT, "
+                                 "NSET=ALL\nU\n*EL FILE\nS\n*BULK VISCOSITY\n0.06\n" END);
+    assert_string_equal(model->title, "A bar of");
+    assert_true(model->duration == 1);
+    assert_int_equal(notices_with(model, "deck.inp:39: the step has no NLGEOM"), 1);
+    assert_int_equal(notices_with(model, "*BULK VISCOSITY was left out"), 1);
+    lar_model_destroy(model);
+    const int line = AFTER_SOFT;
+    refused(MESH SOFT STATIC END STATIC END, LAR_ERROR_UNSUPPORTED, line + 4, "a second *STEP");
+    refused(MESH SOFT STATIC STATIC END, LAR_ERROR_FORMAT, line + 3, "within the step of line 35");
+    refused(MESH SOFT STATIC, LAR_ERROR_FORMAT, line, "*STEP has no *END STEP");
+    refused(MESH SOFT END, LAR_ERROR_FORMAT, line, "without a *STEP");
+    refused(MESH SOFT "*STEP\n" END, LAR_ERROR_FORMAT, line, "the step has no procedure");
+    refused(MESH SOFT "*STEP\n*STATIC\n*DYNAMIC\n" END, LAR_ERROR_FORMAT, line + 2, "second proc");
+    refused(MESH SOFT "*STATIC\n", LAR_ERROR_FORMAT, line, "outside of a step");
+    refused(MESH SOFT "*STEP\n*FREQUENCY\n10\n" END, LAR_ERROR_UNSUPPORTED, line + 1, "*FREQUENCY");
+    refused(MESH SOFT "*STEP, PERTURBATION\n*STATIC\n" END, LAR_ERROR_UNSUPPORTED, line,
+            "PERTURBATION");
+    refused(MESH SOFT "*STEP\n*STATIC, RIKS\n" END, LAR_ERROR_UNSUPPORTED, line + 1, "RIKS");
+    refused(MESH SOFT "*STEP\n*DYNAMIC\n0.1, -2\n" END, LAR_ERROR_MODEL, line + 2, "period is -2");
+    refused(MESH SOFT "*INCLUDE, INPUT=x.inp\n", LAR_ERROR_UNSUPPORTED, line, "copy the included");
+}
+
+/* As Abaqus/CAE writes them: one part, one instance, names with the instance before a dot. */
+static void test_parts(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        "*Heading\n** Job name: Job-1\n*Preprint, echo=NO\n*Part, name=P\n" MESH
+        "** Section: S\n*Solid Section, elset=BOTH, material=Soft\n,\n*End Part\n"
+        "*Assembly, name=Assembly\n*Instance, name=P-1, part=P\n*End Instance\n"
+        "*Nset, nset=Set-1, instance=P-1\n 9, 10\n*End Assembly\n"
+        "*Material, name=Soft\n*Density\n1000.,\n*Hyperelastic, neo hooke\n500., 0.0001\n"
+        "*Boundary\nP-1.Wall, ENCASTRE\n*Step, name=Step-1, nlgeom=YES\n*Static\n0.1, 1., 1e-05, "
+        "1.\n*Cload\nSet-1, 2, 3.\nP-1.12, 1, 1.\n*Output, field, variable=PRESELECT\n*End Step\n");
+    assert_int_equal(fixed(model, 8), LAR_AXIS_ALL);
+    assert_int_equal(model->load_count, 2);
+    assert_int_equal(model->notice_count, 1);
+    lar_model_destroy(model);
+}
+
+static bool is_deck(const char *text) {
+    lar_bytes bytes = {(unsigned char *)(uintptr_t)text, strlen(text)};
+    return lar_inp_is_deck(&bytes);
+}
+
+static void test_is_deck(void **state) {
+    (void)state;
+    assert_false(is_deck(MESH));
+    assert_false(is_deck("*Heading\nx\n" MESH "*SOLID SECTION, ELSET=LEFT, MATERIAL=Steel\n"));
+    assert_true(is_deck(MESH SOFT));
+    assert_true(is_deck(MESH "*boundary\nWALL, 1\n"));
+    assert_true(is_deck(MESH "*End  Step"));
+    assert_false(is_deck(MESH "** *BOUNDARY\n*"));
+}
+
+/* Cut off anywhere, or with a byte changed: read or refused, never more. */
+static void test_damage(void **state) {
+    (void)state;
+    static const char deck[] =
+        TWO "*BOUNDARY\n1, 1, 3\n*AMPLITUDE, NAME=a\n0,0,1,1\n*INITIAL CONDITIONS, "
+            "TYPE=VELOCITY\n1, 1, 1\n*CONTACT PAIR\nUnder, Top\n" STATIC
+            "*BOUNDARY, AMPLITUDE=a\n2, 1, 2, 1\n*CLOAD\n5, 1, 1\n*DLOAD\n1, P1, 2\n, GRAV, 1, 0, "
+            "0, 1\n*DSLOAD\nTop, P, 1\n" END;
+    static char text[sizeof deck];
+    static const char bad[] = {'*', ',', '9', '-', ' ', 'x', '\n', '=', (char)0xff};
+    for (size_t i = 0; i < sizeof deck; i++)
+        for (size_t k = 0; k <= sizeof bad; k++) {
+            lar_model *model = NULL;
+            lar_error error;
+            memcpy(text, deck, sizeof deck);
+            text[i] = k < sizeof bad ? bad[k] : '\0';
+            if (i + 1 == sizeof deck) text[i] = '\0';
+            if (parse(text, &model, &error))
+                assert_true(strncmp(error.message, "deck.inp", 8) == 0);
+            else
+                lar_model_destroy(model);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_materials),     cmocka_unit_test(test_static_without_density),
+        cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_bad_supports),  cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bad_loads),     cmocka_unit_test(test_initial_velocity),
+        cmocka_unit_test(test_contact),       cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_parts),         cmocka_unit_test(test_is_deck),
+        cmocka_unit_test(test_damage),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
