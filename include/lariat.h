@@ -614,6 +614,14 @@ typedef enum lar_session_state {
     LAR_SESSION_STOPPED /* see error and message */
 } lar_session_state;
 
+/* Why a session is in slow motion. */
+typedef enum lar_slow_cause {
+    LAR_SLOW_NOT = 0,  /* it is not, or nobody knows yet */
+    LAR_SLOW_STEP,     /* a step takes longer than the time that it stands for */
+    LAR_SLOW_DIVISION, /* the same, because steps are divided now */
+    LAR_SLOW_MACHINE   /* a step does not, but other programs take the processor away */
+} lar_slow_cause;
+
 /* How it goes. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
@@ -621,7 +629,12 @@ typedef struct lar_session_status {
     double time;                                    /* simulated [s] */
     double step_p50, step_p99, step_p999, step_max; /* of a step, engine alone: tick / steps */
     double tick_p50, tick_p99, tick_p999, tick_max; /* from a tick's due time to its forces */
-    uint64_t ticks, misses;      /* ticks whose forces came after the next was due */
+    uint64_t ticks, misses;      /* ticks whose forces came after the next was due, those of slow
+                                    motion left out */
+    uint64_t slow_ticks;         /* these: late because the session is in slow motion; their times
+                                    in tick_... count from when they began */
+    double pace;                 /* simulated seconds per second of the clock, as asked for; 0: as
+                                    fast as it goes */
     double real_time_factor;     /* simulated time per time of the clock, paused
                                     time left out, since the start */
     double real_time_factor_now; /* the same over the last second */
@@ -641,6 +654,9 @@ typedef struct lar_session_status {
     char recovery[1016];    /* the last time: "went back 0.62 s to step 15800: " and why; "" */
     int32_t step_parts;     /* lar_simulation_step_parts at the end of the last tick */
     uint64_t divided_steps; /* steps that were divided, since the session was opened */
+    double step_least;      /* the least processor time of a step in the last second [s]; 0: none */
+    lar_slow_cause slow_cause; /* of the slow motion that is now */
+    char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);

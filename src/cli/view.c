@@ -40,9 +40,9 @@ typedef struct view {
     pid_t browser;           /* its starter; 0: none */
     lar_session_state state; /* as last told */
     bool slow;
-    double slow_told;      /* when slow motion was last announced [s] */
-    uint64_t recoveries;   /* as last told */
-    double recovered_told; /* when that was [s] */
+    double slow_since, slow_told; /* when slow motion began, and was last announced [s] */
+    uint64_t recoveries;          /* as last told */
+    double recovered_told;        /* when that was [s] */
     double progress_at;
     double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
@@ -220,20 +220,29 @@ static void announce_recovery(view *v, const lar_session_status *s, double at) {
     v->recovered_told = at;
 }
 
-/* Slow motion and stops are announced, each time they begin. */
-static void announce(view *v, const lar_session_status *s, double at) {
+/* Slow motion is told half a second after it has begun: by then it is known why, and how slow the
+ * last second was. One that is over by then was a moment's, and is only counted. */
+static void announce_slow(view *v, const lar_session_status *s, double at) {
+    static const double KNOWN = 0.5; /* [s] */
     if (s->slow_motion && !v->slow) {
         v->report.slow_times++;
-        if (at > v->slow_told + RATHER_NOT_AGAIN) {
-            clear_progress(v);
-            cli_complain(&cli_view, CLI_DONE,
-                         "note: slow motion: %.2f times real time; the machine is busy or the "
-                         "model too large",
-                         s->real_time_factor_now);
-            v->slow_told = at;
-        }
+        v->slow_since = at;
     }
     v->slow = s->slow_motion != 0;
+    if (s->slow_cause != LAR_SLOW_NOT) v->report.slow_cause = s->slow_cause;
+    if (!v->slow || s->slow_cause == LAR_SLOW_NOT || at < v->slow_since + KNOWN ||
+        at < v->slow_told + RATHER_NOT_AGAIN || v->slow_told > v->slow_since ||
+        s->real_time_factor_now > 0.99 * s->pace)
+        return;
+    clear_progress(v);
+    cli_complain(&cli_view, CLI_DONE, "note: slow motion, %.2f times real time: %s",
+                 s->real_time_factor_now, s->slow_advice);
+    v->slow_told = at;
+}
+
+/* Slow motion and stops are announced, each time they begin. */
+static void announce(view *v, const lar_session_status *s, double at) {
+    announce_slow(v, s, at);
     announce_recovery(v, s, at);
     if (s->error == LAR_ERROR_PEER && v->failure != LAR_ERROR_PEER) {
         clear_progress(v);

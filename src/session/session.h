@@ -20,6 +20,7 @@
 #define LAR_SESSION_SESSION_H
 
 #include "engine/simulation.h"
+#include "session/advice.h"
 #include "session/coupling.h"
 #include "session/device.h"
 #include "session/exchange.h"
@@ -79,6 +80,7 @@ struct lar_session {
     /* The engine's own. */
     lar_session_status status;
     lar_pace pace;
+    lar_advice advice;
     bool stepping; /* pauses when `steps_left` are done */
     uint64_t steps_left;
     lar_recovery recovery;

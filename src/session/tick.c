@@ -17,10 +17,13 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_session_status *status = &session->status;
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
-    status->step_parts = lar_simulation_step_parts(session->simulation);
+    const int32_t parts = lar_simulation_step_parts(session->simulation);
+    if (parts != status->step_parts) lar_pace_forget_least(&session->pace);
+    status->step_parts = parts;
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
+    if (quantiles) lar_advise(&session->advice, session->pace.pace, status);
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
     for (int32_t i = 0; i < session->tools; i++) {
@@ -77,13 +80,14 @@ static void tick(lar_session *session) {
     if (session->stepping && session->steps_left < steps) steps = session->steps_left;
     lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
     lar_status status = lar_session_move_tools(session, &error);
-    int64_t begin = lar_clock_ns();
+    int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
     if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
     if (status) {
         if (!lar_session_recover(session, &error)) lar_session_stop(session, &error);
         return;
     }
-    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
+    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
+                      lar_clock_thread_ns() - before);
     lar_session_feel_tools(session);
     session->pace.total.exchanges++;
     lar_pace_answered(&session->pace, lar_clock_ns());

@@ -74,12 +74,15 @@ export interface Status {
     tick_us: Percentiles;
     ticks: number;
     misses: number;
+    slow_ticks: number; // late in slow motion, and no misses
     real_time_factor: number | null;
     real_time_factor_now: number | null;
     engine_rate: number;
     haptic_rate: number;
     snapshot_rate: number;
     slow_motion: boolean;
+    slow_cause: '' | 'step' | 'division' | 'machine';
+    slow_advice: string; // why, and what to do about it
     lag: number;
     skipped: number;
     recording: boolean;

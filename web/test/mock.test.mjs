@@ -26,7 +26,17 @@ test('slow motion is announced so that nobody misses it, and only while it lasts
     const box = await v.page.locator('#slow').boundingBox();
     assert.ok(box.width * box.height > 10000, 'the banner is large');
     assert.equal(await v.page.locator('#state-text').innerText(), 'slow motion');
+    // Which of the two it is, and what would help; never a factor that is none.
+    assert.match(await v.page.locator('#slow').innerText(), /A step takes 250 µs .* --grid 2x2x1, a mesh of about 700 elements/);
     await v.shot('slow-motion');
+    server.state.slow = 1.01;
+    await v.page.locator('#slow').getByText('catching up with the clock').waitFor({ timeout: 3000 });
+    assert.doesNotMatch(await v.page.locator('#slow').innerText(), /1\.01/);
+    // Every row of the engine's panel says what it is.
+    await v.page.locator('#panel').evaluate((card) => (card.open = true));
+    const rows = await v.page.locator('#panel tr').evaluateAll((all) => all.map((row) => [row.innerText, row.title]));
+    assert.ok(rows.length > 15);
+    for (const [text, title] of rows) assert.ok(title.length > 20, `${text} has no explanation`);
     server.state.slow = false;
     await v.page.locator('#slow').waitFor({ state: 'hidden', timeout: 4000 });
     await v.close();

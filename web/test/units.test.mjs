@@ -254,6 +254,14 @@ test('messages of a wrong length are refused', () => {
     assert.throws(() => parts.protocol.readRiding(new Uint32Array([4, 1, 1, 1, 0, 0]).buffer), /wrong length/);
 });
 
+test('times are written in milliseconds, and slow motion is never faster than asked for', () => {
+    const { span, slowness } = parts.panel;
+    assert.deepEqual([21, 99.95, 231, 1520, 99920, null].map(span), ['21.0 µs', '0.10 ms', '0.23 ms', '1.52 ms', '99.9 ms', '–']);
+    assert.equal(slowness({ pace: 1, real_time_factor_now: 0.82 }), '0.82 × real time');
+    assert.equal(slowness({ pace: 1, real_time_factor_now: 1.01 }), 'catching up with the clock');
+    assert.equal(slowness({ pace: 0.5, real_time_factor_now: 0.499 }), 'catching up with the clock');
+});
+
 test('the badge says real time only where it is', () => {
     const { playing } = parts.panel;
     const at = (pace, factor) => playing({ pace, real_time_factor_now: factor });
