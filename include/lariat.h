@@ -652,6 +652,8 @@ typedef struct lar_session_status {
     uint64_t recoveries;    /* how often the run broke and went back to a sound state by itself,
                                since the session was opened */
     char recovery[1016];    /* the last time: "went back 0.62 s to step 15800: " and why; "" */
+    uint64_t placed;        /* how often the run was put somewhere else: reset, loaded, went back.
+                               Tools are where the state has them then, and in nobody's hand */
     int32_t step_parts;     /* lar_simulation_step_parts at the end of the last tick */
     uint64_t divided_steps; /* steps that were divided, since the session was opened */
     double step_least;      /* the least processor time of a step in the last second [s]; 0: none */

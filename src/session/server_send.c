@@ -164,6 +164,7 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
     lar_json_text(json, "recovery", s->recovery);
+    lar_json_integer(json, "placed", (int64_t)s->placed);
     lar_json_integer(json, "step_parts", s->step_parts);
     lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
 }

@@ -60,6 +60,7 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
     }
     if (!status) status = lar_history_create(session->tools, &session->history, error);
     if (!status) lar_session_take_tools(session);
+    session->status.placed = 0;
     return status;
 }
 

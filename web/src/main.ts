@@ -47,7 +47,7 @@ function start(): void {
             force.clear();
             instrument.choose(-1);
             stopped = '';
-            recoveries = -1;
+            recoveries = placed = -1;
             trouble.hide();
         },
         surface(surface) {
@@ -72,6 +72,7 @@ function start(): void {
             toolCard.update(status);
             showStop(status);
             showRecovery(status);
+            dropPlaced(status);
         },
         hand(news) {
             hand.news(news);
@@ -160,6 +161,15 @@ function start(): void {
         if (recoveries >= 0 && status.recoveries > recoveries)
             note(`The tissue was strained too much, and the run ${status.recovery}`, 9000);
         recoveries = status.recoveries;
+    }
+
+    let placed = -1;
+    function dropPlaced(status: Status): void {
+        if (placed >= 0 && status.placed > placed) {
+            pointer.drop();
+            if (instrument.placed()) note('The instrument is where this state has it; take it anew to move it.');
+        }
+        placed = status.placed;
     }
 
     let before = performance.now();

@@ -90,6 +90,7 @@ export interface Status {
     message: string;
     recoveries: number; // times that the run became unstable and went back to a sound state
     recovery: string; // the last of them
+    placed: number; // times that it was put somewhere else: reset, load, went back
     step_parts: number; // that every step is computed in now; 1: not divided
     divided_steps: number;
     viewers: number;

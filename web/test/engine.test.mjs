@@ -213,6 +213,38 @@ test('instruments are chosen, moved and closed', async () => {
     assert.equal(await v.page.locator('#opening-row').isVisible(), false);
 });
 
+test('after a reset an instrument is where the scene has it, and stays there', async () => {
+    await fresh();
+    const grasper = async () => (await v.get('tools'))[1].slice(0, 3);
+    const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+    const rest = await grasper();
+    await v.page.getByRole('radio', { name: 'grasper' }).click();
+    await v.page.locator('#picture').focus();
+    const keys = v.page.keyboard;
+    await keys.press('p');
+    for (let i = 0; i < 8; i++) await keys.press('ArrowLeft');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) > 0.005, rest);
+    await keys.press('r');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) < 1e-6, rest);
+    await v.page.getByText('take it anew').waitFor({ timeout: 3000 });
+    await keys.press('ArrowLeft'); // it is nobody's now: this turns the view
+    await v.page.waitForTimeout(500);
+    assert.ok(apart(await grasper(), rest) < 1e-6, 'a key brings it back');
+    await v.page.reload();
+    await v.until(() => window.lariat?.frames > 2 && window.lariat.tools.length > 1);
+    await v.page.waitForTimeout(500);
+    assert.ok(apart(await grasper(), rest) < 1e-6, 'leaving brings it back');
+    // Taken anew, it goes on from there.
+    await v.page.getByRole('radio', { name: 'grasper' }).click();
+    await v.page.locator('#picture').focus();
+    await keys.press('p');
+    await keys.press('ArrowRight');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) > 1e-4, rest);
+    assert.ok(apart(await grasper(), rest) < 0.004);
+    await keys.press('Escape');
+    await v.page.getByRole('radio', { name: 'hand' }).click();
+});
+
 test('one finger pulls, two zoom', async () => {
     await fresh();
     const phone = await openBrowser({ viewport: { width: 412, height: 780 }, hasTouch: true, isMobile: true, deviceScaleFactor: 1 });

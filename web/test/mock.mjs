@@ -91,7 +91,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
-        parts: 1, divided: 0, pressed: false,
+        placed: 0, parts: 1, divided: 0, pressed: false,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -186,7 +186,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
         recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
         recoveries: state.recoveries, recovery: state.recovery,
-        step_parts: state.parts, divided_steps: state.divided,
+        placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true }
                 : { depth: 0, apart: 0, limited: false }),
@@ -347,6 +347,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                     speed.fill(0);
                     held = null;
                     state.step = 0;
+                    state.placed++;
+                    tools.forEach((t, i) => (poses[i] = structuredClone(t.rest)));
                     state.message = '';
                     if (state.state === 'stopped') state.state = 'paused';
                     say({ kind: 'hand', hand: 0, tool: 1, state: 'lost' });
