@@ -91,7 +91,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const state = {
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
-        placed: 0, parts: 1, divided: 0, pressed: false,
+        noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -253,6 +253,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 const d = [0, 1, 2].map((k) => positions[3 * i + k] - (fine && i >= rest.length / 3 ? fine.inner[3 * i - rest.length + k] : rest[3 * i + k]));
                 const length = Math.hypot(...d);
                 values[i] = { displacement: length, von_mises: length * 40000, pressure: d[2] * 30000, energy: length * 900 }[field] ?? 0;
+                if (state.noise) values[i] = (field === 'pressure' ? ((i * 37) % 19) - 9 : (i * 37) % 19) * 1e-12;
             }
             view.setFloat64(48, Math.min(...values), true);
             view.setFloat64(56, Math.max(...values), true);

@@ -182,6 +182,23 @@ test('pressure has a map with zero in its middle; processors have colours of the
     await v.close();
 });
 
+test('an organ at rest has one colour: the range has a floor', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    own.state.noise = true; // values of rounding, as a body at rest has them
+    const v = await openPage(browser, own.url);
+    const places = [[470, 300], [530, 300], [500, 250], [500, 380]];
+    for (const [name, most] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
+        await v.page.getByRole('radio', { name }).click();
+        await v.until((text) => document.getElementById('legend-most').innerText === text, most);
+        await v.page.waitForTimeout(300);
+        const seen = await colours(v.page, places);
+        for (const colour of seen) assert.ok(difference(colour, seen[0]) < 45, `${name}: ${seen.join(' | ')}`);
+    }
+    await v.shot('at-rest');
+    await v.close();
+});
+
 test('a fine surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
     const own = await mock({ riding: true });
     const v = await openPage(browser, own.url);

@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera'];
+    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera', 'range'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -244,6 +244,23 @@ test('numbers are written with three digits and a unit', () => {
     assert.equal(withUnit(-1250, 'Pa'), '−1.25 kPa');
     assert.equal(withUnit(0, 'Pa'), '0 Pa');
     assert.equal(withUnit(999.9, 'Pa'), '1.00 kPa');
+});
+
+test('the range of a resting organ has a floor, so that rounding is not spread over all colours', () => {
+    const { follow, floorOf } = parts.range;
+    assert.deepEqual([['m', 1e-4], ['Pa', 1], ['J/m³', 0.01]].map(([unit]) => floorOf(unit)), [1e-4, 1, 0.01]);
+    assert.equal(floorOf(''), 0);
+    const still = { least: 0, most: 0 };
+    assert.deepEqual(follow(still, 3e-19, 4e-18, 'm', false), { least: 0, most: 1e-4 });
+    assert.deepEqual(follow(still, -2e-9, 1e-9, 'Pa', true), { least: -1, most: 1 });
+    assert.deepEqual(follow(still, 0, 250, 'Pa', false), { least: 0, most: 250 });
+    assert.deepEqual(follow(still, -250, 100, 'Pa', true), { least: -250, most: 250 });
+    // Downwards slowly, and never below the floor.
+    let range = { least: 0, most: 250 };
+    range = follow(range, 0, 0, 'Pa', false);
+    assert.ok(range.most < 250 && range.most > 230);
+    for (let i = 0; i < 500; i++) range = follow(range, 0, 0, 'Pa', false);
+    assert.ok(Math.abs(range.most - 1) < 1e-6, `${range.most}`);
 });
 
 test('messages of a wrong length are refused', () => {
