@@ -12,7 +12,7 @@
 #include "cli/run_report.h"
 
 typedef struct run_settings {
-    const char *scene, *out;
+    const char *scene, *out, *resume, *save;
     double time, time_step; /* 0: not given */
     int64_t steps;          /* 0: not given */
     int element, isa;       /* as lar_element_kind, lar_isa */
@@ -33,10 +33,10 @@ typedef struct run {
     lar_status failure;   /* of the library, LAR_OK: none */
     lar_results *results; /* NULL without --out */
     lar_step_clock clock;
-    uint64_t last_step; /* where the run ends */
-    double interval;    /* between frames [s], 0: only the end */
-    int64_t next_frame; /* number of the next one, in intervals */
-    uint64_t framed;    /* the step of the latest frame, UINT64_MAX: none */
+    uint64_t first_step, last_step; /* where the run begins and ends */
+    double interval;                /* between frames [s], 0: only the end */
+    int64_t next_frame;             /* number of the next one, in intervals */
+    uint64_t framed;                /* the step of the latest frame, UINT64_MAX: none */
     int frames;
     double elapsed;     /* [s] */
     double progress_at; /* when progress was last shown [s]; 0: it is not on the screen */
@@ -48,7 +48,8 @@ static void show_progress(run *r) {
     static const double QUIET = 1.0, EVERY = 0.1; /* shorter runs say nothing [s] */
     double elapsed = lar_step_clock_elapsed(&r->clock);
     if (elapsed < QUIET || elapsed < r->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
-    double done = (double)lar_simulation_steps(r->simulation) / (double)r->last_step;
+    double done = (double)(lar_simulation_steps(r->simulation) - r->first_step) /
+                  (double)(r->last_step - r->first_step);
     fprintf(stderr, "\r%5.1f %%  %.4g s simulated, %.0f s to go \033[K", 100 * done,
             lar_simulation_time(r->simulation), ceil(elapsed * (1 - done) / done));
     fflush(stderr);
@@ -162,7 +163,8 @@ static int report_failure(run *r, const lar_error *error) {
 static int advance(run *r) {
     const lar_step_glance glance = {.every = 0.1, .look = look, .context = r};
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
-    r->next_frame = 1;
+    if (r->interval > 0)
+        r->next_frame = (int64_t)floor(lar_simulation_time(r->simulation) / r->interval + 1e-6) + 1;
     lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
     while (!status && !cli_stop_asked && lar_simulation_steps(r->simulation) < r->last_step) {
         uint64_t now = lar_simulation_steps(r->simulation), stop = next_stop(r);
@@ -184,17 +186,18 @@ static int advance(run *r) {
 static int choose_length(run *r) {
     const run_settings *settings = &r->settings;
     r->interval = lar_model_output_interval(r->model);
-    r->last_step = (uint64_t)settings->steps;
+    r->first_step = lar_simulation_steps(r->simulation);
+    r->last_step = r->first_step + (uint64_t)settings->steps;
     if (settings->steps > 0) return CLI_DONE;
-    double time = settings->time;
-    if (time <= 0) time = fmax(lar_model_duration(r->model), r->interval);
+    double time = settings->time, begin = lar_simulation_time(r->simulation);
+    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
     if (time <= 0) time = 1;
     double steps = round(time / lar_simulation_time_step(r->simulation));
     if (steps > 1e15)
         return cli_complain(&cli_run, CLI_FAILED,
                             "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
                             time, steps, lar_simulation_time_step(r->simulation));
-    r->last_step = (uint64_t)fmax(1, steps);
+    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
     return CLI_DONE;
 }
 
@@ -215,6 +218,7 @@ static int prepare(run *r) {
     lar_error error;
     int status = cli_processes_begin(&cli_run, &s->parallel, s->argc, s->argv, &r->processes);
     if (!status) status = cli_open_model(&cli_run, s->scene, &r->model);
+    if (!status) status = cli_resume_options(&cli_run, s->resume, r->model, &options);
     if (!status)
         status = cli_processes_start(&cli_run, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
@@ -227,6 +231,8 @@ static int prepare(run *r) {
 
 static int compute(run *r) {
     lar_error error;
+    if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
+        return fail_by(r, &error);
     int status = choose_length(r);
     if (!status && r->settings.out &&
         lar_results_open(r->settings.out, r->simulation, &r->results, &error))
@@ -237,6 +243,8 @@ static int compute(run *r) {
     }
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))
+        status = fail_by(r, &error);
     if (!status) status = report(r);
     return !status && cli_stop_asked ? CLI_INTERRUPTED : status;
 }
@@ -293,6 +301,12 @@ static int run_main(int argc, char **argv) {
                    "results are the same",
                    &s.isa, cli_isa_names),
         CLI_TEXT("--out", "DIR", "write frames, .pvd, probes.csv and run.json there", &s.out),
+        CLI_TEXT("--resume", "FILE",
+                 "go on from a saved state of this scene (.checkpoint);\n--time and --steps count "
+                 "from there",
+                 &s.resume),
+        CLI_TEXT("--save", "FILE", "save the last state there (.checkpoint), to go on from",
+                 &s.save),
         CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
         CLI_PARALLEL(s.parallel),
         CLI_FLAG("--verify",
@@ -319,6 +333,8 @@ const cli_command cli_run = {
     .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
                 "  lariat run demo/uterus.yaml --time 2 --realtime\n"
                 "  lariat run demo/uterus.yaml --steps 1000 --json\n"
+                "  lariat run demo/uterus.yaml --time 1 --save half.checkpoint\n"
+                "  lariat run demo/uterus.yaml --resume half.checkpoint\n"
                 "  lariat run demo/uterus.yaml --grid 2x1x1\n"
                 "  lariat run demo/uterus.yaml --grid 2x2x1 --threads 2 --scheme local --comm shm\n"
                 "  mpirun -n 4 lariat run demo/uterus.yaml --grid 2x2x1 --comm mpi\n"

@@ -16,7 +16,7 @@
 #include "cli/view_report.h"
 
 typedef struct view_settings {
-    const char *scene, *listen, *token, *record, *save_folder, *viewer;
+    const char *scene, *resume, *listen, *token, *record, *save_folder, *viewer;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
     double pace, seconds, time_step;
@@ -73,6 +73,12 @@ static int prepare(view *v) {
     cli_parallel_set(&s->parallel, &options);
     int status = cli_processes_begin(&cli_view, &s->parallel, s->argc, s->argv, &v->processes);
     if (!status) status = cli_open_model(&cli_view, s->scene, &v->model);
+    if (!status) status = cli_resume_options(&cli_view, s->resume, v->model, &options);
+    if (!status && options.hands == 0)
+        cli_complain(
+            &cli_view, CLI_DONE,
+            "note: %s has no hands, nobody can pull; states that lariat view saves have some",
+            s->resume);
     if (!status)
         status = cli_processes_start(&cli_view, v->processes, v->model, &options, &v->parallel);
     if (status) return status;
@@ -152,6 +158,8 @@ static int open_session(view *v) {
     options.paused = s->paused;
     options.priority = (int)s->priority;
     options.record = s->record;
+    if (s->resume && lar_simulation_load(v->simulation, s->resume, &error))
+        return fail_by(v, &error);
     if (lar_session_open(v->simulation, &options, &v->session, &error)) return fail_by(v, &error);
     int status = CLI_DONE;
     for (int i = 0; i < s->devices.count && !status; i++) status = attach(v, s->devices.text[i]);
@@ -395,6 +403,8 @@ static int view_main(int argc, char **argv) {
                   "a tool's device: script:FILE.csv, udp:HOST:PORT, gamepad:N;\nmay be given for "
                   "several tools",
                   &s.devices),
+        CLI_TEXT("--resume", "FILE", "go on from a saved state of this scene (.checkpoint)",
+                 &s.resume),
         CLI_TEXT("--record", "FILE", "record all inputs, from the start", &s.record),
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",

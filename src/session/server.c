@@ -290,6 +290,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     server->forces.memory = lar_calloc_aligned(bytes, 1);
     if (!server->forces.memory) return lar_fail_memory(error, bytes, "forces for viewers");
     server->pace = session->options.pace;
+    lar_server_list_saved(server);
     take_status(server);
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);

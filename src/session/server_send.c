@@ -169,6 +169,16 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
 }
 
+static void write_replay(const lar_server *server, lar_json *json) {
+    const lar_session_status *s = &server->status;
+    if (!s->replaying) return;
+    lar_json_open(json, "replay", '{');
+    lar_json_text(json, "name", server->played);
+    lar_json_number(json, "time", s->replay_time);
+    lar_json_number(json, "length", s->replay_length);
+    lar_json_close(json, '}');
+}
+
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
     int64_t now = lar_clock_ns();
     lar_json_begin(json);
@@ -177,8 +187,14 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     lar_json_number(json, "pace", server->pace);
     lar_json_integer(json, "viewers", __atomic_load_n(&server->viewers, __ATOMIC_RELAXED));
     lar_json_open(json, "saved", '[');
-    for (int i = 0; i < server->saves; i++) lar_json_text(json, NULL, server->save[i]);
+    for (int i = 0; i < server->states.count; i++)
+        lar_json_text(json, NULL, server->states.name[i]);
     lar_json_close(json, ']');
+    lar_json_open(json, "recordings", '[');
+    for (int i = 0; i < server->recordings.count; i++)
+        lar_json_text(json, NULL, server->recordings.name[i]);
+    lar_json_close(json, ']');
+    write_replay(server, json);
     lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < server->session->tools; i++) {
         const lar_tool_force *force = &server->tool[i].force;

@@ -110,6 +110,7 @@ static void destroy(lar_session *session) {
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
     lar_recovery_destroy(&session->recovery);
+    lar_player_close(session->player);
     lar_mailbox_destroy(&session->view);
     lar_requests_destroy(&session->requests);
     free(session);

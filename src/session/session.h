@@ -26,6 +26,7 @@
 #include "session/exchange.h"
 #include "session/history.h"
 #include "session/pace.h"
+#include "session/player.h"
 #include "session/recording_file.h"
 #include "session/recovery.h"
 #include "session/requests.h"
@@ -86,6 +87,7 @@ struct lar_session {
     lar_recovery recovery;
     uint64_t good_step;     /* where the last tick ended that did not break */
     lar_recorder *recorder; /* NULL: none */
+    lar_player *player;     /* NULL: none */
     uint64_t hashed;        /* step of the latest hash in the recording */
     bool ended;
 };
@@ -99,6 +101,8 @@ lar_recording_header lar_session_recording_header(const lar_session *session);
 
 void *lar_session_run(void *session);
 void lar_session_obey(lar_session *session, const lar_request *request);
+/* The simulation is somewhere else now, and the run goes on from there. */
+lar_status lar_session_arrive(lar_session *session, lar_error *error);
 /* Plays from now on; rests; stops, because the run broke. */
 void lar_session_go_on(lar_session *session);
 void lar_session_rest(lar_session *session);

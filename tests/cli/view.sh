@@ -95,7 +95,7 @@ for grid in '' '--grid 2x1x1 --comm shm'; do
     [ "$(value_of state)" = '"playing"' ] || fail "the state is $(value_of state)"
     case $(value_of recovery) in '"went back'*) ;; *) fail "the last was $(value_of recovery)" ;; esac
     hash=$(value_of state_hash)
-    expect 0 "$LARIAT" replay back.recording block.yaml --json
+    expect 0 "$LARIAT" replay block.yaml back.recording --json
     [ "$(value_of state_hash)" = "$hash" ] || fail "it replays to $(value_of state_hash), not $hash"
 done
 
@@ -172,6 +172,18 @@ for incomplete in probe probe=; do
     expect 2 "$LARIAT" view $scene --port 0 --device $incomplete
     complains 'TOOL=DEVICE'
 done
+
+# A state of a session, which has hands, is taken up where it was; one of a run has none.
+expect 0 "$LARIAT" run $scene --steps 500 --save half.checkpoint
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --paused --json --resume half.checkpoint
+[ "$(value_of steps)" -eq 500 ] || fail "it begins at step $(value_of steps)"
+complains 'half.checkpoint has no hands'
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.3 --resume none.checkpoint
+complains 'none.checkpoint'
+expect 1 "$LARIAT" view demo/uterus.yaml --port 0 --seconds 0.3 --resume half.checkpoint
+complains 'half.checkpoint: was saved from another model'
+expect 1 "$LARIAT" view half.checkpoint --port 0
+complains 'half.checkpoint: is a saved state .* lariat run SCENE --resume half.checkpoint, or with lariat view'
 
 # What is recorded from the command line is there.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording

@@ -9,6 +9,8 @@ import { Hints, Trouble, note } from './notices';
 import { Panel, StateLine } from './panel';
 import { Pointer } from './pointer';
 import type { Status } from './protocol';
+import { ReplayBar } from './replaybar';
+import { SavedCard } from './savedcard';
 import { Session } from './session';
 import { ToolCard } from './toolcard';
 import { Transport } from './transport';
@@ -41,6 +43,7 @@ function start(): void {
             line.setTitle(hello.title);
             panel.setHello(hello);
             transport.setHello(hello);
+            saved.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
@@ -67,6 +70,8 @@ function start(): void {
         forces: (forces) => force.add(forces),
         status(status) {
             transport.update(status);
+            saved.update(status);
+            replay.update(status);
             panel.update(status);
             line.update(status);
             toolCard.update(status);
@@ -110,10 +115,12 @@ function start(): void {
         chooseForce();
     });
     const toolCard = new ToolCard(instrument);
-    const transport = new Transport(session, help);
+    const saved = new SavedCard(session);
+    const replay = new ReplayBar(session);
+    const transport = new Transport(session, help, replay);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, used);
-    listenToKeys({ view, hand, instrument, transport, colours, panel, say: note, used, help });
+    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, say: note, used, help });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
@@ -181,6 +188,7 @@ function start(): void {
         hand.update(now, force.range);
         instrument.update(now);
         pointer.update();
+        replay.look(now);
         if (view.draw(Math.min(0.1, (now - before) / 1000))) pictures++;
         before = now;
         if (now - counted > 1000) {

@@ -94,7 +94,9 @@ export interface Status {
     step_parts: number; // that every step is computed in now; 1: not divided
     divided_steps: number;
     viewers: number;
-    saved: string[];
+    saved: string[]; // saved states, oldest first
+    recordings: string[];
+    replay?: { name: string; time: number; length: number }; // what is played, in simulated seconds
     tools: ToolStatus[];
 }
 
@@ -276,4 +278,6 @@ export type Request =
     | { do: 'step'; steps: number }
     | { do: 'pace'; value: number }
     | { do: 'record'; on: boolean }
-    | { do: 'load'; name?: string };
+    | { do: 'load'; name?: string }
+    | { do: 'replay'; name?: string }
+    | { do: 'seek'; time: number };

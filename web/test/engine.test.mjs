@@ -114,6 +114,74 @@ test('record, save and load', async () => {
     await v.until((s) => window.lariat.step < s + 4000, at);
 });
 
+test('a recording is played: listed, paused, scrubbed, left; and it outlives the session', async () => {
+    await fresh();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('c');
+    await v.page.locator('#record[aria-pressed="true"]').waitFor({ timeout: 3000 });
+    await drag(v.page, ...FUNDUS, 40, -60, 8);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
+    await v.page.waitForTimeout(600);
+    await v.page.mouse.up();
+    await v.page.waitForTimeout(800);
+    await v.page.keyboard.press('c');
+    await v.page.locator('#record[aria-pressed="false"]').waitFor({ timeout: 3000 });
+    await v.page.keyboard.press('o');
+    const list = v.page.locator('#saved-recordings button');
+    await list.first().waitFor({ timeout: 3000 });
+    const name = await list.first().innerText();
+    await fresh();
+
+    // Listed by another engine too, which plays it.
+    const later = await view(model.scene, '--port', '0', '--save-folder', model.saved);
+    const p = await openPage(browser, later.url);
+    await p.page.locator('#saved').evaluate((card) => (card.open = true));
+    assert.equal(await p.page.locator('#saved-states button').count(), await v.page.locator('#saved-states button').count());
+    await p.page.getByRole('button', { name: `Play ${name}` }).click();
+    await p.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
+    await p.until(() => window.lariat.displacement > 0.003, undefined, 20000);
+    await p.page.locator('#picture').focus();
+    await p.page.keyboard.press('Space');
+    await p.until(() => window.lariat.state === 'paused');
+    await p.shot('11-replay');
+    const at = () => p.page.locator('#replay-time').innerText();
+    const slider = p.page.getByLabel('Place in the recording');
+    const half = (Number(await slider.getAttribute('max')) / 2).toFixed(2);
+    const arrived = (place) => p.until((text) => document.getElementById('replay-time').innerText.startsWith(`${text} of`), place, 20000);
+    await slider.fill('0');
+    await arrived('0.00');
+    await p.until(() => window.lariat.displacement < 1e-3 && window.lariat.state === 'paused');
+    assert.equal(await p.get('state'), 'paused', 'where it was scrubbed to it rests');
+    const hash = await p.get('hash');
+    await slider.fill(half);
+    await arrived(half);
+    await p.until((h) => window.lariat.hash !== h, hash);
+    const seen = await p.get('frames');
+    await p.until((n) => window.lariat.frames > n + 2, seen);
+    const middle = await p.get('hash');
+    await slider.fill('0');
+    await p.until((h) => window.lariat.hash === h, hash, 20000);
+    await slider.fill(half);
+    await p.until((h) => window.lariat.hash === h, middle, 20000);
+    await p.page.locator('#picture').focus();
+    await p.page.keyboard.press(';');
+    await p.until((text) => parseFloat(document.getElementById('replay-time').innerText) > Number(text), half);
+    await drag(p.page, ...FUNDUS, 10, -10, 2);
+    await p.page.getByText('a recording is being played').waitFor({ timeout: 3000 });
+    await p.page.mouse.up();
+    await p.page.keyboard.press('Space');
+    await p.until(() => window.lariat.state === 'paused', undefined, 20000); // its end
+    const [here, end] = (await at()).split(' of ').map((text) => parseFloat(text));
+    assert.ok(Math.abs(here - end) < 0.02, `it ends at ${here} of ${end}`);
+    assert.equal(await p.page.locator('#replay-trouble').innerText(), '', 'all hashes are equal');
+    await p.page.keyboard.press('x');
+    await p.page.locator('#replay').waitFor({ state: 'hidden', timeout: 3000 });
+    await p.page.keyboard.press('Space');
+    await p.until(() => window.lariat.state === 'playing');
+    await p.close();
+    await later.end();
+});
+
 test('colour maps change the picture, the legend and its range', async () => {
     await fresh();
     await drag(v.page, ...FUNDUS, 30, -60);

@@ -89,7 +89,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const materials = 1 + Math.max(...mesh.m);
 
     const state = {
-        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
+        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
     };
@@ -184,7 +184,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         ticks: state.tick, misses: 0, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
-        recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
+        recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
         recoveries: state.recoveries, recovery: state.recovery,
         placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
@@ -357,6 +357,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 pace: () => (state.pace = m.value),
                 record() {
                     state.recording = m.on;
+                    if (!m.on) state.recordings.push('pear-1.recording');
                     if (!m.on) say({ kind: 'saved', what: 'recording', name: 'pear-1.recording' });
                 },
                 save() {
@@ -364,6 +365,10 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                     say({ kind: 'saved', what: 'checkpoint', name: state.saved.at(-1) });
                 },
                 load: () => now.set(rest),
+                replay() {
+                    state.replay = m.name ? { name: m.name, time: 0, length: 2 } : null;
+                },
+                seek: () => (state.replay.time = m.time),
             };
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();
