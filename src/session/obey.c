@@ -178,7 +178,10 @@ static void go(lar_session *session, const lar_request *request) {
     if (request->kind == LAR_REQUEST_END) session->ended = true;
     if (request->kind == LAR_REQUEST_SEEK) seek(session, request->seconds);
     if (broken) return;
-    if (request->kind == LAR_REQUEST_PAUSE) lar_session_rest(session);
+    if (request->kind == LAR_REQUEST_PAUSE) {
+        if (session->player) lar_player_stay(session->player);
+        lar_session_rest(session);
+    }
     if (request->kind == LAR_REQUEST_STEP) step(session, request->steps);
     if (request->kind != LAR_REQUEST_PLAY) return;
     session->stepping = false;

@@ -58,4 +58,10 @@ lar_status lar_player_advance(lar_player *player, lar_simulation *simulation, ui
 lar_status lar_player_seek(lar_player *player, lar_simulation *simulation, uint64_t place,
                            lar_error *error);
 
+/* Wherever somebody wanted to go, it stays here. */
+static inline void lar_player_stay(lar_player *player) {
+    player->goal = 0;
+    player->rests = false;
+}
+
 #endif
