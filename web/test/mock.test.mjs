@@ -256,6 +256,34 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
     await own.close();
 });
 
+test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const parts = ['header', '#slow', '#replay', '#force', '#looks', '#hint', '#transport'];
+    const v = await openPage(browser, own.url);
+    Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'],
+        replay: { name: 'pear-1.recording', time: 0.4, length: 2 } });
+    await v.page.locator('#slow').waitFor({ state: 'visible', timeout: 3000 });
+    for (const [width, height] of [[390, 780], [640, 480], [640, 900], [800, 600], [900, 700], [1024, 600], [1024, 420], [1320, 700], [1600, 900]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.waitForTimeout(150);
+        const boxes = await v.page.evaluate((all) => all.map((part) => {
+            const { left, top, right, bottom } = document.querySelector(part).getBoundingClientRect();
+            return { part, left, top, right, bottom };
+        }), parts);
+        const say = (a) => `${a.part} (${[a.left, a.top, a.right, a.bottom].map(Math.round)})`;
+        for (const a of boxes) {
+            assert.ok(a.left >= 0 && a.top >= 0 && a.right <= width + 0.5 && a.bottom <= height + 0.5, `${say(a)} at ${width} x ${height}`);
+            assert.ok(a.bottom - a.top > 20 && a.right - a.left > 40, `${say(a)} is squeezed at ${width} x ${height}`);
+            for (const b of boxes)
+                assert.ok(a === b || a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1,
+                    `${say(a)} and ${say(b)} overlap at ${width} x ${height}`);
+        }
+        if ([390, 800, 1024, 1600].includes(width) && height > 500) await v.shot(`layout-${width}`);
+    }
+    await v.close();
+});
+
 test('where nothing rides there is no switch for it, and its key says so', async () => {
     const v = await openPage(browser, server.url);
     assert.equal(await v.get('surface'), 'mesh');
