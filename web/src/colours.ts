@@ -125,7 +125,7 @@ export class Colours {
             for (let p = 0; p < Math.min(this.hello.processors, 16); p++) add(processorColour(p), String(p));
         else if (this.hello.materials.length > 1)
             this.hello.materials.forEach((material, i) =>
-                add(organColour(i), material.name || `${i + 1}: ${withUnit(material.shear_modulus, 'Pa')}`),
+                add(organColour(material.name, i), material.name || `${i + 1}: ${withUnit(material.shear_modulus, 'Pa')}`),
             );
     }
 }

@@ -54,7 +54,8 @@ function start(): void {
             trouble.hide();
         },
         surface(surface) {
-            view.setSurface(surface, session.hello!.view);
+            const { materials, view: from } = session.hello!;
+            view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
             hints.start();
@@ -65,9 +66,15 @@ function start(): void {
         },
         frame(frame) {
             view.setFrame(frame);
+            view.others.update(frame, session.status, session.hello!.hands, force.range, view.endoscope.camera);
             colours.frame(frame);
         },
-        forces: (forces) => force.add(forces),
+        forces(forces) {
+            // A hand that holds nothing of ours may hold somebody else's.
+            const ours = hand.state === 'holding' || (instrument.chosen >= 0 && !hand.busy);
+            if (!ours) forces.values.fill(0);
+            force.add(forces);
+        },
         status(status) {
             transport.update(status);
             saved.update(status);

@@ -265,6 +265,24 @@ test('everything by keyboard', async () => {
     await v.until(() => window.lariat.hand === 'free' && window.lariat.force === 0);
 });
 
+test('the hands of other viewers are drawn, and your pull is yours', async () => {
+    await fresh();
+    const other = await openPage(browser, engine.url);
+    await drag(other.page, ...FUNDUS, 40, -60);
+    await other.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01, undefined, 20000);
+    await v.page.bringToFront();
+    await v.until(() => window.lariat.others === 1, undefined, 20000);
+    await v.shot('12-other-hand');
+    assert.equal(await v.get('force'), 0, 'your pull is not theirs');
+    assert.equal(await v.get('hand'), 'free');
+    await other.page.bringToFront();
+    await other.until(() => window.lariat.others === 0);
+    await other.page.mouse.up();
+    await other.close();
+    await v.page.bringToFront();
+    await v.until(() => window.lariat.others === 0, undefined, 20000);
+});
+
 test('instruments are chosen, moved and closed', async () => {
     await fresh();
     const tools = () => v.get('tools');

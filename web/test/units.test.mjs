@@ -234,8 +234,19 @@ test('the map for values grows evenly lighter; that around zero is lightest in i
 
 test('organs differ in lightness, for people who confuse hues', () => {
     const grey = (c) => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-    const values = [0, 1, 2, 3].map((i) => grey(parts.palette.organColour(i))).sort((a, b) => a - b);
+    const values = ['uterus', 'tubes', 'ovaries', 'ligaments'].map((name) => grey(parts.palette.organColour(name, 0))).sort((a, b) => a - b);
     for (let i = 1; i < values.length; i++) assert.ok(values[i] / values[i - 1] > 1.1);
+});
+
+test('an organ has the same colour in every scene, and others have others', () => {
+    const { organColour, css } = parts.palette;
+    assert.equal(css(organColour('Liver', 0)), css(organColour('liver', 7)));
+    assert.equal(css(organColour('left kidney', 1)), css(organColour('kidney', 4)));
+    assert.equal(css(organColour('wall_17', 0)), css(organColour('wall_17', 3)));
+    const names = ['uterus', 'tubes', 'ovaries', 'ligaments', 'liver', 'kidney', 'spleen', 'heart', 'lung', 'brain', 'artery', 'vein', 'wall_17', 'thing'];
+    const seen = new Set(names.map((name) => css(organColour(name, 0))));
+    assert.equal(seen.size, names.length);
+    assert.notEqual(css(organColour('', 0)), css(organColour('', 1)), 'without names, by their order');
 });
 
 test('numbers are written with three digits and a unit', () => {
