@@ -185,7 +185,8 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
 test('colour maps change the picture, the legend and its range', async () => {
     await fresh();
     await drag(v.page, ...FUNDUS, 30, -60);
-    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01);
+    // Far enough that no range is at its floor.
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01 && window.lariat.displacement > 0.003, undefined, 20000);
     const [tissue] = await colours(v.page, [MIDDLE]);
     const seen = new Set();
     const fields = [['displacement', 1, /m$/], ['von Mises stress', 4, /Pa$/], ['pressure', 8, /Pa$/]];
