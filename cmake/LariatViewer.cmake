@@ -16,6 +16,7 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
     session/server_http.c
     session/server_picture.c
     session/server_riding.c
+    session/server_saved.c
     session/server_send.c
     session/server_socket.c
     session/server_work.c)

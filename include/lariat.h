@@ -493,6 +493,19 @@ LAR_API lar_status lar_simulation_save(const lar_simulation *simulation, const c
 LAR_API lar_status lar_simulation_load(lar_simulation *simulation, const char *path,
                                        lar_error *error);
 
+/* What a saved state was made with: a simulation that shall take it up needs the same. */
+typedef struct lar_checkpoint_info {
+    lar_element_kind element;
+    int32_t nodes, elements; /* of the model */
+    int32_t tools;           /* of the model, and lar_options.hands */
+    double time_step;        /* [s] */
+    uint64_t step;
+} lar_checkpoint_info;
+
+/* Reads a saved state without taking it up. LAR_ERROR_FORMAT when it is none, or damaged. */
+LAR_API lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info,
+                                          lar_error *error);
+
 /* ---- results on disk -------------------------------------------------------------------- */
 
 typedef struct lar_results lar_results;
@@ -670,6 +683,14 @@ typedef enum lar_session_state {
     LAR_SESSION_STOPPED /* see error and message */
 } lar_session_state;
 
+/* Why a session is in slow motion. */
+typedef enum lar_slow_cause {
+    LAR_SLOW_NOT = 0,  /* it is not, or nobody knows yet */
+    LAR_SLOW_STEP,     /* a step takes longer than the time that it stands for */
+    LAR_SLOW_DIVISION, /* the same, because steps are divided now */
+    LAR_SLOW_MACHINE   /* a step does not, but other programs take the processor away */
+} lar_slow_cause;
+
 /* How it goes. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
@@ -677,7 +698,12 @@ typedef struct lar_session_status {
     double time;                                    /* simulated [s] */
     double step_p50, step_p99, step_p999, step_max; /* of a step, engine alone: tick / steps */
     double tick_p50, tick_p99, tick_p999, tick_max; /* from a tick's due time to its forces */
-    uint64_t ticks, misses;      /* ticks whose forces came after the next was due */
+    uint64_t ticks, misses;      /* ticks whose forces came after the next was due, those of slow
+                                    motion left out */
+    uint64_t slow_ticks;         /* these: late because the session is in slow motion; their times
+                                    in tick_... count from when they began */
+    double pace;                 /* simulated seconds per second of the clock, as asked for; 0: as
+                                    fast as it goes */
     double real_time_factor;     /* simulated time per time of the clock, paused
                                     time left out, since the start */
     double real_time_factor_now; /* the same over the last second */
@@ -687,16 +713,24 @@ typedef struct lar_session_status {
                                                        given up, and counted in `skipped` */
     double skipped;
     int recording;
-    lar_status error;       /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
-                               broke and did not go back (stop_when_unstable, or nobody has moved a
-                               tool since the start), reset or load takes it up again;
-                               LAR_ERROR_PEER: a processor is lost, nothing but closing is left */
-    char message[1016];     /* the same as a sentence; "" */
-    uint64_t recoveries;    /* how often the run broke and went back to a sound state by itself,
-                               since the session was opened */
-    char recovery[1016];    /* the last time: "went back 0.62 s to step 15800: " and why; "" */
-    int32_t step_parts;     /* lar_simulation_step_parts at the end of the last tick */
-    uint64_t divided_steps; /* steps that were divided, since the session was opened */
+    lar_status error;    /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
+                            broke and did not go back (stop_when_unstable, or nobody has moved a
+                            tool since the start), reset or load takes it up again;
+                            LAR_ERROR_PEER: a processor is lost, nothing but closing is left */
+    char message[1016];  /* the same as a sentence; "" */
+    uint64_t recoveries; /* how often the run broke and went back to a sound state by itself,
+                            since the session was opened */
+    char recovery[1016]; /* the last time: "went back 0.62 s to step 15800: " and why; "" */
+    uint64_t placed;     /* how often the run was put somewhere else: reset, loaded, went back.
+                            Tools are where the state has them then, and in nobody's hand */
+    int replaying;       /* not 0: a recording is being played (lar_session_replay) */
+    double replay_time, replay_length; /* of it: where it is and how long it lasts, in simulated
+                                          seconds that were computed [s] */
+    int32_t step_parts;                /* lar_simulation_step_parts at the end of the last tick */
+    uint64_t divided_steps;            /* steps that were divided, since the session was opened */
+    double step_least; /* the least processor time of a step in the last second [s]; 0: none */
+    lar_slow_cause slow_cause; /* of the slow motion that is now */
+    char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */
 } lar_session_status;
 
 LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);
@@ -760,6 +794,15 @@ typedef struct lar_replay_report {
  * it may look at the simulation; 0 ends the replay. */
 LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
                               void *context, lar_replay_report *report, lar_error *error);
+
+/* Plays a recording in the session, at its pace, with play, pause and step; it pauses at its end.
+ * Tools follow the recording and nobody else meanwhile. NULL: ends that, and the run goes on from
+ * where it is, as does a reset or a load. Refused while a recording is being made, and for one of
+ * another model. A hash that differs from the recorded one pauses it, and `message` says where. */
+LAR_API lar_status lar_session_replay(lar_session *session, const char *path, lar_error *error);
+/* Goes to a moment of what is being played [s]: the steps from the nearest state before it that is
+ * kept are computed as fast as it goes. */
+LAR_API void lar_session_seek(lar_session *session, double seconds);
 
 /* ---- the viewer's server ----------------------------------------------------------------------
  */

@@ -24,6 +24,13 @@ static inline double lar_clock_seconds(void) {
     return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
 
+/* What the calling thread has had of a processor [ns]. */
+static inline int64_t lar_clock_thread_ns(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
+    return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
+}
+
 /* Sleeps until that moment [ns], or until a signal comes. */
 static inline void lar_clock_sleep_until(int64_t ns) {
     struct timespec at = {ns / 1000000000, ns % 1000000000};

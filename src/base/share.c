@@ -28,10 +28,12 @@ static void *help(void *argument) {
     return NULL;
 }
 
+/* Not of base/pin.h, which knows none where Lariat was built without hwloc. */
 int32_t lar_share_cores(void) {
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
-    return (int32_t)sysconf(_SC_NPROCESSORS_ONLN); /* more than such a set holds */
+    const long online = sysconf(_SC_NPROCESSORS_ONLN); /* more than such a set holds */
+    return online > 0 ? (int32_t)online : 1;
 }
 
 void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context) {

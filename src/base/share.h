@@ -15,6 +15,9 @@
 /* Does the items first..end - 1. */
 typedef void lar_share_work(void *context, int32_t first, int32_t end);
 
+/* Cores that the calling thread may use, at least 1. */
+int32_t lar_share_cores(void);
+
 /* Does `count` items, `portion` of them at a time, and returns when all are done. Where the system
  * gives no thread the caller does it alone. Calls may be nested. */
 void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context);

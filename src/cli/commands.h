@@ -26,6 +26,11 @@ int cli_unknown_command(const char *name);
  * printed. */
 int cli_open_model(const cli_command *command, const char *path, lar_model **model);
 
+/* Into the options what a saved state was made with, as far as they leave it open: kind of
+ * elements, time step, hands. `path` NULL: nothing. */
+int cli_resume_options(const cli_command *command, const char *path, const lar_model *model,
+                       lar_options *options);
+
 /* Names of --element and --isa, in the order of lar_element_kind and lar_isa. */
 extern const char *const cli_element_names[], *const cli_isa_names[];
 

@@ -5,6 +5,20 @@
 const char *const cli_element_names[] = {"hex8", "hex8-full", "hex8-matrix", NULL};
 const char *const cli_isa_names[] = {"auto", "c", "neon", "avx2", "avx512", NULL};
 
+int cli_resume_options(const cli_command *command, const char *path, const lar_model *model,
+                       lar_options *options) {
+    lar_checkpoint_info info;
+    lar_error error;
+    if (!path) return CLI_DONE;
+    if (lar_checkpoint_inspect(path, &info, &error))
+        return cli_complain(command, CLI_FAILED, "%s", error.message);
+    if (options->time_step == 0) options->time_step = info.time_step;
+    if (options->element == LAR_ELEMENT_HEX8) options->element = info.element;
+    int32_t hands = info.tools - lar_model_tool_count(model);
+    options->hands = hands > 0 ? hands : 0;
+    return CLI_DONE;
+}
+
 int cli_open_model(const cli_command *command, const char *path, lar_model **model) {
     lar_error error;
     if (lar_model_open(path, model, &error))

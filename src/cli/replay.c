@@ -153,13 +153,32 @@ static int fail_by(replay *r, const lar_error *error) {
                         error->message);
 }
 
+static bool is_recording(const char *path) {
+    const char *dot = strrchr(path, '.');
+    lar_recording_info info;
+    return (dot && strcmp(dot, ".recording") == 0) || !lar_recording_inspect(path, &info, NULL);
+}
+
+/* The recording stood first once. */
+static void accept_old_order(replay_settings *s) {
+    if (!is_recording(s->scene) || is_recording(s->recording)) return;
+    const char *scene = s->recording;
+    s->recording = s->scene;
+    s->scene = scene;
+    if (cli_speaker() == 0)
+        cli_complain(&cli_replay, CLI_DONE,
+                     "note: the scene comes first, as for all commands: lariat replay %s %s",
+                     s->scene, s->recording);
+}
+
 /* The model, the processes, and this one's share of the simulation. */
 static int prepare(replay *r) {
-    const replay_settings *s = &r->settings;
+    replay_settings *s = &r->settings;
     lar_options options = lar_options_default();
     lar_error error;
     int status = cli_processes_begin(&cli_replay, &s->parallel, s->argc, s->argv, &r->processes);
     if (status) return status;
+    accept_old_order(s);
     if (lar_recording_inspect(s->recording, &r->recorded, &error)) {
         r->failure = error.status;
         return cli_complain_as_other(&cli_replay, r->processes, &error);
@@ -242,8 +261,8 @@ static int replay_main(int argc, char **argv) {
         CLI_END};
     int status = cli_parse(&cli_replay, options, argc, argv, arguments, 2);
     if (status >= 0) return status;
-    s.recording = arguments[0];
-    s.scene = arguments[1];
+    s.scene = arguments[0];
+    s.recording = arguments[1];
     if (s.every > 0 && !s.out)
         return cli_complain(&cli_replay, CLI_USAGE,
                             "--every is the time between frames; say with --out where they go");
@@ -254,7 +273,7 @@ static int replay_main(int argc, char **argv) {
 const cli_command cli_replay = {
     .name = "replay",
     .summary = "play a recorded session again, and compare",
-    .arguments = "RECORDING SCENE",
+    .arguments = "SCENE RECORDING",
     .description =
         "Plays what a session has recorded, as fast as it goes and on any grid, and compares the\n"
         "state hashes. The exit status is 0 only when all of them are equal; otherwise the "
@@ -262,7 +281,7 @@ const cli_command cli_replay = {
         "names the first step that differs. A run that broke breaks again in the same step, which\n"
         "is told. With --out the motion is written as a run's is.",
     .examples =
-        "  lariat replay session.recording demo/uterus_live.yaml\n"
-        "  lariat replay session.recording demo/uterus_live.yaml --grid 2x1x1 --json\n"
-        "  lariat replay session.recording demo/uterus_live.yaml --out frames --every 0.04\n",
+        "  lariat replay demo/uterus_live.yaml session.recording\n"
+        "  lariat replay demo/uterus_live.yaml session.recording --grid 2x1x1 --json\n"
+        "  lariat replay demo/uterus_live.yaml session.recording --out frames --every 0.04\n",
     .main = replay_main};

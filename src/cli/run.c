@@ -12,7 +12,7 @@
 #include "cli/run_report.h"
 
 typedef struct run_settings {
-    const char *scene, *out;
+    const char *scene, *out, *resume, *save;
     double time, time_step; /* 0: not given */
     int64_t steps;          /* 0: not given */
     int element, isa;       /* as lar_element_kind, lar_isa */
@@ -33,7 +33,7 @@ typedef struct run {
     lar_status failure;   /* of the library, LAR_OK: none */
     lar_results *results; /* NULL without --out */
     lar_step_clock clock;
-    uint64_t last_step; /* where the run ends */
+    uint64_t first_step, last_step; /* where the run begins and ends */
     bool follows;       /* the run goes on until it is at rest, at most to its last step */
     lar_rest rest;      /* then */
     double interval;    /* between frames [s], 0: only the end */
@@ -50,7 +50,8 @@ static void show_progress(run *r) {
     static const double QUIET = 1.0, EVERY = 0.1; /* shorter runs say nothing [s] */
     double elapsed = lar_step_clock_elapsed(&r->clock);
     if (elapsed < QUIET || elapsed < r->progress_at + EVERY || !isatty(STDERR_FILENO)) return;
-    double done = (double)lar_simulation_steps(r->simulation) / (double)r->last_step;
+    double done = (double)(lar_simulation_steps(r->simulation) - r->first_step) /
+                  (double)(r->last_step - r->first_step);
     double time = lar_simulation_time(r->simulation);
     if (r->follows && r->rest.looked)
         fprintf(stderr, "\r%.4g s simulated, motion %.1e of the strain, at rest %.0e \033[K", time,
@@ -202,7 +203,8 @@ static int advance_stretch(run *r) {
 
 static int advance(run *r) {
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
-    r->next_frame = 1;
+    if (r->interval > 0)
+        r->next_frame = (int64_t)floor(lar_simulation_time(r->simulation) / r->interval + 1e-6) + 1;
     lar_step_clock_start(&r->clock, r->simulation, r->settings.realtime);
     while (!status && !cli_stop_asked && !(r->follows && r->rest.reached) &&
            lar_simulation_steps(r->simulation) < r->last_step)
@@ -235,22 +237,23 @@ static int complain_restless(const run *r) {
 static int choose_length(run *r) {
     const run_settings *settings = &r->settings;
     r->interval = lar_model_output_interval(r->model);
-    r->last_step = (uint64_t)settings->steps;
+    r->first_step = lar_simulation_steps(r->simulation);
+    r->last_step = r->first_step + (uint64_t)settings->steps;
     bool open = settings->steps == 0 && settings->time <= 0;
     r->follows =
         settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
     if (r->follows && open) r->last_step = r->rest.limit;
-    if (r->last_step > 0) return CLI_DONE;
-    double time = settings->time;
-    if (time <= 0) time = fmax(lar_model_duration(r->model), r->interval);
+    if (r->last_step > r->first_step) return CLI_DONE;
+    double time = settings->time, begin = lar_simulation_time(r->simulation);
+    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
     if (time <= 0) time = 1;
     double steps = round(time / lar_simulation_time_step(r->simulation));
     if (steps > 1e15)
         return cli_complain(&cli_run, CLI_FAILED,
                             "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
                             time, steps, lar_simulation_time_step(r->simulation));
-    r->last_step = (uint64_t)fmax(1, steps);
+    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
     return CLI_DONE;
 }
 
@@ -271,6 +274,7 @@ static int prepare(run *r) {
     lar_error error;
     int status = cli_processes_begin(&cli_run, &s->parallel, s->argc, s->argv, &r->processes);
     if (!status) status = cli_open_model(&cli_run, s->scene, &r->model);
+    if (!status) status = cli_resume_options(&cli_run, s->resume, r->model, &options);
     if (!status)
         status = cli_processes_start(&cli_run, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
@@ -283,6 +287,8 @@ static int prepare(run *r) {
 
 static int compute(run *r) {
     lar_error error;
+    if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
+        return fail_by(r, &error);
     int status = choose_length(r);
     if (!status && r->settings.out &&
         (r->settings.surface ? lar_results_open_surface : lar_results_open)(
@@ -294,6 +300,8 @@ static int compute(run *r) {
     }
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))
+        status = fail_by(r, &error);
     if (!status) status = report(r);
     if (!status && cli_stop_asked) return CLI_INTERRUPTED;
     return !status && r->follows && !r->rest.reached ? complain_restless(r) : status;
@@ -362,6 +370,12 @@ static int run_main(int argc, char **argv) {
                  "write frames, .pvd, probes.csv, the last state\n(.checkpoint) and run.json there",
                  &s.out),
         CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
+        CLI_TEXT("--resume", "FILE",
+                 "go on from a saved state of this scene (.checkpoint);\n--time and --steps count "
+                 "from there",
+                 &s.resume),
+        CLI_TEXT("--save", "FILE", "save the last state there (.checkpoint), to go on from",
+                 &s.save),
         CLI_FLAG("--realtime", "follow the wall clock, and count missed ticks", &s.realtime),
         CLI_PARALLEL(s.parallel),
         CLI_FLAG("--verify",
@@ -388,6 +402,8 @@ const cli_command cli_run = {
     .examples = "  lariat run demo/uterus.yaml --out demo/results\n"
                 "  lariat run demo/uterus.yaml --time 2 --realtime\n"
                 "  lariat run demo/uterus.yaml --steps 1000 --json\n"
+                "  lariat run demo/uterus.yaml --time 1 --save half.checkpoint\n"
+                "  lariat run demo/uterus.yaml --resume half.checkpoint\n"
                 "  lariat run demo/uterus.yaml --grid 2x1x1\n"
                 "  lariat run demo/uterus.yaml --grid 2x2x1 --threads 2 --scheme local --comm shm\n"
                 "  mpirun -n 4 lariat run demo/uterus.yaml --grid 2x2x1 --comm mpi\n"

@@ -16,7 +16,7 @@
 #include "cli/view_report.h"
 
 typedef struct view_settings {
-    const char *scene, *listen, *token, *record, *save_folder, *viewer;
+    const char *scene, *resume, *listen, *token, *record, *save_folder, *viewer;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
     double pace, seconds, time_step;
@@ -40,9 +40,9 @@ typedef struct view {
     pid_t browser;           /* its starter; 0: none */
     lar_session_state state; /* as last told */
     bool slow;
-    double slow_told;      /* when slow motion was last announced [s] */
-    uint64_t recoveries;   /* as last told */
-    double recovered_told; /* when that was [s] */
+    double slow_since, slow_told; /* when slow motion began, and was last announced [s] */
+    uint64_t recoveries;          /* as last told */
+    double recovered_told;        /* when that was [s] */
     double progress_at;
     double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
@@ -73,6 +73,12 @@ static int prepare(view *v) {
     cli_parallel_set(&s->parallel, &options);
     int status = cli_processes_begin(&cli_view, &s->parallel, s->argc, s->argv, &v->processes);
     if (!status) status = cli_open_model(&cli_view, s->scene, &v->model);
+    if (!status) status = cli_resume_options(&cli_view, s->resume, v->model, &options);
+    if (!status && options.hands == 0)
+        cli_complain(
+            &cli_view, CLI_DONE,
+            "note: %s has no hands, nobody can pull; states that lariat view saves have some",
+            s->resume);
     if (!status)
         status = cli_processes_start(&cli_view, v->processes, v->model, &options, &v->parallel);
     if (status) return status;
@@ -152,6 +158,8 @@ static int open_session(view *v) {
     options.paused = s->paused;
     options.priority = (int)s->priority;
     options.record = s->record;
+    if (s->resume && lar_simulation_load(v->simulation, s->resume, &error))
+        return fail_by(v, &error);
     if (lar_session_open(v->simulation, &options, &v->session, &error)) return fail_by(v, &error);
     int status = CLI_DONE;
     for (int i = 0; i < s->devices.count && !status; i++) status = attach(v, s->devices.text[i]);
@@ -220,20 +228,29 @@ static void announce_recovery(view *v, const lar_session_status *s, double at) {
     v->recovered_told = at;
 }
 
-/* Slow motion and stops are announced, each time they begin. */
-static void announce(view *v, const lar_session_status *s, double at) {
+/* Slow motion is told half a second after it has begun: by then it is known why, and how slow the
+ * last second was. One that is over by then was a moment's, and is only counted. */
+static void announce_slow(view *v, const lar_session_status *s, double at) {
+    static const double KNOWN = 0.5; /* [s] */
     if (s->slow_motion && !v->slow) {
         v->report.slow_times++;
-        if (at > v->slow_told + RATHER_NOT_AGAIN) {
-            clear_progress(v);
-            cli_complain(&cli_view, CLI_DONE,
-                         "note: slow motion: %.2f times real time; the machine is busy or the "
-                         "model too large",
-                         s->real_time_factor_now);
-            v->slow_told = at;
-        }
+        v->slow_since = at;
     }
     v->slow = s->slow_motion != 0;
+    if (s->slow_cause != LAR_SLOW_NOT) v->report.slow_cause = s->slow_cause;
+    if (!v->slow || s->slow_cause == LAR_SLOW_NOT || at < v->slow_since + KNOWN ||
+        at < v->slow_told + RATHER_NOT_AGAIN || v->slow_told > v->slow_since ||
+        s->real_time_factor_now > 0.99 * s->pace)
+        return;
+    clear_progress(v);
+    cli_complain(&cli_view, CLI_DONE, "note: slow motion, %.2f times real time: %s",
+                 s->real_time_factor_now, s->slow_advice);
+    v->slow_told = at;
+}
+
+/* Slow motion and stops are announced, each time they begin. */
+static void announce(view *v, const lar_session_status *s, double at) {
+    announce_slow(v, s, at);
     announce_recovery(v, s, at);
     if (s->error == LAR_ERROR_PEER && v->failure != LAR_ERROR_PEER) {
         clear_progress(v);
@@ -386,6 +403,8 @@ static int view_main(int argc, char **argv) {
                   "a tool's device: script:FILE.csv, udp:HOST:PORT, gamepad:N;\nmay be given for "
                   "several tools",
                   &s.devices),
+        CLI_TEXT("--resume", "FILE", "go on from a saved state of this scene (.checkpoint)",
+                 &s.resume),
         CLI_TEXT("--record", "FILE", "record all inputs, from the start", &s.record),
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",

@@ -6,6 +6,7 @@
 #include "cli/json.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
+static const char *const cause_names[] = {"", "step", "division", "machine"};
 
 static void write_times(json_writer *json, const char *name, double p50, double p99, double p999,
                         double max) {
@@ -111,9 +112,11 @@ void view_report_json(const view_report *report, FILE *out) {
     json_number(&json, "real_time_factor", s->real_time_factor);
     json_integer(&json, "ticks", (int64_t)s->ticks);
     json_integer(&json, "deadline_misses", (int64_t)s->misses);
+    json_integer(&json, "slow_ticks", (int64_t)s->slow_ticks);
     write_times(&json, "wall_per_step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
     write_times(&json, "wall_per_tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
     json_integer(&json, "slow_motion", report->slow_times);
+    json_text(&json, "slow_cause", cause_names[report->slow_cause]);
     json_number(&json, "skipped", s->skipped);
     json_integer(&json, "recoveries", (int64_t)s->recoveries);
     json_text(&json, "recovery", s->recovery);
@@ -124,6 +127,19 @@ void view_report_json(const view_report *report, FILE *out) {
     write_devices(&json, report);
     json_text(&json, "state_hash", hash);
     json_end(&json);
+}
+
+static void print_pace(const view_report *report, FILE *out) {
+    static const char *const why[] = {
+        "", ", because steps take longer than the time they stand for",
+        ", because strained tissue divided the steps", ", because the machine was busy"};
+    const lar_session_status *s = &report->status;
+    fprintf(out, "%-17s%.3f", "real-time factor", s->real_time_factor);
+    if (report->slow_times > 0)
+        fprintf(out, "; slow motion began %" PRId64 " time%s%s; %.3g s were given up",
+                report->slow_times, report->slow_times == 1 ? "" : "s", why[report->slow_cause],
+                s->skipped);
+    fprintf(out, "\n");
 }
 
 void view_report_table(const view_report *report, FILE *out) {
@@ -138,14 +154,17 @@ void view_report_table(const view_report *report, FILE *out) {
                 report->parallel->comm);
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s\n", "simulated", s->time, s->step,
             lar_simulation_time_step(report->simulation));
-    fprintf(out, "%-17s%.3f; slow motion began %" PRId64 " times, %.3g s were given up\n",
-            "real-time factor", s->real_time_factor, report->slow_times, s->skipped);
+    print_pace(report, out);
     if (s->ticks > 0) {
-        fprintf(out, "%-17s%" PRIu64 ", %" PRIu64 " missed (%.3f %%)\n", "ticks", s->ticks,
-                s->misses, 100 * (double)s->misses / (double)s->ticks);
-        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
-                "a tick's forces", 1e6 * s->tick_p50, 1e6 * s->tick_p99, 1e6 * s->tick_p999,
-                1e6 * s->tick_max);
+        fprintf(out, "%-17s%" PRIu64 ", %" PRIu64 " missed (%.3f %%)", "ticks", s->ticks, s->misses,
+                100 * (double)s->misses / (double)s->ticks);
+        if (s->slow_ticks > 0)
+            fprintf(out, "; %" PRIu64 " more were late in slow motion", s->slow_ticks);
+        fprintf(out,
+                "\n%-17smedian %.3f ms, 99 %% below %.3f ms, 99.9 %% below %.3f ms, longest "
+                "%.3f ms\n",
+                "a tick's forces", 1e3 * s->tick_p50, 1e3 * s->tick_p99, 1e3 * s->tick_p999,
+                1e3 * s->tick_max);
         fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
                 "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
                 1e6 * s->step_max);

@@ -272,6 +272,29 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
     return lar_bytes_read(path, bytes, error);
 }
 
+lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, lar_error *error) {
+    lar_bytes bytes = {0};
+    file_head head;
+    if (!path || !info)
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "lar_checkpoint_inspect needs the path of a saved state and a place for the "
+            "answer");
+    lar_status status = lar_checkpoint_read(path, &bytes, error);
+    if (!status) status = check_file(path, &bytes, &head, error);
+    lar_bytes_free(&bytes);
+    if (status) return status;
+    if (head.identity.element_kind > 2 || head.tools < 0)
+        return refuse(error, path, "has elements or tools that cannot be; take another checkpoint");
+    *info = (lar_checkpoint_info){.element = (lar_element_kind)head.identity.element_kind,
+                                  .nodes = (int32_t)head.identity.nodes,
+                                  .elements = (int32_t)head.identity.elements,
+                                  .tools = head.tools,
+                                  .time_step = head.identity.time_step,
+                                  .step = head.step};
+    return LAR_OK;
+}
+
 static lar_status refuse_model(lar_error *error, const char *path, const char *what) {
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: was saved from another model: %s; load it into the model that it was "

@@ -78,6 +78,18 @@ lar_status lar_model_open(const char *path, lar_model **model, lar_error *error)
     for (size_t i = 0; i < sizeof reader / sizeof reader[0]; i++)
         if (strcasecmp(extension, reader[i].extension) == 0)
             return reader[i].read(path, model, error);
+    if (strcasecmp(extension, "checkpoint") == 0)
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "%s: is a saved state and holds no model; name its scene, and go on from it "
+            "with lariat run SCENE --resume %s, or with lariat view",
+            path, path);
+    if (strcasecmp(extension, "recording") == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s: is a recording of a session and holds no model; name its scene, and "
+                        "play it with lariat replay SCENE %s, or in lariat view with the folder "
+                        "that it lies in as --save-folder",
+                        path, path);
     if (!*extension)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: has no extension that says what it is; give a scene (.yaml), a deck "

@@ -62,8 +62,28 @@ lar_status lar_session_reset(lar_session *session, lar_error *error) {
     lar_request_answer answer = {0};
     lar_status status = check_session(session, error);
     if (status) return status;
-    return ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_RESET, .answer = &answer},
-                        error);
+    status =
+        ask_and_wait(session, (lar_request){.kind = LAR_REQUEST_RESET, .answer = &answer}, error);
+    lar_player_close(answer.player);
+    return status;
+}
+
+lar_status lar_session_replay(lar_session *session, const char *path, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_player *player = NULL;
+    lar_status status = check_session(session, error);
+    if (!status && path) status = lar_player_open(path, &player, error);
+    if (status) return status;
+    status = ask_and_wait(
+        session, (lar_request){.kind = LAR_REQUEST_REPLAY, .player = player, .answer = &answer},
+        error);
+    lar_player_close(answer.player);
+    return status;
+}
+
+void lar_session_seek(lar_session *session, double seconds) {
+    if (seconds >= 0 && seconds <= 1e12)
+        ask(session, (lar_request){.kind = LAR_REQUEST_SEEK, .seconds = seconds});
 }
 
 lar_status lar_session_save(lar_session *session, const char *path, lar_error *error) {
@@ -89,6 +109,7 @@ lar_status lar_session_load(lar_session *session, const char *path, lar_error *e
             (lar_request){
                 .kind = LAR_REQUEST_LOAD, .path = path, .state = &state, .answer = &answer},
             error);
+    lar_player_close(answer.player);
     lar_bytes_free(&state);
     return status;
 }

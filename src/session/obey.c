@@ -1,4 +1,5 @@
 /* What is asked of a session, done by the engine's thread between two ticks. */
+#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -47,7 +48,10 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
                                   lar_error *error) {
     lar_recorder *fresh = request->recorder;
     lar_status status = LAR_OK;
-    if (fresh) status = lar_recorder_put_state(fresh, session->simulation, error);
+    if (fresh && session->player)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "a recording is being played; leave it before another one is made");
+    if (fresh && !status) status = lar_recorder_put_state(fresh, session->simulation, error);
     if (status) {
         request->answer->recorder = fresh;
         return status;
@@ -62,8 +66,7 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
 
 /* ---- going back, saving, loading ----------------------------------------------------------- */
 
-/* The simulation is somewhere else now. */
-static lar_status arrive(lar_session *session, lar_error *error) {
+lar_status lar_session_arrive(lar_session *session, lar_error *error) {
     lar_session_take_tools(session);
     session->status.error = LAR_OK;
     session->status.message[0] = '\0';
@@ -77,13 +80,13 @@ static lar_status reset(lar_session *session, lar_error *error) {
     lar_status status = lar_simulation_reset(session->simulation, error);
     if (status) return status;
     lar_session_note(session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
-    return arrive(session, error);
+    return lar_session_arrive(session, error);
 }
 
 static lar_status load(lar_session *session, const lar_request *request, lar_error *error) {
     lar_status status =
         lar_simulation_unpack(session->simulation, request->path, request->state, error);
-    if (!status) status = arrive(session, error);
+    if (!status) status = lar_session_arrive(session, error);
     return status ? status : lar_session_note_state(session, error);
 }
 
@@ -98,17 +101,44 @@ static lar_status attach(lar_session *session, const lar_request *request, lar_e
     return LAR_OK;
 }
 
+/* What is played is over when the run was put somewhere else; the caller frees it. */
+static lar_status end_player(lar_session *session, const lar_request *request, lar_status status) {
+    if (status) return status;
+    request->answer->player = session->player;
+    session->player = NULL;
+    return LAR_OK;
+}
+
+static lar_status change_player(lar_session *session, const lar_request *request,
+                                lar_error *error) {
+    lar_player *fresh = request->player;
+    if (!fresh) return end_player(session, request, lar_session_arrive(session, error));
+    request->answer->player = fresh;
+    if (session->status.recording)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a recording is being made; end it before another one is played");
+    lar_status status = lar_player_begin(fresh, session->simulation, error);
+    if (!status) status = lar_session_arrive(session, error);
+    if (status) return status;
+    end_player(session, request, LAR_OK);
+    session->player = fresh;
+    lar_session_go_on(session);
+    return LAR_OK;
+}
+
 static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
     switch (request->kind) {
     case LAR_REQUEST_RESET:
-        return reset(session, error);
+        return end_player(session, request, reset(session, error));
     case LAR_REQUEST_SAVE:
         return lar_simulation_pack(session->simulation, request->path, &request->answer->state,
                                    error);
     case LAR_REQUEST_LOAD:
-        return load(session, request, error);
+        return end_player(session, request, load(session, request, error));
     case LAR_REQUEST_RECORD:
         return change_recorder(session, request, error);
+    case LAR_REQUEST_REPLAY:
+        return change_player(session, request, error);
     default:
         return attach(session, request, error);
     }
@@ -123,13 +153,35 @@ static void step(lar_session *session, uint64_t steps) {
     lar_session_go_on(session);
 }
 
+/* To a moment of what is played: there, it rests or plays as it did. */
+static void seek(lar_session *session, double seconds) {
+    lar_error error;
+    lar_player *player = session->player;
+    if (!player) return;
+    bool rested = session->status.state != LAR_SESSION_PLAYING;
+    double place = fmax(0, seconds) / session->time_step;
+    player->rests = rested || (player->rests && player->goal > player->place);
+    uint64_t wanted = place < (double)player->length ? (uint64_t)place : player->length;
+    if (lar_player_seek(player, session->simulation, wanted, &error)) {
+        lar_session_stop(session, &error);
+        return;
+    }
+    session->status.message[0] = '\0';
+    lar_session_take_tools(session);
+    lar_session_go_on(session);
+}
+
 static void go(lar_session *session, const lar_request *request) {
     bool broken = session->status.state == LAR_SESSION_STOPPED;
     if (request->kind == LAR_REQUEST_PACE)
         lar_pace_set(&session->pace, request->pace, lar_clock_ns());
     if (request->kind == LAR_REQUEST_END) session->ended = true;
+    if (request->kind == LAR_REQUEST_SEEK) seek(session, request->seconds);
     if (broken) return;
-    if (request->kind == LAR_REQUEST_PAUSE) lar_session_rest(session);
+    if (request->kind == LAR_REQUEST_PAUSE) {
+        if (session->player) lar_player_stay(session->player);
+        lar_session_rest(session);
+    }
     if (request->kind == LAR_REQUEST_STEP) step(session, request->steps);
     if (request->kind != LAR_REQUEST_PLAY) return;
     session->stepping = false;

@@ -58,9 +58,18 @@ void lar_pace_wait(lar_pace *pace) {
     if (pace->pace > 0) lar_beat_wait(&pace->beat);
 }
 
+static bool is_slow(const lar_pace *pace, int64_t now) {
+    return pace->given_up_at > 0 && now - pace->given_up_at < SECOND;
+}
+
 static void give_up(lar_pace *pace, int64_t now) {
     int64_t excess = lar_beat_give_up(&pace->beat, now);
     if (excess == 0) return;
+    if (!is_slow(pace, now)) {
+        pace->misses -= pace->late_run;
+        pace->slow_ticks += pace->late_run;
+        pace->late_run = 0;
+    }
     pace->skipped += 1e-9 * (double)excess;
     pace->given_up_at = now;
 }
@@ -77,16 +86,33 @@ void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
     pace->total.simulated += seconds;
 }
 
-void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine) {
-    lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / (steps ? steps : 1));
+void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy) {
+    if (steps == 0) steps = 1;
+    lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / steps);
+    double least = 1e-9 * (double)busy / (double)steps;
+    if (pace->total.least == 0 || least < pace->total.least) pace->total.least = least;
     pace->total.steps += steps;
 }
 
+void lar_pace_forget_least(lar_pace *pace) {
+    for (int i = 0; i < pace->moments; i++) pace->window[i].least = 0;
+    pace->total.least = 0;
+}
+
 void lar_pace_answered(lar_pace *pace, int64_t now) {
-    lar_histogram_add(&pace->ticks, (uint64_t)(now > pace->beat.due ? now - pace->beat.due : 0));
+    bool slow = is_slow(pace, now);
+    int64_t from = slow ? pace->total.at : pace->beat.due;
+    lar_histogram_add(&pace->ticks, (uint64_t)(now > from ? now - from : 0));
     pace->total.ticks++;
     if (pace->pace <= 0) return;
-    if (lar_beat_next(&pace->beat, now)) pace->misses++;
+    if (!lar_beat_next(&pace->beat, now)) {
+        pace->late_run = 0;
+    } else if (slow) {
+        pace->slow_ticks++;
+    } else {
+        pace->misses++;
+        pace->late_run++;
+    }
 }
 
 bool lar_pace_look(lar_pace *pace, int64_t now) {
@@ -97,14 +123,24 @@ bool lar_pace_look(lar_pace *pace, int64_t now) {
     }
     lar_pace_moment *moment = &pace->window[pace->moments++];
     *moment = pace->total;
+    pace->total.least = 0;
     moment->at = now;
     moment->played = played(pace, now);
     return true;
 }
 
+static void report_least(const lar_pace *pace, lar_session_status *status) {
+    double least = 0;
+    for (int i = 0; i < pace->moments; i++)
+        if (pace->window[i].least > 0 && (least == 0 || pace->window[i].least < least))
+            least = pace->window[i].least;
+    status->step_least = least;
+}
+
 static void report_rates(const lar_pace *pace, lar_session_status *status) {
     status->engine_rate = status->haptic_rate = status->snapshot_rate = 0;
     status->real_time_factor_now = 0;
+    report_least(pace, status);
     if (pace->moments < 2) return;
     const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
     double seconds = 1e-9 * (double)(last->at - first->at);
@@ -126,14 +162,16 @@ static void report_quantiles(const lar_pace *pace, lar_session_status *status) {
 
 void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
                      lar_session_status *status) {
+    status->pace = pace->pace;
     status->real_time_factor = pace->factor;
     status->ticks = pace->total.ticks;
     status->misses = pace->misses;
+    status->slow_ticks = pace->slow_ticks;
     status->skipped = pace->skipped;
     status->lag = pace->running && pace->pace > 0 && now > pace->beat.due
                       ? 1e-9 * (double)(now - pace->beat.due)
                       : 0;
-    status->slow_motion = pace->given_up_at > 0 && now - pace->given_up_at < SECOND;
+    status->slow_motion = is_slow(pace, now);
     status->step_max = 1e-9 * (double)pace->steps.most;
     status->tick_max = 1e-9 * (double)pace->ticks.most;
     if (!quantiles) return;

@@ -6,7 +6,9 @@
  *
  * A tick begins when it is due, or at once when the one before was late: so lost time is made up
  * for, as fast as the machine can. What is more than LAR_LAG_MOST behind is given up: it counts as
- * skipped, the simulation is in slow motion, and says so.
+ * skipped, the simulation is in slow motion, and says so. Ticks of slow motion that are late are
+ * counted beside the misses: nobody could have kept a deadline that a tick before has missed. So
+ * are those that were late in a row when it began. Their times count from when they begin.
  *
  * Real-time factor: simulated time per time of the clock in which it was meant to go on; pauses and
  * waiting for a file do not belong to it, time that was given up does.
@@ -30,6 +32,7 @@ typedef struct lar_pace_moment {
     double simulated; /* [s] since the start */
     double played;    /* time of the clock that was played [s] */
     uint64_t steps, ticks, exchanges, snapshots;
+    double least; /* processor time of a step since the moment before, the least [s]; 0: none */
 } lar_pace_moment;
 
 typedef struct lar_pace {
@@ -43,6 +46,8 @@ typedef struct lar_pace {
     lar_pace_moment window[LAR_PACE_WINDOW];
     int moments;
     uint64_t misses;
+    uint64_t late_run;   /* of these, the latest in a row */
+    uint64_t slow_ticks; /* late in slow motion */
     double skipped;
     double factor;       /* real-time factor when the latest tick was due */
     lar_histogram steps; /* time of a step, engine alone [ns] */
@@ -61,8 +66,11 @@ void lar_pace_set(lar_pace *pace, double wanted, int64_t now);
 void lar_pace_wait(lar_pace *pace);
 /* A tick that lasts `seconds` (simulated) begins. */
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now);
-/* The steps are done: `engine` is the time that they took [ns]. */
-void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine);
+/* The steps are done: `engine` is the time that they took, `busy` what their thread had of a
+ * processor meanwhile [ns]. */
+void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy);
+/* Steps take another time from now on: the least that is known is of no use any more. */
+void lar_pace_forget_least(lar_pace *pace);
 /* The forces are out. */
 void lar_pace_answered(lar_pace *pace, int64_t now);
 

@@ -92,6 +92,10 @@ lar_status lar_recording_state(lar_recording_reader *reader, const lar_record *r
 /* Behind the end there is nothing. */
 lar_status lar_recording_check_end(const lar_recording_reader *reader, lar_error *error);
 
+/* Whether a simulation can play what this header begins; LAR_ERROR_MODEL says why not. */
+lar_status lar_recording_check_simulation(const char *path, const lar_recording_header *header,
+                                          const lar_simulation *simulation, lar_error *error);
+
 /* The error of a file that breaks the rules at the record under way. */
 lar_status lar_recording_refuse(const lar_recording_reader *reader, lar_error *error,
                                 const char *what);

@@ -18,37 +18,37 @@ typedef struct player {
 
 static const char *const ELEMENTS[] = {"hex8", "hex8-full", "hex8-matrix"};
 
-static lar_status check_counts(const player *p, const lar_mesh *mesh, lar_error *error) {
-    const lar_recording_header *header = &p->reader.header;
+static lar_status check_counts(const char *path, const lar_recording_header *header,
+                               const lar_mesh *mesh, lar_error *error) {
     if (header->nodes == mesh->node_count && header->elements == mesh->element_count) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: was recorded with another model: %ld nodes and %ld elements instead of "
                     "%ld and %ld; play it with the model that it was recorded with",
-                    p->reader.path, (long)header->nodes, (long)header->elements,
-                    (long)mesh->node_count, (long)mesh->element_count);
+                    path, (long)header->nodes, (long)header->elements, (long)mesh->node_count,
+                    (long)mesh->element_count);
 }
 
-static lar_status check_simulation(const player *p, lar_error *error) {
-    const lar_recording_header *header = &p->reader.header;
-    const lar_domain *domain = &p->simulation->domain;
-    int32_t tools = lar_simulation_tool_count(p->simulation);
-    lar_status status = check_counts(p, &domain->model->mesh, error);
+lar_status lar_recording_check_simulation(const char *path, const lar_recording_header *header,
+                                          const lar_simulation *simulation, lar_error *error) {
+    const lar_domain *domain = &simulation->domain;
+    int32_t tools = lar_simulation_tool_count(simulation);
+    lar_status status = check_counts(path, header, &domain->model->mesh, error);
     if (status) return status;
     if (header->time_step != domain->time_step)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: was recorded with a time step of %.17g s, this simulation has %.17g "
                         "s; choose the same",
-                        p->reader.path, header->time_step, domain->time_step);
+                        path, header->time_step, domain->time_step);
     if (header->element != domain->kind)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: was recorded with elements %s, this simulation has %s; choose the "
                         "same",
-                        p->reader.path, ELEMENTS[header->element], ELEMENTS[domain->kind]);
+                        path, ELEMENTS[header->element], ELEMENTS[domain->kind]);
     if (header->tools != tools)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: was recorded with %ld tools, %ld hands among them, and this "
                         "simulation has %ld tools; create it with options.hands = %ld",
-                        p->reader.path, (long)header->tools, (long)header->hands, (long)tools,
+                        path, (long)header->tools, (long)header->hands, (long)tools,
                         (long)header->hands);
     return LAR_OK;
 }
@@ -160,7 +160,7 @@ lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *w
     status = lar_recording_open(path, &p.reader, error);
     if (status) return status;
     lar_record record = {.kind = LAR_RECORD_STATE};
-    status = check_simulation(&p, error);
+    status = lar_recording_check_simulation(p.reader.path, &p.reader.header, simulation, error);
     while (!status && !p.stopped && record.kind != LAR_RECORD_END) {
         status = lar_recording_next(&p.reader, &record, error);
         if (!status) status = play(&p, &record, error);

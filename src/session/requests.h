@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "session/device.h"
+#include "session/player.h"
 #include "session/record.h"
 
 typedef enum lar_request_kind {
@@ -26,6 +27,8 @@ typedef enum lar_request_kind {
     LAR_REQUEST_SAVE,
     LAR_REQUEST_LOAD,
     LAR_REQUEST_RECORD,
+    LAR_REQUEST_REPLAY,
+    LAR_REQUEST_SEEK,
     LAR_REQUEST_ATTACH,
     LAR_REQUEST_END
 } lar_request_kind;
@@ -37,6 +40,7 @@ typedef struct lar_request_answer {
     lar_error error;
     lar_bytes state;        /* SAVE: the caller writes and frees it */
     lar_recorder *recorder; /* RECORD: what the engine has let go of; the caller closes it */
+    lar_player *player;     /* REPLAY, RESET, LOAD: likewise */
 } lar_request_answer;
 
 /* Files are opened, read and written by whoever asks: the engine only gets and gives what is in
@@ -49,6 +53,8 @@ typedef struct lar_request {
     const char *path;           /* SAVE, LOAD: for messages */
     const lar_bytes *state;     /* LOAD */
     lar_recorder *recorder;     /* RECORD; NULL: ends */
+    lar_player *player;         /* REPLAY; NULL: ends */
+    double seconds;             /* SEEK */
     lar_device *device;         /* ATTACH: the session's when it succeeds */
     lar_request_answer *answer; /* NULL: nobody waits */
 } lar_request;

@@ -146,23 +146,17 @@ static void part(lar_server *server) {
     while (server->first && lar_clock_ns() < until) lws_service(server->context, 0);
 }
 
-static int64_t thread_time(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at);
-    return (int64_t)at.tv_sec * LAR_SECOND_NS + at.tv_nsec;
-}
-
 static void *run(void *argument) {
     lar_server *server = argument;
     lar_pin_nowhere(); /* not where a processor computes, whose thread may have started this one */
     setpriority(PRIO_PROCESS, 0, LAR_SERVER_NICE); /* of this thread only, on Linux */
     lws_sul_schedule(server->context, 0, &server->beat, beat, 1);
-    int64_t spent = thread_time(), begun = server->paint_begun;
+    int64_t spent = lar_clock_thread_ns(), begun = server->paint_begun;
     while (!__atomic_load_n(&server->ending, __ATOMIC_ACQUIRE)) {
         lws_service(server->context, 0);
         if (begun == server->paint_begun) continue;
         /* Since the last picture was begun; what the worker takes is about as much again. */
-        int64_t now = thread_time();
+        int64_t now = lar_clock_thread_ns();
         server->paint_cost = now - spent;
         spent = now;
         begun = server->paint_begun;
@@ -296,6 +290,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     server->forces.memory = lar_calloc_aligned(bytes, 1);
     if (!server->forces.memory) return lar_fail_memory(error, bytes, "forces for viewers");
     server->pace = session->options.pace;
+    lar_server_list_saved(server);
     take_status(server);
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);

@@ -41,20 +41,21 @@ static bool saves_too_often(lar_server *server) {
     return often;
 }
 
-/* One of those that were saved here: a viewer cannot name any other file. */
+/* One of those that lie in the folder: a viewer cannot name any other file. */
 static bool find_saved(const lar_server *server, const lar_wish *wish, lar_job *job) {
-    for (int i = server->saves - 1; i >= 0; i--) {
-        if (wish->name[0] && strcmp(wish->name, server->save[i]) != 0) continue;
-        snprintf(job->name, sizeof job->name, "%s", server->save[i]);
-        int length = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
-        return length > 0 && (size_t)length < sizeof job->path;
-    }
-    return false;
+    const lar_saved_list *list =
+        wish->kind == LAR_WISH_LOAD ? &server->states : &server->recordings;
+    const char *found = lar_saved_find(list, wish->name);
+    if (!found) return false;
+    snprintf(job->name, sizeof job->name, "%s", found);
+    int length = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
+    return length > 0 && (size_t)length < sizeof job->path;
 }
 
 static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish,
                         lar_job *job) {
-    if (wish->kind == LAR_WISH_RESET) return true;
+    bool leaves = wish->kind == LAR_WISH_REPLAY && !wish->name[0];
+    if (wish->kind == LAR_WISH_RESET || leaves) return true;
     if (!server->save_folder) {
         lar_viewer_note(server, viewer,
                         "saving, loading and recording are not allowed here; start the engine with "
@@ -63,6 +64,10 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *
     }
     if (wish->kind == LAR_WISH_LOAD && !find_saved(server, wish, job)) {
         lar_viewer_note(server, viewer, "there is no saved state of this name; save one first");
+        return false;
+    }
+    if (wish->kind == LAR_WISH_REPLAY && !find_saved(server, wish, job)) {
+        lar_viewer_note(server, viewer, "there is no recording of this name; make one first");
         return false;
     }
     bool names = wish->kind == LAR_WISH_SAVE || (wish->kind == LAR_WISH_RECORD && wish->on);
@@ -85,14 +90,6 @@ static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
 }
 
-static void add_saved(lar_server *server, const char *name) {
-    if (server->saves == LAR_SAVES_MOST) {
-        server->saves--;
-        memmove(server->save, server->save + 1, (size_t)server->saves * sizeof *server->save);
-    }
-    snprintf(server->save[server->saves++], sizeof *server->save, "%s", name);
-}
-
 static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what, const char *name) {
     lar_json *json = &server->json;
     lar_json_begin(json);
@@ -109,11 +106,14 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
     if (!done) return;
     if (end->job.kind == LAR_WISH_SAVE) {
-        add_saved(server, end->job.name);
+        lar_saved_add(&server->states, end->job.name);
         if (viewer) tell_saved(server, viewer, CHECKPOINT, end->job.name);
     } else if (end->job.kind == LAR_WISH_RECORD && end->job.on) {
         snprintf(server->recording, sizeof server->recording, "%s", end->job.name);
+    } else if (end->job.kind == LAR_WISH_REPLAY) {
+        snprintf(server->played, sizeof server->played, "%s", end->job.name);
     } else if (end->job.kind == LAR_WISH_RECORD && server->recording[0]) {
+        lar_saved_add(&server->recordings, server->recording);
         if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
         server->recording[0] = '\0';
     }
@@ -130,8 +130,19 @@ static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
     viewer->asks = true;
 }
 
+/* What is played moves its tools itself. */
+static bool is_played(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (!server->status.replaying) return false;
+    lar_viewer_note(server, viewer,
+                    "a recording is being played; leave it to pull and to move instruments");
+    if (wish->kind == LAR_WISH_GRAB)
+        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    return true;
+}
+
 static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
     lar_error error;
+    if (is_played(server, viewer, wish)) return;
     if (lar_hands_move(&server->hands, viewer->number, wish, lar_clock_ns(), &error))
         lar_viewer_note(server, viewer, error.message);
 }
@@ -147,6 +158,9 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         lar_viewer_wants(viewer, LAR_DUE_FORCES);
         break;
     case LAR_WISH_GRAB:
+        if (is_played(server, viewer, wish)) break;
+        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+        break;
     case LAR_WISH_PULL:
     case LAR_WISH_RELEASE:
         lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
@@ -167,10 +181,14 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         lar_session_set_pace(server->session, wish->pace);
         server->pace = wish->pace;
         break;
+    case LAR_WISH_SEEK:
+        lar_session_seek(server->session, wish->time);
+        break;
     case LAR_WISH_RESET:
     case LAR_WISH_SAVE:
     case LAR_WISH_LOAD:
     case LAR_WISH_RECORD:
+    case LAR_WISH_REPLAY:
         ask_job(server, viewer, wish);
         break;
     }

@@ -3,8 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
+
 /* An instrument is its mover's for so long after the last move [ns]. */
 static const int64_t OWNED = 1000000000;
+/* What a viewer sends before it knows of a reset is here by then [ns]: status comes every 0.1 s. */
+static const int64_t ON_ITS_WAY = 300000000;
 /* A hand is where it was sent when it is this close [m]; the session may take a moment to get it
  * there, and one that does not arrive at all closes where it is. */
 static const double NEAR = 1e-4;
@@ -19,6 +23,23 @@ void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tel
             hands->hand[hands->count++] = (lar_hand){.tool = i};
         hands->owner[i].pose = session->tool[i].info.rest;
     }
+}
+
+/* The run was put somewhere else: instruments are where its state has them, and nobody's. */
+static void look_where_it_is(lar_hands *hands, const lar_session_status *status, int64_t now) {
+    if (status->placed == hands->placed) return;
+    hands->placed = status->placed;
+    for (int32_t i = 0; i < hands->session->tools; i++) {
+        lar_owner *owner = &hands->owner[i];
+        if (owner->viewer == 0) continue;
+        *owner = (lar_owner){.deaf_to = owner->viewer, .deaf_until = now + ON_ITS_WAY};
+    }
+}
+
+static void look_again(lar_hands *hands, int64_t now) {
+    lar_session_status status;
+    lar_session_status_get(hands->session, &status);
+    look_where_it_is(hands, &status, now);
 }
 
 /* ---- hands ---------------------------------------------------------------------------------- */
@@ -130,6 +151,7 @@ static void go_on(lar_hands *hands, lar_hand *hand, const lar_session_status *st
 void lar_hands_look(lar_hands *hands, int64_t now) {
     lar_session_status status;
     lar_session_status_get(hands->session, &status);
+    look_where_it_is(hands, &status, now);
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status, now);
 }
@@ -160,6 +182,8 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wis
     if (info->shape == LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is a hand; take hold of the surface with grab", info->name);
+    look_again(hands, now);
+    if (owner->deaf_to == viewer && now < owner->deaf_until) return LAR_OK;
     const char *by = lar_hands_by(hands, wish->tool, viewer, now);
     if (strcmp(by, "device") == 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s is moved by a device", info->name);
@@ -182,6 +206,7 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wis
 }
 
 void lar_hands_leave(lar_hands *hands, uint64_t viewer) {
+    look_again(hands, lar_clock_ns());
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].state != LAR_HAND_FREE && hands->hand[i].viewer == viewer)
             let_go(hands, &hands->hand[i]);

@@ -37,6 +37,9 @@ typedef struct lar_owner {
     uint64_t viewer; /* 0: nobody */
     int64_t moved;   /* [ns] */
     lar_tool_pose pose;
+    uint64_t deaf_to; /* who moved it when the run was put somewhere else: until then [ns] what was
+                         on its way from there is not heard */
+    int64_t deaf_until;
 } lar_owner;
 
 /* News of a hand for its viewer: `state` is a word of the protocol. */
@@ -50,6 +53,7 @@ typedef struct lar_hands {
     int32_t count; /* of hands */
     lar_hand hand[LAR_TOOLS_MOST];
     lar_owner owner[LAR_TOOLS_MOST]; /* by tool */
+    uint64_t placed;                 /* lar_session_status.placed, as last seen */
 } lar_hands;
 
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context);

@@ -33,6 +33,7 @@ typedef enum key_id {
     KEY_AFTER,
     KEY_STEPS,
     KEY_VALUE,
+    KEY_TIME,
     KEY_OPENING,
     KEY_ON,
     KEY_POINT,
@@ -60,6 +61,7 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_AFTER] = {"after", IS_WHOLE, 0, 9007199254740991.0, 0},
                                         [KEY_STEPS] = {"steps", IS_WHOLE, 1, 100000, 0},
                                         [KEY_VALUE] = {"value", IS_REAL, 0, 100, 0},
+                                        [KEY_TIME] = {"time", IS_REAL, 0, 1e9, 0},
                                         [KEY_OPENING] = {"opening", IS_REAL, 0, 1, 0},
                                         [KEY_ON] = {"on", IS_BOOLEAN, 0, 0, 0},
                                         [KEY_POINT] = {"point", IS_VECTOR, -1000, 1000, 3},
@@ -87,7 +89,9 @@ static const struct {
     [LAR_WISH_PACE] = {"pace", BIT(VALUE), 0},
     [LAR_WISH_RECORD] = {"record", BIT(ON), 0},
     [LAR_WISH_SAVE] = {"save", 0, 0},
-    [LAR_WISH_LOAD] = {"load", 0, BIT(NAME)}};
+    [LAR_WISH_LOAD] = {"load", 0, BIT(NAME)},
+    [LAR_WISH_REPLAY] = {"replay", 0, BIT(NAME)},
+    [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0}};
 enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
 
 /* ---- reading ---------------------------------------------------------------------------- */
@@ -336,6 +340,7 @@ static bool set_rest(reader *r, lar_wish *wish) {
     wish->after = (uint64_t)r->number[KEY_AFTER][0];
     wish->steps = (uint64_t)r->number[KEY_STEPS][0];
     wish->on = r->number[KEY_ON][0] != 0;
+    wish->time = r->number[KEY_TIME][0];
     memcpy(wish->name, r->text[KEY_NAME], sizeof wish->name);
     return true;
 }

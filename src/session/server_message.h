@@ -47,7 +47,9 @@ typedef enum lar_wish_kind {
     LAR_WISH_PACE,
     LAR_WISH_RECORD,
     LAR_WISH_SAVE,
-    LAR_WISH_LOAD
+    LAR_WISH_LOAD,
+    LAR_WISH_REPLAY,
+    LAR_WISH_SEEK
 } lar_wish_kind;
 
 /* One message. What its kind does not have is zero. */
@@ -59,12 +61,13 @@ typedef struct lar_wish {
     uint64_t after;  /* forces */
     uint64_t steps;  /* step */
     double pace;
+    double time;     /* seek [s] */
     double point[3]; /* grab, pull, tool */
     double orientation[4];
     double opening;
     bool turns, opens;            /* tool: orientation, opening were given */
     bool on;                      /* record */
-    char name[LAR_NAME_MOST + 1]; /* load; "": the last one */
+    char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
 } lar_wish;
 
 /* Reads `length` bytes. Returns LAR_CLOSE_NOT, or why the connection must end, with a sentence in

@@ -140,6 +140,7 @@ static void write_times(lar_json *json, const char *name, double p50, double p99
 
 static void write_progress(lar_json *json, const lar_session_status *s) {
     static const char *const state[] = {"idle", "playing", "paused", "stopped"};
+    static const char *const cause[] = {"", "step", "division", "machine"};
     lar_json_text(json, "state", state[s->state]);
     lar_json_integer(json, "step", (int64_t)s->step);
     lar_json_number(json, "time", s->time);
@@ -147,12 +148,15 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     write_times(json, "tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
     lar_json_integer(json, "ticks", (int64_t)s->ticks);
     lar_json_integer(json, "misses", (int64_t)s->misses);
+    lar_json_integer(json, "slow_ticks", (int64_t)s->slow_ticks);
     lar_json_number(json, "real_time_factor", s->real_time_factor);
     lar_json_number(json, "real_time_factor_now", s->real_time_factor_now);
     lar_json_number(json, "engine_rate", s->engine_rate);
     lar_json_number(json, "haptic_rate", s->haptic_rate);
     lar_json_number(json, "snapshot_rate", s->snapshot_rate);
     lar_json_boolean(json, "slow_motion", s->slow_motion != 0);
+    lar_json_text(json, "slow_cause", cause[s->slow_cause]);
+    lar_json_text(json, "slow_advice", s->slow_advice);
     lar_json_number(json, "lag", s->lag);
     lar_json_number(json, "skipped", s->skipped);
     lar_json_boolean(json, "recording", s->recording != 0);
@@ -160,8 +164,19 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
     lar_json_text(json, "recovery", s->recovery);
+    lar_json_integer(json, "placed", (int64_t)s->placed);
     lar_json_integer(json, "step_parts", s->step_parts);
     lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
+}
+
+static void write_replay(const lar_server *server, lar_json *json) {
+    const lar_session_status *s = &server->status;
+    if (!s->replaying) return;
+    lar_json_open(json, "replay", '{');
+    lar_json_text(json, "name", server->played);
+    lar_json_number(json, "time", s->replay_time);
+    lar_json_number(json, "length", s->replay_length);
+    lar_json_close(json, '}');
 }
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
@@ -172,8 +187,14 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     lar_json_number(json, "pace", server->pace);
     lar_json_integer(json, "viewers", __atomic_load_n(&server->viewers, __ATOMIC_RELAXED));
     lar_json_open(json, "saved", '[');
-    for (int i = 0; i < server->saves; i++) lar_json_text(json, NULL, server->save[i]);
+    for (int i = 0; i < server->states.count; i++)
+        lar_json_text(json, NULL, server->states.name[i]);
     lar_json_close(json, ']');
+    lar_json_open(json, "recordings", '[');
+    for (int i = 0; i < server->recordings.count; i++)
+        lar_json_text(json, NULL, server->recordings.name[i]);
+    lar_json_close(json, ']');
+    write_replay(server, json);
     lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < server->session->tools; i++) {
         const lar_tool_force *force = &server->tool[i].force;

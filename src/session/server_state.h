@@ -29,13 +29,19 @@ enum {
     LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
     LAR_NOTES_MOST = 8,         /* that wait for a viewer */
     LAR_SAVE_NUMBERS = 1000,
-    LAR_SAVES_MOST = 16, /* that `load` knows */
+    LAR_SAVES_MOST = 64, /* of a kind, that can be named */
     LAR_HOST_BYTES = 96,
     LAR_MESSAGES_A_SECOND = 300
 };
 
 #define LAR_PROTOCOL  "lariat.1"
 #define LAR_SECOND_NS 1000000000LL
+
+/* Names of files in the folder for saved states, oldest first. */
+typedef struct lar_saved_list {
+    char name[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
+    int count;
+} lar_saved_list;
 
 /* One viewer. What waits to be sent are bits, so that it can wait once only. */
 enum {
@@ -119,10 +125,11 @@ struct lar_server {
         lar_tool_force force;
     } tool[LAR_TOOLS_MOST];
     double pace;
-    char save[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
-    int saves, saved_number;
+    lar_saved_list states, recordings;
+    int saved_number;
     int64_t saved_at;
-    char recording[LAR_NAME_MOST + 1];
+    char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
+    char played[LAR_NAME_MOST + 1];
     lws_sorted_usec_list_t beat;
     int64_t status_at, watched_at, paint_begun, paint_cost;
 };
@@ -170,6 +177,14 @@ void lar_viewer_text(lar_viewer *viewer, char *text);
 /* For lar_hands. */
 void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t tool,
                           const char *state);
+
+/* ---- server_saved.c ---- */
+
+/* What lies in the folder for saved states, and can be taken up or played here. */
+void lar_server_list_saved(lar_server *server);
+void lar_saved_add(lar_saved_list *list, const char *name);
+/* The name, or the last one for ""; NULL: it is not in the list. */
+const char *lar_saved_find(const lar_saved_list *list, const char *name);
 
 /* ---- server_act.c ---- */
 

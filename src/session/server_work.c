@@ -24,6 +24,9 @@ static void do_job(lar_work *work, const lar_job *job, lar_error *error) {
     case LAR_WISH_RECORD:
         lar_session_record(work->session, job->on ? job->path : NULL, error);
         break;
+    case LAR_WISH_REPLAY:
+        lar_session_replay(work->session, job->name[0] ? job->path : NULL, error);
+        break;
     default:
         break;
     }

@@ -17,7 +17,7 @@
 enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
 
 typedef struct lar_job {
-    lar_wish_kind kind; /* reset, save, load, record */
+    lar_wish_kind kind; /* reset, save, load, record, replay */
     uint64_t viewer;
     bool on;                      /* record */
     char name[LAR_NAME_MOST + 1]; /* of the file, without its folder */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/share.h"
 #include "base/thread.h"
 
 lar_session_options lar_session_options_default(void) {
@@ -59,7 +60,18 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
     }
     if (!status) status = lar_history_create(session->tools, &session->history, error);
     if (!status) lar_session_take_tools(session);
+    session->status.placed = 0;
     return status;
+}
+
+static void make_advice(lar_session *session) {
+    const lar_simulation *simulation = session->simulation;
+    session->advice = (lar_advice){.time_step = session->time_step,
+                                   .elements = simulation->domain.model->mesh.element_count,
+                                   .busy = lar_simulation_processors(simulation) *
+                                           lar_simulation_threads(simulation),
+                                   .cores = lar_share_cores(),
+                                   .priority = session->options.priority};
 }
 
 static lar_status make_recovery(lar_session *session, lar_error *error) {
@@ -98,6 +110,7 @@ static void destroy(lar_session *session) {
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
     lar_recovery_destroy(&session->recovery);
+    lar_player_close(session->player);
     lar_mailbox_destroy(&session->view);
     lar_requests_destroy(&session->requests);
     free(session);
@@ -125,6 +138,7 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
         destroy(session);
         return status;
     }
+    make_advice(session);
     lar_session_publish(session, true);
     status = record_from_start(session, error);
     if (status)

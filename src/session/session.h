@@ -20,11 +20,13 @@
 #define LAR_SESSION_SESSION_H
 
 #include "engine/simulation.h"
+#include "session/advice.h"
 #include "session/coupling.h"
 #include "session/device.h"
 #include "session/exchange.h"
 #include "session/history.h"
 #include "session/pace.h"
+#include "session/player.h"
 #include "session/recording_file.h"
 #include "session/recovery.h"
 #include "session/requests.h"
@@ -79,11 +81,13 @@ struct lar_session {
     /* The engine's own. */
     lar_session_status status;
     lar_pace pace;
+    lar_advice advice;
     bool stepping; /* pauses when `steps_left` are done */
     uint64_t steps_left;
     lar_recovery recovery;
     uint64_t good_step;     /* where the last tick ended that did not break */
     lar_recorder *recorder; /* NULL: none */
+    lar_player *player;     /* NULL: none */
     uint64_t hashed;        /* step of the latest hash in the recording */
     bool ended;
 };
@@ -97,6 +101,8 @@ lar_recording_header lar_session_recording_header(const lar_session *session);
 
 void *lar_session_run(void *session);
 void lar_session_obey(lar_session *session, const lar_request *request);
+/* The simulation is somewhere else now, and the run goes on from there. */
+lar_status lar_session_arrive(lar_session *session, lar_error *error);
 /* Plays from now on; rests; stops, because the run broke. */
 void lar_session_go_on(lar_session *session);
 void lar_session_rest(lar_session *session);

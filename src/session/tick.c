@@ -17,10 +17,17 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_session_status *status = &session->status;
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
-    status->step_parts = lar_simulation_step_parts(session->simulation);
+    const int32_t parts = lar_simulation_step_parts(session->simulation);
+    if (parts != status->step_parts) lar_pace_forget_least(&session->pace);
+    status->step_parts = parts;
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
+    if (quantiles) lar_advise(&session->advice, session->pace.pace, status);
+    const lar_player *player = session->player;
+    status->replaying = player != NULL;
+    status->replay_time = player ? (double)player->place * session->time_step : 0;
+    status->replay_length = player ? (double)player->length * session->time_step : 0;
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
     for (int32_t i = 0; i < session->tools; i++) {
@@ -71,19 +78,69 @@ void lar_session_go_on(lar_session *session) {
     lar_pace_start(&session->pace, lar_clock_ns());
 }
 
+/* What is played ends here, or cannot go on: it rests. */
+static void rest_player(lar_session *session, const lar_error *error) {
+    if (error) memcpy(session->status.message, error->message, sizeof error->message);
+    lar_session_rest(session);
+}
+
+/* On the way to a place that somebody wants to see: as fast as it goes, and never long at once. */
+static void hurry(lar_session *session) {
+    lar_player *player = session->player;
+    lar_error error;
+    lar_status status = LAR_OK;
+    int64_t until = lar_clock_ns() + FAR;
+    while (!status && player->place < player->goal && lar_clock_ns() < until) {
+        uint64_t left = player->goal - player->place, steps = session->tick_steps;
+        status =
+            lar_player_advance(player, session->simulation, left < steps ? left : steps, &error);
+        if (player->goal > player->length) player->goal = player->length;
+    }
+    lar_session_feel_tools(session);
+    lar_pace_restart(&session->pace, lar_clock_ns());
+    lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
+    serve_snapshots(session);
+    if (status || (player->place >= player->goal && player->rests))
+        rest_player(session, status ? &error : NULL);
+    if (player->place >= player->goal) player->rests = false;
+}
+
+/* A tick of what is played: as one of a run, but tools follow the recording. */
+static void play_tick(lar_session *session) {
+    lar_player *player = session->player;
+    lar_error error;
+    uint64_t steps = session->tick_steps;
+    if (session->stepping && session->steps_left < steps) steps = session->steps_left;
+    lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
+    int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
+    lar_status status = lar_player_advance(player, session->simulation, steps, &error);
+    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
+                      lar_clock_thread_ns() - before);
+    lar_session_feel_tools(session);
+    session->pace.total.exchanges++;
+    lar_pace_answered(&session->pace, lar_clock_ns());
+    lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
+    serve_snapshots(session);
+    if (status || player->place >= player->length) rest_player(session, status ? &error : NULL);
+    if (!session->stepping) return;
+    session->steps_left -= steps;
+    if (session->steps_left == 0) lar_session_rest(session);
+}
+
 static void tick(lar_session *session) {
     lar_error error;
     uint64_t steps = session->tick_steps;
     if (session->stepping && session->steps_left < steps) steps = session->steps_left;
     lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
     lar_status status = lar_session_move_tools(session, &error);
-    int64_t begin = lar_clock_ns();
+    int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
     if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
     if (status) {
         if (!lar_session_recover(session, &error)) lar_session_stop(session, &error);
         return;
     }
-    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin);
+    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
+                      lar_clock_thread_ns() - before);
     lar_session_feel_tools(session);
     session->pace.total.exchanges++;
     lar_pace_answered(&session->pace, lar_clock_ns());
@@ -153,7 +210,12 @@ void *lar_session_run(void *argument) {
         obey_requests(session);
         if (session->ended) break;
         if (session->status.state == LAR_SESSION_PLAYING) {
-            tick(session);
+            if (!session->player)
+                tick(session);
+            else if (session->player->goal > session->player->place || session->player->rests)
+                hurry(session);
+            else
+                play_tick(session);
             fade = FADE;
             wait_for_tick(session);
         } else {

@@ -15,6 +15,7 @@ static lar_device_tick tick_of(const lar_session *session) {
 }
 
 void lar_session_take_tools(lar_session *session) {
+    session->status.placed++;
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         lar_tool_force now;

@@ -6,12 +6,12 @@ cd "$SCRATCH" || exit 1
 scene=demo/uterus_live.yaml
 
 expect 2 "$LARIAT" replay
-complains 'RECORDING SCENE is missing'
+complains 'SCENE RECORDING is missing'
 expect 2 "$LARIAT" replay some.recording
-expect 2 "$LARIAT" replay some.recording $scene more
-expect 2 "$LARIAT" replay some.recording $scene --every 0.1
+expect 2 "$LARIAT" replay $scene some.recording more
+expect 2 "$LARIAT" replay $scene some.recording --every 0.1
 complains '--out'
-expect 1 "$LARIAT" replay none.recording $scene
+expect 1 "$LARIAT" replay $scene none.recording
 complains 'none.recording'
 expect 1 "$LARIAT" replay $scene $scene
 complains 'is no recording'
@@ -38,11 +38,16 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 1 --pace 0.2 --record one.reco
 hash=$(value_of state_hash)
 
 # The same on one processor, on several, and between processes.
-expect 0 "$LARIAT" replay one.recording $scene
+expect 0 "$LARIAT" replay $scene one.recording
 says 'hashes are equal'
+[ ! -s err ] || fail "messages about arguments in their order"
+expect 0 "$LARIAT" replay one.recording $scene
+complains "note: the scene comes first, as for all commands: lariat replay $scene one.recording$"
+expect 0 "$LARIAT" replay one.recording $scene --grid 2x1x1 --comm shm
+[ "$(grep -c 'the scene comes first' err)" -eq 1 ] || fail "every process says the order"
 for divided in '' '--grid 2x1x1 --threads 2' '--grid 1x2x1 --comm shm'; do
     # shellcheck disable=SC2086
-    expect 0 "$LARIAT" replay one.recording $scene --json $divided
+    expect 0 "$LARIAT" replay $scene one.recording --json $divided
     has_keys recording title steps time_step hashes equal state_hash frames interrupted wall_time
     [ "$(value_of equal)" = true ] || fail "not equal"
     [ "$(value_of state_hash)" = "$hash" ] || fail "the last hash differs: $divided"
@@ -56,7 +61,7 @@ done
 expect 0 "$LARIAT" view $scene --port 0 --seconds 1 --pace 0.2 --record two.recording \
     --device probe=script:probe.csv --grid 2x1x1 --comm shm --json
 hash=$(value_of state_hash)
-expect 0 "$LARIAT" replay two.recording $scene --json --out frames --every 0.01
+expect 0 "$LARIAT" replay $scene two.recording --json --out frames --every 0.01
 [ "$(value_of state_hash)" = "$hash" ] || fail "recorded by processes, the last hash differs"
 [ "$(value_of frames)" -gt 1 ] || fail "no frames"
 [ -s frames/uterus_live.pvd ] && [ -s frames/uterus_live_000001.vtu ] || fail "no series of frames"
@@ -70,19 +75,19 @@ complains 'unstable at step'
 fault=$(grep -o 'unstable at step.*' err)
 for divided in '' '--grid 2x1x1' '--grid 2x1x1 --comm shm'; do
     # shellcheck disable=SC2086
-    expect 0 "$LARIAT" replay broken.recording violent.yaml $divided
+    expect 0 "$LARIAT" replay violent.yaml broken.recording $divided
     says '^ended  *as the recording did, by a fault: '
     grep -qF "$fault" out || fail "another fault: $divided"
     says '^compared  *all [0-9]* hashes are equal'
 done
-expect 0 "$LARIAT" replay broken.recording violent.yaml --json
+expect 0 "$LARIAT" replay violent.yaml broken.recording --json
 has_keys fault equal state_hash
 
 # Another model, and a file that was cut or altered.
-expect 1 "$LARIAT" replay one.recording demo/uterus.yaml
+expect 1 "$LARIAT" replay demo/uterus.yaml one.recording
 complains 'one.recording'
 head -c 20000 one.recording >cut.recording
-expect 1 "$LARIAT" replay cut.recording $scene --json
+expect 1 "$LARIAT" replay $scene cut.recording --json
 complains 'cut off'
 silent
 finish "lariat replay: equal on every grid, and by processes"

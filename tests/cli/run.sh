@@ -38,6 +38,28 @@ value_of state_hash | grep -Eq '^"[0-9a-f]{16}"$' || fail "state_hash is $(value
 cmp -s "$SCRATCH/out" "$SCRATCH/results/run.json" || fail "run.json differs from --json"
 hash=$(value_of state_hash)
 
+# In two parts the same, on any grid; what is saved is no scene, and says what to do with it.
+half=$SCRATCH/half.checkpoint
+expect 0 "$LARIAT" run "$scene" --steps 120 --save "$half"
+for divided in '' '--grid 2x1x1'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" run "$scene" --steps 80 --json --resume "$half" $divided
+    [ "$(value_of state_hash)" = "$hash" ] || fail "resumed, the hash is $(value_of state_hash)"
+    [ "$(value_of steps)" = 200 ] || fail "resumed, it ends at step $(value_of steps)"
+done
+for command in run info view; do
+    expect 1 "$LARIAT" $command "$half"
+    complains 'half.checkpoint: is a saved state .* lariat run SCENE --resume .*half.checkpoint'
+done
+cp "$half" "$SCRATCH/a.recording"
+expect 1 "$LARIAT" run "$SCRATCH/a.recording"
+complains 'lariat replay SCENE .*a.recording'
+expect 1 "$LARIAT" run "$scene" --resume "$scene"
+complains 'uterus.yaml: is not a checkpoint of Lariat'
+expect 1 "$LARIAT" run "$scene" --steps 10 --save "$scene"
+complains 'is there and is not a checkpoint'
+expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"
+
 # Frames, series and probes agree.
 frames=$(value_of frames)
 [ "$(find "$SCRATCH/results" -name 'uterus_*.vtu' | wc -l)" -eq "$frames" ] || fail "frames"

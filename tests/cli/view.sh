@@ -42,6 +42,19 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device p
 [ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
 [ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
 
+# Slow motion: which of the two it is and what would help, and what is late in it is no miss.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 3 --pace 90
+complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* us and stands for [0-9.]* us of the clock; what would hold: .*a mesh of about [0-9]* elements, or a slower pace$'
+says '^real-time factor.*because steps take longer than the time they stand for'
+says '^ticks .*, 0 missed (0.000 %); [0-9]* more were late in slow motion$'
+says "^a tick's forces *median [0-9.]* ms, .* longest [0-9.]* ms$"
+expect 0 "$LARIAT" view $scene --port 0 --seconds 2 --pace 90 --json
+[ "$(value_of slow_cause)" = '"step"' ] || fail "slow motion is because of $(value_of slow_cause)"
+[ "$(value_of slow_ticks)" -gt 100 ] || fail "$(value_of slow_ticks) ticks were late in slow motion"
+[ "$(value_of deadline_misses)" -eq 0 ] || fail "$(value_of deadline_misses) misses in slow motion"
+awk "BEGIN { exit !($(value_of wall_per_tick_us.p50) < 20000) }" ||
+    fail "the median of a tick is $(value_of wall_per_tick_us.p50) us"
+
 # A block is torn by a load beside a hand that moves: the session goes back, on and on, and replays.
 awk 'BEGIN {
     print "*NODE"
@@ -82,7 +95,7 @@ for grid in '' '--grid 2x1x1 --comm shm'; do
     [ "$(value_of state)" = '"playing"' ] || fail "the state is $(value_of state)"
     case $(value_of recovery) in '"went back'*) ;; *) fail "the last was $(value_of recovery)" ;; esac
     hash=$(value_of state_hash)
-    expect 0 "$LARIAT" replay back.recording block.yaml --json
+    expect 0 "$LARIAT" replay block.yaml back.recording --json
     [ "$(value_of state_hash)" = "$hash" ] || fail "it replays to $(value_of state_hash), not $hash"
 done
 
@@ -159,6 +172,18 @@ for incomplete in probe probe=; do
     expect 2 "$LARIAT" view $scene --port 0 --device $incomplete
     complains 'TOOL=DEVICE'
 done
+
+# A state of a session, which has hands, is taken up where it was; one of a run has none.
+expect 0 "$LARIAT" run $scene --steps 500 --save half.checkpoint
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --paused --json --resume half.checkpoint
+[ "$(value_of steps)" -eq 500 ] || fail "it begins at step $(value_of steps)"
+complains 'half.checkpoint has no hands'
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.3 --resume none.checkpoint
+complains 'none.checkpoint'
+expect 1 "$LARIAT" view demo/uterus.yaml --port 0 --seconds 0.3 --resume half.checkpoint
+complains 'half.checkpoint: was saved from another model'
+expect 1 "$LARIAT" view half.checkpoint --port 0
+complains 'half.checkpoint: is a saved state .* lariat run SCENE --resume half.checkpoint, or with lariat view'
 
 # What is recorded from the command line is there.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording

@@ -20,7 +20,7 @@ static void tick(double seconds, int64_t engine) {
     if (pace.pace > 0 && now < pace.beat.due) now = pace.beat.due;
     lar_pace_begin(&pace, seconds, now);
     now += engine;
-    lar_pace_computed(&pace, 10, engine);
+    lar_pace_computed(&pace, 10, engine, engine);
     lar_pace_answered(&pace, now);
 }
 
@@ -85,6 +85,48 @@ static void late_ticks_are_misses(void **unused) {
     assert_true(report().lag == 0);
     assert_true(report().skipped == 0);
     assert_false(report().slow_motion);
+}
+
+/* Twice too slow: what is late from then on nobody could have kept, and times are those of a tick.
+ */
+static void late_in_slow_motion_is_no_miss(void **unused) {
+    (void)unused;
+    begin_with(1);
+    for (int i = 0; i < 3000; i++) tick(0.001, 2 * MS);
+    lar_session_status status = report();
+    assert_true(status.slow_motion);
+    assert_int_equal(status.misses, 0);
+    assert_int_equal(status.slow_ticks, 3000);
+    near(status.tick_p50, 0.002, 0.02);
+    for (int i = 0; i < 2000; i++) tick(0.001, 100000); /* catches up, and is punctual again */
+    assert_false(report().slow_motion);
+    tick(0.001, 5 * MS);
+    assert_int_equal(report().misses, 1);
+    /* A miss that was made up for stays one, whatever comes behind it. */
+    for (int i = 0; i < 100; i++) tick(0.001, 100000);
+    uint64_t missed = report().misses;
+    tick(0.001, 200 * MS);
+    tick(0.001, 100000);
+    assert_true(report().slow_motion);
+    assert_int_equal(report().misses, missed);
+}
+
+/* What a step takes when nothing is in its way: the least of the last second, of a processor. */
+static void the_least_step_of_the_last_second_is_known(void **unused) {
+    (void)unused;
+    begin_with(1);
+    assert_true(report().step_least == 0);
+    for (int i = 0; i < 30; i++) {
+        if (now < pace.beat.due) now = pace.beat.due;
+        lar_pace_begin(&pace, 0.1, now);
+        lar_pace_computed(&pace, 10, 90 * MS, (i == 5 ? 1 : i == 25 ? 3 : 4) * MS);
+        now += 90 * MS;
+        lar_pace_answered(&pace, now);
+        lar_pace_look(&pace, now);
+    }
+    near(report().step_least, 3e-4, 1e-9);
+    lar_pace_forget_least(&pace);
+    assert_true(report().step_least == 0);
 }
 
 static void too_much_is_given_up(void **unused) {
@@ -188,6 +230,8 @@ int main(void) {
                                        cmocka_unit_test(waiting_ends_when_a_tick_is_due),
                                        cmocka_unit_test(fractions_are_not_lost),
                                        cmocka_unit_test(late_ticks_are_misses),
+                                       cmocka_unit_test(late_in_slow_motion_is_no_miss),
+                                       cmocka_unit_test(the_least_step_of_the_last_second_is_known),
                                        cmocka_unit_test(too_much_is_given_up),
                                        cmocka_unit_test(pauses_do_not_count),
                                        cmocka_unit_test(without_pace_nothing_is_due),

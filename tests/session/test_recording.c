@@ -428,6 +428,60 @@ static void full_rings_are_not_hashed_for(void **unused) {
     remove(PATH);
 }
 
+/* Waits until what is played rests at a moment, which may lie behind its end. */
+static lar_session_status rest_at(const bench *b, double seconds) {
+    lar_session_status status = {0};
+    for (int i = 0; i < 4000; i++) {
+        status = status_of(b);
+        if (status.state == LAR_SESSION_PAUSED &&
+            fabs(status.replay_time - fmin(seconds, status.replay_length)) < 1.5e-4)
+            return status;
+        nap(0.005);
+    }
+    fail_msg("it does not come to rest, at %g of %g s", status.replay_time, status.replay_length);
+    return status;
+}
+
+static uint64_t hash_at(const bench *b, double seconds) {
+    lar_snapshot *snapshot = NULL;
+    lar_session_seek(b->session, seconds);
+    rest_at(b, seconds);
+    DONE(lar_snapshot_create(b->session, &snapshot, &failure));
+    DONE(lar_session_snapshot(b->session, snapshot, 10, &failure));
+    uint64_t hash = snapshot->hash;
+    lar_snapshot_destroy(snapshot);
+    return hash;
+}
+
+/* In a session: with play and pause, to any place and to the same bits, and out of it. */
+static void is_played_in_a_session(void **unused) {
+    (void)unused;
+    record(NULL, 1);
+    lar_session_options options = lar_session_options_default();
+    options.pace = 0;
+    bench b = open_bench(NULL, 1, &options);
+    DONE(lar_session_start(b.session, &failure));
+    DONE(lar_session_replay(b.session, PATH, &failure));
+    const lar_session_status status = rest_at(&b, 1e9);
+    assert_string_equal(status.message, "");
+    assert_true(status.replaying && status.replay_length > 0.05);
+    assert_true(status.replay_time == status.replay_length);
+    const double inside = 0.6 * status.replay_length;
+    const uint64_t end = hash_at(&b, 1e9), middle = hash_at(&b, inside), begin = hash_at(&b, 0);
+    assert_true(end != middle && middle != begin);
+    assert_true(hash_at(&b, inside) == middle);
+    assert_true(hash_at(&b, 1e9) == end);
+    assert_int_not_equal(lar_session_record(b.session, "other.recording", &failure), LAR_OK);
+    assert_non_null(strstr(failure.message, "is being played"));
+    DONE(lar_session_replay(b.session, NULL, &failure)); /* and on from there */
+    assert_false(status_of(&b).replaying);
+    DONE(lar_session_replay(b.session, PATH, &failure));
+    DONE(lar_session_reset(b.session, &failure));
+    assert_false(status_of(&b).replaying);
+    assert_int_not_equal(lar_session_replay(b.session, "none.recording", &failure), LAR_OK);
+    close_bench(&b);
+}
+
 static int few(void *context, uint64_t step) {
     (void)step;
     return ++*(int *)context < 5;
@@ -468,6 +522,7 @@ int main(void) {
                                        cmocka_unit_test(full_disks_are_told),
                                        cmocka_unit_test(lost_states_end_a_recording),
                                        cmocka_unit_test(full_rings_are_not_hashed_for),
+                                       cmocka_unit_test(is_played_in_a_session),
                                        cmocka_unit_test(replays_can_be_ended)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

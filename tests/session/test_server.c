@@ -325,6 +325,43 @@ static void instruments_have_one_owner(void **unused) {
     end_serving(&s);
 }
 
+static double grasper_height(const served *s) {
+    lar_tool_pose pose;
+    DONE(lar_session_tool_force(s->b.session, SERVED_GRASPER, &pose, NULL, &failure));
+    return pose.position[1];
+}
+
+/* A reset puts an instrument where the scene has it. Whoever moved it does not bring it back,
+ * neither with what was still on its way nor by leaving. */
+static void a_reset_takes_instruments_out_of_hands(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    client one = open_client(s.port);
+    const double rest = grasper_height(&s);
+    say(&one, "{\"do\":\"tool\",\"tool\":1,\"position\":[0.2,0.02,0.2],\"opening\":0.1}");
+    for (int i = 0; i < 2000 && !(fabs(grasper_height(&s) - 0.02) < 1e-4); i++) nap(0.002);
+    assert_true(fabs(rest - 0.02) > 1e-3);
+    await_status(&one, "\"by\":\"you\"");
+    say(&one, "{\"do\":\"reset\"}");
+    for (int i = 0; i < 2000 && fabs(grasper_height(&s) - rest) > 1e-9; i++) nap(0.002);
+    say(&one, "{\"do\":\"tool\",\"tool\":1,\"position\":[0.2,0.02,0.2],\"opening\":0.1}");
+    nap(0.1);
+    assert_true(grasper_height(&s) == rest);
+    await_status(&one, "\"placed\":1");
+    assert_non_null(strstr((char *)one.data, "\"by\":\"nobody\""));
+    assert_null(strstr((char *)one.data, "\"by\":\"you\""));
+    close_client(&one);
+    nap(0.2);
+    assert_true(grasper_height(&s) == rest);
+    /* Taken anew, it goes where it is moved. */
+    client other = open_client(s.port);
+    say(&other, "{\"do\":\"tool\",\"tool\":1,\"position\":[0.2,0.02,0.2]}");
+    for (int i = 0; i < 2000 && !(fabs(grasper_height(&s) - 0.02) < 1e-4); i++) nap(0.002);
+    assert_true(fabs(grasper_height(&s) - 0.02) < 1e-4);
+    close_client(&other);
+    end_serving(&s);
+}
+
 /* Pressed against the side that is held: it is seen where it is, not where it should go. */
 static void a_tool_that_tissue_stops_says_so(void **unused) {
     (void)unused;
@@ -484,6 +521,7 @@ int main(void) {
                                        cmocka_unit_test(pulls_and_lets_go),
                                        cmocka_unit_test(hands_are_handed_out),
                                        cmocka_unit_test(instruments_have_one_owner),
+                                       cmocka_unit_test(a_reset_takes_instruments_out_of_hands),
                                        cmocka_unit_test(a_tool_that_tissue_stops_says_so),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
                                        cmocka_unit_test(saves_where_it_may),

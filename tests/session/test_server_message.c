@@ -49,6 +49,8 @@ static void examples_of_the_page_are_understood(void **unused) {
     assert_false(good("{\"do\":\"record\",\"on\":false}").on);
     assert_int_equal(good("{\"do\":\"save\"}").kind, LAR_WISH_SAVE);
     assert_string_equal(good("{\"do\":\"load\"}").name, "");
+    assert_string_equal(good("{\"do\":\"replay\",\"name\":\"a.recording\"}").name, "a.recording");
+    assert_true(good("{\"do\":\"seek\",\"time\":1.5}").time == 1.5);
     assert_string_equal(good("{\"do\":\"load\",\"name\":\"uterus-1.checkpoint\"}").name,
                         "uterus-1.checkpoint");
     /* Escapes are characters like others. */

@@ -107,14 +107,18 @@ static void slow_motion_is_announced(void **unused) {
     status = status_of(&b);
     assert_true(status.slow_motion);
     assert_true(status.skipped > 0);
-    assert_true(status.misses > 0 && status.misses <= status.ticks);
+    assert_int_equal(status.misses, 0);
+    assert_true(status.slow_ticks > 0 && status.slow_ticks <= status.ticks);
+    assert_int_equal(status.slow_cause, LAR_SLOW_STEP);
+    assert_non_null(strstr(status.slow_advice, "what would hold"));
     assert_true(status.real_time_factor < 1e5);
     lar_session_set_pace(b.session, 0); /* no pace, nothing to miss */
     lar_session_pause(b.session);
     status = await(&b, LAR_SESSION_PAUSED, 0);
     lar_session_play(b.session);
     await(&b, LAR_SESSION_PLAYING, status.step + 1000);
-    assert_int_equal(status_of(&b).misses, status.misses);
+    assert_int_equal(status_of(&b).misses + status_of(&b).slow_ticks,
+                     status.misses + status.slow_ticks);
     close_bench(&b);
 }
 

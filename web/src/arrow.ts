@@ -4,6 +4,8 @@ import * as THREE from 'three';
 import { steel } from './steel';
 
 const BRIGHT = [0.35, 0.85, 1.0] as const;
+const YOURS = [1.0, 0.72, 0.12] as const;
+export const OTHERS = [0.62, 0.55, 0.95] as const; // the pulls of other viewers
 const Y = new THREE.Vector3(0, 1, 0);
 
 export class PullPicture {
@@ -16,8 +18,8 @@ export class PullPicture {
     private readonly direction = new THREE.Vector3();
     private size = 1;
 
-    constructor() {
-        const arrow = steel({ colour: [1.0, 0.72, 0.12], glow: 0.45, onTop: true });
+    constructor(colour: readonly [number, number, number] = YOURS) {
+        const arrow = steel({ colour, glow: 0.45, onTop: true });
         const hand = steel({ colour: BRIGHT, glow: 0.9, alpha: 0.75, onTop: true });
         this.dot = new THREE.Mesh(new THREE.SphereGeometry(1, 24, 16), arrow);
         this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 24).translate(0, 0.5, 0), arrow);

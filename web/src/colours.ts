@@ -1,6 +1,7 @@
 /* What the colours show: tissue, or one of the engine's fields with its map, legend, range and unit. */
 import { element, withUnit, write } from './dom';
 import { STEPS, colourMap, css, organColour, processorColour, type MapName, type Rgb } from './palette';
+import { follow } from './range';
 import type { FieldInfo, Frame, Hello } from './protocol';
 import type { View } from './view';
 
@@ -9,8 +10,8 @@ const PROCESSOR = 'processor';
 export class Colours {
     private fields: FieldInfo[] = [];
     private chosen: FieldInfo | null = null;
-    private least = 0;
-    private most = 0;
+    least = 0; // of the range
+    most = 0;
     private hello: Hello | null = null;
     private readonly list = element('fields');
     private readonly legend = element('legend');
@@ -62,16 +63,11 @@ export class Colours {
         this.view.changed();
     }
 
-    /* The range follows what is shown: upwards at once, downwards slowly, so that it does not flicker. */
+    /* The range follows what is shown. */
     frame(frame: Frame): void {
         if (!this.chosen || this.legend.hidden || frame.field !== this.chosen.number) return;
-        if (this.auto.checked) {
-            const size = Math.max(Math.abs(frame.least), Math.abs(frame.most));
-            const least = this.map === 'signed' ? -size : Math.min(0, frame.least);
-            const most = this.map === 'signed' ? size : frame.most;
-            this.least = least < this.least ? least : this.least + (least - this.least) * 0.05;
-            this.most = most > this.most ? most : this.most + (most - this.most) * 0.05;
-        }
+        if (this.auto.checked)
+            Object.assign(this, follow(this, frame.least, frame.most, this.chosen.unit, this.map === 'signed'));
         this.view.tissue.showValues(this.map, this.least, this.most);
         this.labels();
     }
@@ -129,7 +125,7 @@ export class Colours {
             for (let p = 0; p < Math.min(this.hello.processors, 16); p++) add(processorColour(p), String(p));
         else if (this.hello.materials.length > 1)
             this.hello.materials.forEach((material, i) =>
-                add(organColour(i), material.name || `${i + 1}: ${withUnit(material.shear_modulus, 'Pa')}`),
+                add(organColour(material.name, i), material.name || `${i + 1}: ${withUnit(material.shear_modulus, 'Pa')}`),
             );
     }
 }

@@ -30,7 +30,7 @@ export class Instrument {
     choose(tool: number): void {
         this.held = false;
         this.chosen = tool;
-        this.opening = this.session.status?.tools[tool]?.opening ?? 1;
+        this.refresh();
         this.view.instruments.choose(tool);
         this.view.changed();
         this.chose(tool);
@@ -49,10 +49,19 @@ export class Instrument {
         const tip = this.view.instruments.position(this.chosen);
         if (!tip) return;
         this.held = true;
+        this.refresh();
         this.target.copy(tip);
         this.setPlane();
         this.offset.set(0, 0, 0);
         if (ray?.intersectPlane(this.plane, this.offset)) this.offset.sub(tip);
+    }
+
+    /* The run was put somewhere else, and the instrument with it. True when it was held. */
+    placed(): boolean {
+        const held = this.held;
+        this.held = this.moved = false;
+        this.refresh();
+        return held;
     }
 
     drop(): void {
@@ -90,6 +99,10 @@ export class Instrument {
             position: [this.target.x, this.target.y, this.target.z],
             opening: this.opening,
         });
+    }
+
+    private refresh(): void {
+        this.opening = this.session.status?.tools[this.chosen]?.opening ?? 1;
     }
 
     private setPlane(): void {

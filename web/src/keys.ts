@@ -3,6 +3,8 @@ import { element } from './dom';
 import type { Colours } from './colours';
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
+import type { ReplayBar } from './replaybar';
+import type { SavedCard } from './savedcard';
 import type { Panel } from './panel';
 import { pick } from './pick';
 import type { Transport } from './transport';
@@ -13,6 +15,8 @@ export interface Served {
     hand: Hand;
     instrument: Instrument;
     transport: Transport;
+    replay: ReplayBar;
+    saved: SavedCard;
     colours: Colours;
     panel: Panel;
     say(text: string): void;
@@ -44,7 +48,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
     }
     const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[key];
     if (arrow) return go(s, arrow[0]!, arrow[1]!, event.shiftKey);
-    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.'].includes(key)) return false;
+    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.', ',', ';'].includes(key)) return false;
     const acts: Record<string, () => void> = {
         ' ': () => s.transport.playOrPause(),
         '.': () => s.transport.step(),
@@ -54,6 +58,10 @@ function press(s: Served, event: KeyboardEvent): boolean {
         c: () => s.transport.recordOrEnd(),
         s: () => s.transport.saveNow(),
         v: () => s.transport.loadLast(),
+        o: () => s.saved.toggle(),
+        x: () => s.replay.leave(),
+        ',': () => s.replay.seekBy(-0.25),
+        ';': () => s.replay.seekBy(0.25),
         e: () => element('edges').click(),
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),

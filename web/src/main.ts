@@ -9,6 +9,8 @@ import { Hints, Trouble, note } from './notices';
 import { Panel, StateLine } from './panel';
 import { Pointer } from './pointer';
 import type { Status } from './protocol';
+import { ReplayBar } from './replaybar';
+import { SavedCard } from './savedcard';
 import { Session } from './session';
 import { ToolCard } from './toolcard';
 import { Transport } from './transport';
@@ -41,17 +43,19 @@ function start(): void {
             line.setTitle(hello.title);
             panel.setHello(hello);
             transport.setHello(hello);
+            saved.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
             force.clear();
             instrument.choose(-1);
             stopped = '';
-            recoveries = -1;
+            recoveries = placed = -1;
             trouble.hide();
         },
         surface(surface) {
-            view.setSurface(surface, session.hello!.view);
+            const { materials, view: from } = session.hello!;
+            view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
             hints.start();
@@ -62,16 +66,25 @@ function start(): void {
         },
         frame(frame) {
             view.setFrame(frame);
+            view.others.update(frame, session.status, session.hello!.hands, force.range, view.endoscope.camera);
             colours.frame(frame);
         },
-        forces: (forces) => force.add(forces),
+        forces(forces) {
+            // A hand that holds nothing of ours may hold somebody else's.
+            const ours = hand.state === 'holding' || (instrument.chosen >= 0 && !hand.busy);
+            if (!ours) forces.values.fill(0);
+            force.add(forces);
+        },
         status(status) {
             transport.update(status);
+            saved.update(status);
+            replay.update(status);
             panel.update(status);
             line.update(status);
             toolCard.update(status);
             showStop(status);
             showRecovery(status);
+            dropPlaced(status);
         },
         hand(news) {
             hand.news(news);
@@ -109,10 +122,12 @@ function start(): void {
         chooseForce();
     });
     const toolCard = new ToolCard(instrument);
-    const transport = new Transport(session, help);
+    const saved = new SavedCard(session);
+    const replay = new ReplayBar(session);
+    const transport = new Transport(session, help, replay);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, used);
-    listenToKeys({ view, hand, instrument, transport, colours, panel, say: note, used, help });
+    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, say: note, used, help });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
@@ -162,6 +177,15 @@ function start(): void {
         recoveries = status.recoveries;
     }
 
+    let placed = -1;
+    function dropPlaced(status: Status): void {
+        if (placed >= 0 && status.placed > placed) {
+            pointer.drop();
+            if (instrument.placed()) note('The instrument is where this state has it; take it anew to move it.');
+        }
+        placed = status.placed;
+    }
+
     let before = performance.now();
     let pictures = 0;
     let counted = before;
@@ -171,6 +195,7 @@ function start(): void {
         hand.update(now, force.range);
         instrument.update(now);
         pointer.update();
+        replay.look(now);
         if (view.draw(Math.min(0.1, (now - before) / 1000))) pictures++;
         before = now;
         if (now - counted > 1000) {

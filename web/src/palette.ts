@@ -31,7 +31,7 @@ const encode = (v: number): number =>
     Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
 export const css = (c: Rgb): string => `rgb(${encode(c[0])} ${encode(c[1])} ${encode(c[2])})`;
 
-/* Tissue, in the order of the scene's materials: muscle, pale tube, ivory, grey-pink, plum, ochre. */
+/* Tissue, where materials have no names in their order: muscle, pale tube, ivory, grey-pink, plum, ochre. */
 const ORGANS: Rgb[] = [
     oklch(0.6, 0.135, 24),
     oklch(0.71, 0.09, 38),
@@ -55,7 +55,44 @@ const PROCESSORS: Rgb[] = [
     oklch(0.45, 0.08, 220),
 ];
 
-export const organColour = (material: number): Rgb => ORGANS[material % ORGANS.length]!;
+/* Organs that scenes often have, by what their names contain: the first that fits. */
+const KNOWN: [RegExp, Rgb][] = [
+    [/uter|muscle|myo/, ORGANS[0]!],
+    [/tube|bowel|intestin|colon|gut/, ORGANS[1]!],
+    [/ovar|bone|cortical/, ORGANS[2]!],
+    [/ligament|tendon|fascia|connective/, ORGANS[3]!],
+    [/liver|hepat/, oklch(0.46, 0.1, 32)],
+    [/kidney|renal/, oklch(0.52, 0.1, 18)],
+    [/spleen/, oklch(0.42, 0.08, 5)],
+    [/heart|ventric|card/, oklch(0.55, 0.15, 26)],
+    [/lung|pulmon/, oklch(0.76, 0.06, 15)],
+    [/brain|cortex|white|grey|gray/, oklch(0.79, 0.045, 45)],
+    [/arter|aort/, oklch(0.58, 0.17, 28)],
+    [/vein|venous|cava|portal/, oklch(0.5, 0.09, 265)],
+    [/gall|bile/, oklch(0.6, 0.1, 130)],
+    [/fat|adipose/, oklch(0.85, 0.09, 92)],
+    [/skin|derm/, oklch(0.8, 0.06, 55)],
+    [/tumou?r|lesion|tumor/, oklch(0.72, 0.09, 100)],
+    [/stomach|gastr/, oklch(0.7, 0.08, 20)],
+    [/pancrea/, oklch(0.77, 0.08, 68)],
+    [/bladder/, oklch(0.74, 0.07, 50)],
+];
+
+/* Of a name that nobody knows: some colour of tissue, always the same. */
+function colourOfName(name: string): Rgb {
+    let hash = 2166136261;
+    for (const c of name) hash = Math.imul(hash ^ c.charCodeAt(0), 16777619) >>> 0;
+    const share = (bits: number): number => ((hash >>> bits) & 0xff) / 255;
+    return oklch(0.42 + 0.42 * share(0), 0.05 + 0.08 * share(8), 10 + 90 * share(16));
+}
+
+/* The colour of an organ is that of its name, the same in every scene; without a name, of its number. */
+export function organColour(name: string, material: number): Rgb {
+    const plain = name.toLowerCase().trim();
+    if (!plain) return ORGANS[material % ORGANS.length]!;
+    return KNOWN.find(([word]) => word.test(plain))?.[1] ?? colourOfName(plain);
+}
+
 export const processorColour = (p: number): Rgb => PROCESSORS[p % PROCESSORS.length]!;
 
 export const STEPS = 256;

@@ -7,20 +7,24 @@ export function division(parts: number): string {
     return parts > 1 ? `step divided by ${parts}` : 'none';
 }
 
-type Row = [name: string, value: (s: Status) => string, bad?: (s: Status) => boolean, title?: string];
+type Row = [name: string, title: string, value: (s: Status) => string, bad?: (s: Status) => boolean];
 
 const DIVIDED =
     'Strained tissue and tools that press hard need shorter steps: while they do, every step is ' +
     'computed in several parts, which takes as many times as long.';
 
+const ANSWER =
+    'From the moment an exchange with the tools is due (in slow motion: begins) to its forces. ';
+
 const rate = (perSecond: number): string =>
     perSecond >= 9999.5 ? `${(perSecond / 1000).toFixed(1)} kHz` : `${perSecond.toFixed(0)} Hz`;
 
-/* Microseconds, with three digits. */
-function span(us: number | null): string {
+/* Microseconds, as milliseconds from a tenth of one on. */
+export function span(us: number | null): string {
     if (us === null) return '–';
-    if (us >= 1000) return `${(us / 1000).toFixed(us >= 99950 ? 0 : 1)} ms`;
-    return `${us.toFixed(us >= 99.95 ? 0 : 1)} µs`;
+    const ms = us / 1000;
+    if (ms >= 0.09995) return `${ms.toFixed(ms >= 99.95 ? 0 : ms >= 9.995 ? 1 : 2)} ms`;
+    return `${us.toFixed(1)} µs`;
 }
 
 export class Panel {
@@ -31,29 +35,36 @@ export class Panel {
     private readonly details = element<HTMLDetailsElement>('panel');
 
     private readonly rows: Row[] = [
-        ['simulated time', (s) => `${s.time.toFixed(2)} s`],
-        ['steps', (s) => String(s.step)],
-        ['real-time factor', (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
-        ['since the start', (s) => number(s.real_time_factor, 3)],
-        ['step, median', (s) => span(s.step_us.p50)],
-        ['step, 99 %', (s) => span(s.step_us.p99)],
-        ['step, longest', (s) => span(s.step_us.max)],
-        ['answer, 99.9 %', (s) => span(s.tick_us.p999), (s) => this.late(s)],
-        ['missed', (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
-        ['engine', (s) => rate(s.engine_rate)],
-        ['haptics', (s) => rate(s.haptic_rate)],
-        ['pictures', () => rate(this.pictureRate)],
-        ['given up', (s) => `${s.skipped.toFixed(2)} s`, (s) => s.skipped > 0],
-        ['went back', (s) => `${s.recoveries} ×`, (s) => s.recoveries > 0],
-        ['division', (s) => division(s.step_parts), (s) => s.step_parts > 1, DIVIDED],
-        ['divided steps', (s) => String(s.divided_steps), undefined, `${DIVIDED} So many were, since the engine was started.`],
-        ['viewers', (s) => String(s.viewers)],
+        ['simulated time', 'Time in the simulated world since the start.', (s) => `${s.time.toFixed(2)} s`],
+        ['steps', 'Steps of the simulation since the start.', (s) => String(s.step)],
+        ['real-time factor', 'Simulated time per time of the clock, over the last second: 1 is real time.',
+            (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
+        ['since the start', 'The same since the engine was started, pauses left out.', (s) => number(s.real_time_factor, 3)],
+        ['step, median', 'What a step takes to compute: half of them take less.', (s) => span(s.step_us.p50)],
+        ['step, 99 %', 'What a step takes: 99 of 100 take less.', (s) => span(s.step_us.p99)],
+        ['step, longest', 'The longest that a step has taken.', (s) => span(s.step_us.max)],
+        ['answer, median', ANSWER + 'Half of all answers come sooner.', (s) => span(s.tick_us.p50)],
+        ['answer, 99.9 %', ANSWER + '999 of 1000 answers come sooner.', (s) => span(s.tick_us.p999), (s) => this.late(s)],
+        ['missed', 'Exchanges with the tools whose forces came after the next exchange was due. Those of slow motion are counted below.',
+            (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
+        ['late, slow motion', 'Exchanges that were late because the run is in slow motion: each had to wait for the one before it.',
+            (s) => String(s.slow_ticks), (s) => s.slow_motion],
+        ['engine', 'Steps per second, over the last second.', (s) => rate(s.engine_rate)],
+        ['haptics', 'Exchanges of positions and forces with tools and devices per second.', (s) => rate(s.haptic_rate)],
+        ['pictures', 'Pictures that this page draws per second.', () => rate(this.pictureRate)],
+        ['given up', 'Time by which the run is behind the clock and that it no longer tries to make up for.',
+            (s) => `${s.skipped.toFixed(2)} s`, (s) => s.skipped > 0],
+        ['went back', 'How often the run became unstable and went back to a sound state by itself.',
+            (s) => `${s.recoveries} ×`, (s) => s.recoveries > 0],
+        ['division', DIVIDED, (s) => division(s.step_parts), (s) => s.step_parts > 1],
+        ['divided steps', `${DIVIDED} So many were, since the engine was started.`, (s) => String(s.divided_steps)],
+        ['viewers', 'Pages that look at this run, this one included.', (s) => String(s.viewers)],
     ];
 
     constructor() {
-        for (const [name, , , title] of this.rows) {
+        for (const [name, title] of this.rows) {
             const row = document.createElement('tr');
-            if (title) row.title = title;
+            row.title = title;
             const head = document.createElement('th');
             head.scope = 'row';
             head.textContent = name;
@@ -85,7 +96,7 @@ export class Panel {
         const factor = `${number(status.real_time_factor_now, 2)} × real time`;
         write(element('panel-short'), status.state === 'playing' ? factor : '');
         if (!this.details.open) return;
-        this.rows.forEach(([, value, bad], i) => {
+        this.rows.forEach(([, , value, bad], i) => {
             const cell = this.cells[i]!;
             write(cell, value(status));
             cell.parentElement!.classList.toggle('bad', bad?.(status) ?? false);
@@ -111,6 +122,15 @@ export function playing(status: Pick<Status, 'pace' | 'real_time_factor_now'>): 
     if (factor > 0 && factor < 0.97 * status.pace) return { text: `${factor.toFixed(2)} × real time`, slow: true };
     return { text: status.pace === 1 ? 'real time' : `${status.pace} × real time, as asked for`, slow: false };
 }
+
+/* What the banner says beside the words slow motion: a factor only where it is below what is asked for. */
+export function slowness(status: Pick<Status, 'pace' | 'real_time_factor_now'>): string {
+    const factor = status.real_time_factor_now;
+    if (factor !== null && factor > 0 && factor < 0.99 * (status.pace || 1)) return `${factor.toFixed(2)} × real time`;
+    return 'catching up with the clock';
+}
+
+const sentence = (text: string): string => (text ? text[0]!.toUpperCase() + text.slice(1).replaceAll(' us', ' µs') + '.' : '');
 
 /* The title line and the banner. */
 export class StateLine {
@@ -140,14 +160,9 @@ export class StateLine {
         // Stays for a second, so that it can be read.
         this.slow.hidden =
             status.state !== 'playing' || (!slow && (this.shownSince === 0 || now - this.shownSince > 1000));
-        const factor = status.real_time_factor_now;
-        if (slow)
-            write(
-                element('slow-text'),
-                factor !== null && factor < 0.995 * (status.pace || 1)
-                    ? `${factor.toFixed(2)} × real time`
-                    : 'catching up with the clock',
-            );
+        if (!slow) return;
+        write(element('slow-text'), slowness(status));
+        write(element('slow-advice'), sentence(status.slow_advice));
     }
 
     lost(): void {

@@ -53,6 +53,11 @@ export class Pointer {
         this.view.canvas.classList.toggle('over', over);
     }
 
+    /* Lets go of an instrument only: the run was put somewhere else. */
+    drop(): void {
+        if (this.doing === 'moving') this.do('nothing');
+    }
+
     /* Ends whatever the pointer does. */
     end(): void {
         if (this.doing === 'pulling') this.hand.release();

@@ -74,12 +74,15 @@ export interface Status {
     tick_us: Percentiles;
     ticks: number;
     misses: number;
+    slow_ticks: number; // late in slow motion, and no misses
     real_time_factor: number | null;
     real_time_factor_now: number | null;
     engine_rate: number;
     haptic_rate: number;
     snapshot_rate: number;
     slow_motion: boolean;
+    slow_cause: '' | 'step' | 'division' | 'machine';
+    slow_advice: string; // why, and what to do about it
     lag: number;
     skipped: number;
     recording: boolean;
@@ -87,10 +90,13 @@ export interface Status {
     message: string;
     recoveries: number; // times that the run became unstable and went back to a sound state
     recovery: string; // the last of them
+    placed: number; // times that it was put somewhere else: reset, load, went back
     step_parts: number; // that every step is computed in now; 1: not divided
     divided_steps: number;
     viewers: number;
-    saved: string[];
+    saved: string[]; // saved states, oldest first
+    recordings: string[];
+    replay?: { name: string; time: number; length: number }; // what is played, in simulated seconds
     tools: ToolStatus[];
 }
 
@@ -272,4 +278,6 @@ export type Request =
     | { do: 'step'; steps: number }
     | { do: 'pace'; value: number }
     | { do: 'record'; on: boolean }
-    | { do: 'load'; name?: string };
+    | { do: 'load'; name?: string }
+    | { do: 'replay'; name?: string }
+    | { do: 'seek'; time: number };

@@ -1,5 +1,6 @@
 /* The buttons of the run: play, step, reset, record, save, load, pace. */
 import { element, write } from './dom';
+import type { ReplayBar } from './replaybar';
 import type { Session } from './session';
 import type { Hello, Status } from './protocol';
 
@@ -20,6 +21,7 @@ export class Transport {
     constructor(
         private readonly session: Session,
         private readonly help: () => void,
+        private readonly replay: ReplayBar,
     ) {
         this.play.onclick = () => this.playOrPause();
         element('step').onclick = () => this.step();
@@ -53,6 +55,7 @@ export class Transport {
         write(element('play-text'), playing ? 'Pause' : 'Play');
         this.play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
         element('play-shape').setAttribute('d', playing ? PAUSE : PLAY);
+        this.record.disabled = !this.saves || Boolean(status.replay);
         this.record.setAttribute('aria-pressed', String(status.recording));
         write(this.record.querySelector('span')!, status.recording ? 'Stop' : 'Record');
         this.record.setAttribute('aria-label', status.recording ? 'Stop recording' : 'Record');
@@ -62,6 +65,7 @@ export class Transport {
     }
 
     playOrPause(): void {
+        if (this.replay.ended && this.session.status?.state !== 'playing') this.replay.restart();
         this.session.send({ do: this.session.status?.state === 'playing' ? 'pause' : 'play' });
     }
 

@@ -7,7 +7,8 @@ import { Cavity } from './cavity';
 import type { Drawn } from './drawn';
 import { Edges } from './edges';
 import { Organ } from './organ';
-import { organColour, processorColour } from './palette';
+import { Others } from './others';
+import { organColour, processorColour, type Rgb } from './palette';
 import { nearestPoint } from './pick';
 import type { Frame, RidingMessage, SurfaceMessage } from './protocol';
 import { Riding } from './riding';
@@ -18,6 +19,7 @@ export class View {
     readonly endoscope = new Endoscope();
     readonly instruments = new Instruments();
     readonly pull = new PullPicture();
+    readonly others = new Others();
     readonly tissue: Tissue;
     drawn = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
@@ -39,6 +41,7 @@ export class View {
     private positions: Float32Array | null = null; // of the last frame
     private values: Float32Array | null = null;
     private stale = true;
+    private colourOf: (material: number) => Rgb = () => [1, 1, 1];
 
     constructor(readonly canvas: HTMLCanvasElement) {
         const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
@@ -47,7 +50,7 @@ export class View {
         this.tissue = new Tissue(this.fine);
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
-        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group);
+        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group);
         new ResizeObserver(() => {
             this.resize();
             this.draw(0); // at once: an empty canvas would flash
@@ -69,12 +72,13 @@ export class View {
         return (this.fineShown && this.fineOrgan) || this.organ;
     }
 
-    /* A new organ, seen at first from where the scene says. */
-    setSurface(message: SurfaceMessage, from?: [number, number, number]): void {
+    /* A new body, with the names of its organs, seen at first from where the scene says. */
+    setSurface(message: SurfaceMessage, organs: string[], from?: [number, number, number]): void {
         this.dispose();
+        this.colourOf = (material) => organColour(organs[material] ?? '', material);
         const surface = new Surface(message.rest, message.faces, this.fine ? 24000 : 6000);
         const tints = {
-            organs: tintsOf(surface, (face) => organColour(message.material[face]!)),
+            organs: tintsOf(surface, (face) => this.colourOf(message.material[face]!)),
             processors: nodeTints(surface, (node) => processorColour(message.processor[node]!)),
         };
         this.mesh = surface;
@@ -84,6 +88,7 @@ export class View {
         this.edges = new Edges(surface.lines, this.organ.mesh.geometry);
         this.scene.add(this.organ.mesh, this.edges.lines);
         this.pull.setSize(surface.size);
+        this.others.setSize(surface.size);
         this.endoscope.frame(surface.center, surface.size, from);
         this.arrange();
     }
@@ -99,7 +104,7 @@ export class View {
         const processor = (node: number): number =>
             this.processors[node] ?? message.processor[node - this.processors.length]!;
         const tints = {
-            organs: vertexTints(riding, (vertex) => organColour(message.material[vertex]!)),
+            organs: vertexTints(riding, (vertex) => this.colourOf(message.material[vertex]!)),
             processors: vertexTints(riding, (vertex) => processorColour(processor(riding.leader(vertex)))),
         };
         this.frameNodes = rest.length / 3;

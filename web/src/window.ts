@@ -24,6 +24,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
+        get others() { return view.others.shown; },
         get nodes() { return view.surface?.nodes ?? 0; },
     };
     Object.defineProperty(window, 'lariat', { value: Object.freeze(state) });

@@ -114,10 +114,79 @@ test('record, save and load', async () => {
     await v.until((s) => window.lariat.step < s + 4000, at);
 });
 
+test('a recording is played: listed, paused, scrubbed, left; and it outlives the session', async () => {
+    await fresh();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('c');
+    await v.page.locator('#record[aria-pressed="true"]').waitFor({ timeout: 3000 });
+    await drag(v.page, ...FUNDUS, 40, -60, 8);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
+    await v.page.waitForTimeout(600);
+    await v.page.mouse.up();
+    await v.page.waitForTimeout(800);
+    await v.page.keyboard.press('c');
+    await v.page.locator('#record[aria-pressed="false"]').waitFor({ timeout: 3000 });
+    await v.page.keyboard.press('o');
+    const list = v.page.locator('#saved-recordings button');
+    await list.first().waitFor({ timeout: 3000 });
+    const name = await list.first().innerText();
+    await fresh();
+
+    // Listed by another engine too, which plays it.
+    const later = await view(model.scene, '--port', '0', '--save-folder', model.saved);
+    const p = await openPage(browser, later.url);
+    await p.page.locator('#saved').evaluate((card) => (card.open = true));
+    assert.equal(await p.page.locator('#saved-states button').count(), await v.page.locator('#saved-states button').count());
+    await p.page.getByRole('button', { name: `Play ${name}` }).click();
+    await p.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
+    await p.until(() => window.lariat.displacement > 0.003, undefined, 20000);
+    await p.page.locator('#picture').focus();
+    await p.page.keyboard.press('Space');
+    await p.until(() => window.lariat.state === 'paused');
+    await p.shot('11-replay');
+    const slider = p.page.getByLabel('Place in the recording');
+    const half = (Number(await slider.getAttribute('max')) / 2).toFixed(2);
+    const arrived = (place) => p.until((text) => document.getElementById('replay-time').innerText.startsWith(`${text} of`), place, 20000);
+    await slider.fill('0');
+    await arrived('0.00');
+    await p.until(() => window.lariat.displacement < 1e-3 && window.lariat.state === 'paused');
+    assert.equal(await p.get('state'), 'paused', 'where it was scrubbed to it rests');
+    const hash = await p.get('hash');
+    await slider.fill(half);
+    await arrived(half);
+    await p.until((h) => window.lariat.hash !== h, hash);
+    const seen = await p.get('frames');
+    await p.until((n) => window.lariat.frames > n + 2, seen);
+    const middle = await p.get('hash');
+    await slider.fill('0');
+    await p.until((h) => window.lariat.hash === h, hash, 20000);
+    await slider.fill(half);
+    await p.until((h) => window.lariat.hash === h, middle, 20000);
+    await p.page.locator('#picture').focus();
+    await p.page.keyboard.press(';');
+    await p.until((text) => parseFloat(document.getElementById('replay-time').innerText) > Number(text) + 0.1 && window.lariat.state === 'paused', half, 20000);
+    await drag(p.page, ...FUNDUS, 10, -10, 2);
+    await p.page.getByText('a recording is being played').waitFor({ timeout: 3000 });
+    await p.page.mouse.up();
+    await p.page.keyboard.press('Space');
+    await p.until(() => {
+        const [here, end] = document.getElementById('replay-time').innerText.split(' of ').map(parseFloat);
+        return window.lariat.state === 'paused' && end - here < 0.02;
+    }, undefined, 20000);
+    assert.equal(await p.page.locator('#replay-trouble').innerText(), '', 'all hashes are equal');
+    await p.page.keyboard.press('x');
+    await p.page.locator('#replay').waitFor({ state: 'hidden', timeout: 3000 });
+    await p.page.keyboard.press('Space');
+    await p.until(() => window.lariat.state === 'playing');
+    await p.close();
+    await later.end();
+});
+
 test('colour maps change the picture, the legend and its range', async () => {
     await fresh();
     await drag(v.page, ...FUNDUS, 30, -60);
-    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01);
+    // Far enough that no range is at its floor.
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01 && window.lariat.displacement > 0.003, undefined, 20000);
     const [tissue] = await colours(v.page, [MIDDLE]);
     const seen = new Set();
     const fields = [['displacement', 1, /m$/], ['von Mises stress', 4, /Pa$/], ['pressure', 8, /Pa$/]];
@@ -197,6 +266,24 @@ test('everything by keyboard', async () => {
     await v.until(() => window.lariat.hand === 'free' && window.lariat.force === 0);
 });
 
+test('the hands of other viewers are drawn, and your pull is yours', async () => {
+    await fresh();
+    const other = await openPage(browser, engine.url);
+    await drag(other.page, ...FUNDUS, 40, -60);
+    await other.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01, undefined, 20000);
+    await v.page.bringToFront();
+    await v.until(() => window.lariat.others === 1, undefined, 20000);
+    await v.shot('12-other-hand');
+    assert.equal(await v.get('force'), 0, 'your pull is not theirs');
+    assert.equal(await v.get('hand'), 'free');
+    await other.page.bringToFront();
+    await other.until(() => window.lariat.others === 0);
+    await other.page.mouse.up();
+    await other.close();
+    await v.page.bringToFront();
+    await v.until(() => window.lariat.others === 0, undefined, 20000);
+});
+
 test('instruments are chosen, moved and closed', async () => {
     await fresh();
     const tools = () => v.get('tools');
@@ -211,6 +298,38 @@ test('instruments are chosen, moved and closed', async () => {
     await v.until(() => Math.abs(window.lariat.tools[1][3] - 0.4) < 0.01);
     await v.page.getByRole('radio', { name: 'hand' }).click();
     assert.equal(await v.page.locator('#opening-row').isVisible(), false);
+});
+
+test('after a reset an instrument is where the scene has it, and stays there', async () => {
+    await fresh();
+    const grasper = async () => (await v.get('tools'))[1].slice(0, 3);
+    const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+    const rest = await grasper();
+    await v.page.getByRole('radio', { name: 'grasper' }).click();
+    await v.page.locator('#picture').focus();
+    const keys = v.page.keyboard;
+    await keys.press('p');
+    for (let i = 0; i < 8; i++) await keys.press('ArrowLeft');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) > 0.005, rest);
+    await keys.press('r');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) < 1e-6, rest);
+    await v.page.getByText('take it anew').waitFor({ timeout: 3000 });
+    await keys.press('ArrowLeft'); // it is nobody's now: this turns the view
+    await v.page.waitForTimeout(500);
+    assert.ok(apart(await grasper(), rest) < 1e-6, 'a key brings it back');
+    await v.page.reload();
+    await v.until(() => window.lariat?.frames > 2 && window.lariat.tools.length > 1);
+    await v.page.waitForTimeout(500);
+    assert.ok(apart(await grasper(), rest) < 1e-6, 'leaving brings it back');
+    // Taken anew, it goes on from there.
+    await v.page.getByRole('radio', { name: 'grasper' }).click();
+    await v.page.locator('#picture').focus();
+    await keys.press('p');
+    await keys.press('ArrowRight');
+    await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) > 1e-4, rest);
+    assert.ok(apart(await grasper(), rest) < 0.004);
+    await keys.press('Escape');
+    await v.page.getByRole('radio', { name: 'hand' }).click();
 });
 
 test('one finger pulls, two zoom', async () => {

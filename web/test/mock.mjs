@@ -89,9 +89,9 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const materials = 1 + Math.max(...mesh.m);
 
     const state = {
-        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [],
+        state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
-        parts: 1, divided: 0, pressed: false,
+        noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -181,11 +181,12 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         kind: 'status', state: state.state, step: state.step, time: state.step * 1e-4, pace: state.pace,
         step_us: { p50: 21.0, p99: 30.1, p999: 44.0, max: 120.0 },
         tick_us: { p50: 231.0, p99: 320.0, p999: 450.0, max: 1520.0 },
-        ticks: state.tick, misses: 0, real_time_factor: 1, real_time_factor_now: state.slow ? 0.4 : 1,
-        engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, lag: 0, skipped: 0,
-        recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved,
+        ticks: state.tick, misses: 0, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
+        engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
+        slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
+        recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
         recoveries: state.recoveries, recovery: state.recovery,
-        step_parts: state.parts, divided_steps: state.divided,
+        placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true }
                 : { depth: 0, apart: 0, limited: false }),
@@ -252,6 +253,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 const d = [0, 1, 2].map((k) => positions[3 * i + k] - (fine && i >= rest.length / 3 ? fine.inner[3 * i - rest.length + k] : rest[3 * i + k]));
                 const length = Math.hypot(...d);
                 values[i] = { displacement: length, von_mises: length * 40000, pressure: d[2] * 30000, energy: length * 900 }[field] ?? 0;
+                if (state.noise) values[i] = (field === 'pressure' ? ((i * 37) % 19) - 9 : (i * 37) % 19) * 1e-12;
             }
             view.setFloat64(48, Math.min(...values), true);
             view.setFloat64(56, Math.max(...values), true);
@@ -346,6 +348,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                     speed.fill(0);
                     held = null;
                     state.step = 0;
+                    state.placed++;
+                    tools.forEach((t, i) => (poses[i] = structuredClone(t.rest)));
                     state.message = '';
                     if (state.state === 'stopped') state.state = 'paused';
                     say({ kind: 'hand', hand: 0, tool: 1, state: 'lost' });
@@ -353,6 +357,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 pace: () => (state.pace = m.value),
                 record() {
                     state.recording = m.on;
+                    if (!m.on) state.recordings.push('pear-1.recording');
                     if (!m.on) say({ kind: 'saved', what: 'recording', name: 'pear-1.recording' });
                 },
                 save() {
@@ -360,6 +365,10 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                     say({ kind: 'saved', what: 'checkpoint', name: state.saved.at(-1) });
                 },
                 load: () => now.set(rest),
+                replay() {
+                    state.replay = m.name ? { name: m.name, time: 0, length: 2 } : null;
+                },
+                seek: () => (state.replay.time = m.time),
             };
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();

@@ -26,7 +26,17 @@ test('slow motion is announced so that nobody misses it, and only while it lasts
     const box = await v.page.locator('#slow').boundingBox();
     assert.ok(box.width * box.height > 10000, 'the banner is large');
     assert.equal(await v.page.locator('#state-text').innerText(), 'slow motion');
+    // Which of the two it is, and what would help; never a factor that is none.
+    assert.match(await v.page.locator('#slow').innerText(), /A step takes 250 µs .* --grid 2x2x1, a mesh of about 700 elements/);
     await v.shot('slow-motion');
+    server.state.slow = 1.01;
+    await v.page.locator('#slow').getByText('catching up with the clock').waitFor({ timeout: 3000 });
+    assert.doesNotMatch(await v.page.locator('#slow').innerText(), /1\.01/);
+    // Every row of the engine's panel says what it is.
+    await v.page.locator('#panel').evaluate((card) => (card.open = true));
+    const rows = await v.page.locator('#panel tr').evaluateAll((all) => all.map((row) => [row.innerText, row.title]));
+    assert.ok(rows.length > 15);
+    for (const [text, title] of rows) assert.ok(title.length > 20, `${text} has no explanation`);
     server.state.slow = false;
     await v.page.locator('#slow').waitFor({ state: 'hidden', timeout: 4000 });
     await v.close();
@@ -172,6 +182,23 @@ test('pressure has a map with zero in its middle; processors have colours of the
     await v.close();
 });
 
+test('an organ at rest has one colour: the range has a floor', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    own.state.noise = true; // values of rounding, as a body at rest has them
+    const v = await openPage(browser, own.url);
+    const places = [[470, 300], [530, 300], [500, 250], [500, 380]];
+    for (const [name, most] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
+        await v.page.getByRole('radio', { name }).click();
+        await v.until((text) => document.getElementById('legend-most').innerText === text, most);
+        await v.page.waitForTimeout(300);
+        const seen = await colours(v.page, places);
+        for (const colour of seen) assert.ok(difference(colour, seen[0]) < 45, `${name}: ${seen.join(' | ')}`);
+    }
+    await v.shot('at-rest');
+    await v.close();
+});
+
 test('a fine surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
     const own = await mock({ riding: true });
     const v = await openPage(browser, own.url);
@@ -227,6 +254,34 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
     assert.ok(edged > plain * 1.5 + 40, `${edged} with edges, ${plain} without`);
     await v.close();
     await own.close();
+});
+
+test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const parts = ['header', '#slow', '#replay', '#force', '#looks', '#hint', '#transport'];
+    const v = await openPage(browser, own.url);
+    Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'],
+        replay: { name: 'pear-1.recording', time: 0.4, length: 2 } });
+    await v.page.locator('#slow').waitFor({ state: 'visible', timeout: 3000 });
+    for (const [width, height] of [[390, 780], [640, 480], [640, 900], [800, 600], [900, 700], [1024, 600], [1024, 420], [1320, 700], [1600, 900]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.waitForTimeout(150);
+        const boxes = await v.page.evaluate((all) => all.map((part) => {
+            const { left, top, right, bottom } = document.querySelector(part).getBoundingClientRect();
+            return { part, left, top, right, bottom };
+        }), parts);
+        const say = (a) => `${a.part} (${[a.left, a.top, a.right, a.bottom].map(Math.round)})`;
+        for (const a of boxes) {
+            assert.ok(a.left >= 0 && a.top >= 0 && a.right <= width + 0.5 && a.bottom <= height + 0.5, `${say(a)} at ${width} x ${height}`);
+            assert.ok(a.bottom - a.top > 20 && a.right - a.left > 40, `${say(a)} is squeezed at ${width} x ${height}`);
+            for (const b of boxes)
+                assert.ok(a === b || a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1,
+                    `${say(a)} and ${say(b)} overlap at ${width} x ${height}`);
+        }
+        if ([390, 800, 1024, 1600].includes(width) && height > 500) await v.shot(`layout-${width}`);
+    }
+    await v.close();
 });
 
 test('where nothing rides there is no switch for it, and its key says so', async () => {

@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera'];
+    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera', 'range'];
     await build({
         entryPoints: names.map((name) => join(source, `${name}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
@@ -234,8 +234,19 @@ test('the map for values grows evenly lighter; that around zero is lightest in i
 
 test('organs differ in lightness, for people who confuse hues', () => {
     const grey = (c) => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-    const values = [0, 1, 2, 3].map((i) => grey(parts.palette.organColour(i))).sort((a, b) => a - b);
+    const values = ['uterus', 'tubes', 'ovaries', 'ligaments'].map((name) => grey(parts.palette.organColour(name, 0))).sort((a, b) => a - b);
     for (let i = 1; i < values.length; i++) assert.ok(values[i] / values[i - 1] > 1.1);
+});
+
+test('an organ has the same colour in every scene, and others have others', () => {
+    const { organColour, css } = parts.palette;
+    assert.equal(css(organColour('Liver', 0)), css(organColour('liver', 7)));
+    assert.equal(css(organColour('left kidney', 1)), css(organColour('kidney', 4)));
+    assert.equal(css(organColour('wall_17', 0)), css(organColour('wall_17', 3)));
+    const names = ['uterus', 'tubes', 'ovaries', 'ligaments', 'liver', 'kidney', 'spleen', 'heart', 'lung', 'brain', 'artery', 'vein', 'wall_17', 'thing'];
+    const seen = new Set(names.map((name) => css(organColour(name, 0))));
+    assert.equal(seen.size, names.length);
+    assert.notEqual(css(organColour('', 0)), css(organColour('', 1)), 'without names, by their order');
 });
 
 test('numbers are written with three digits and a unit', () => {
@@ -246,12 +257,37 @@ test('numbers are written with three digits and a unit', () => {
     assert.equal(withUnit(999.9, 'Pa'), '1.00 kPa');
 });
 
+test('the range of a resting organ has a floor, so that rounding is not spread over all colours', () => {
+    const { follow, floorOf } = parts.range;
+    assert.deepEqual([['m', 1e-4], ['Pa', 1], ['J/m³', 0.01]].map(([unit]) => floorOf(unit)), [1e-4, 1, 0.01]);
+    assert.equal(floorOf(''), 0);
+    const still = { least: 0, most: 0 };
+    assert.deepEqual(follow(still, 3e-19, 4e-18, 'm', false), { least: 0, most: 1e-4 });
+    assert.deepEqual(follow(still, -2e-9, 1e-9, 'Pa', true), { least: -1, most: 1 });
+    assert.deepEqual(follow(still, 0, 250, 'Pa', false), { least: 0, most: 250 });
+    assert.deepEqual(follow(still, -250, 100, 'Pa', true), { least: -250, most: 250 });
+    // Downwards slowly, and never below the floor.
+    let range = { least: 0, most: 250 };
+    range = follow(range, 0, 0, 'Pa', false);
+    assert.ok(range.most < 250 && range.most > 230);
+    for (let i = 0; i < 500; i++) range = follow(range, 0, 0, 'Pa', false);
+    assert.ok(Math.abs(range.most - 1) < 1e-6, `${range.most}`);
+});
+
 test('messages of a wrong length are refused', () => {
     const message = new ArrayBuffer(72);
     new DataView(message).setUint32(4, 5, true);
     assert.throws(() => parts.protocol.readFrame(message, parts.protocol.emptyFrame()), /wrong length/);
     assert.throws(() => parts.protocol.readSurface(new ArrayBuffer(20)), /wrong length/);
     assert.throws(() => parts.protocol.readRiding(new Uint32Array([4, 1, 1, 1, 0, 0]).buffer), /wrong length/);
+});
+
+test('times are written in milliseconds, and slow motion is never faster than asked for', () => {
+    const { span, slowness } = parts.panel;
+    assert.deepEqual([21, 99.95, 231, 1520, 99920, null].map(span), ['21.0 µs', '0.10 ms', '0.23 ms', '1.52 ms', '99.9 ms', '–']);
+    assert.equal(slowness({ pace: 1, real_time_factor_now: 0.82 }), '0.82 × real time');
+    assert.equal(slowness({ pace: 1, real_time_factor_now: 1.01 }), 'catching up with the clock');
+    assert.equal(slowness({ pace: 0.5, real_time_factor_now: 0.499 }), 'catching up with the clock');
 });
 
 test('the badge says real time only where it is', () => {

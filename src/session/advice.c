@@ -1,0 +1,68 @@
+#include "session/advice.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Of a step's time, what is left for it: forces, pictures and waking take the rest. */
+static const double ROOM = 0.9;
+/* What several processors make of themselves. */
+static const double EFFICIENCY = 0.8;
+
+/* The grid of so many processors that is nearest to a cube, longest first. */
+static void name_grid(int32_t processors, char text[32]) {
+    int32_t best[3] = {processors, 1, 1};
+    for (int32_t c = 1; c * c * c <= processors; c++)
+        for (int32_t b = c; b * b * c <= processors; b++)
+            if (processors % (b * c) == 0 && processors / (b * c) <= best[0]) {
+                best[0] = processors / (b * c);
+                best[1] = b;
+                best[2] = c;
+            }
+    snprintf(text, 32, "%dx%dx%d", (int)best[0], (int)best[1], (int)best[2]);
+}
+
+/* Two digits, rounded down. */
+static double rounded(double count) {
+    if (count < 1) return 1;
+    double unit = pow(10, fmax(0, floor(log10(count)) - 1));
+    return floor(count / unit) * unit;
+}
+
+static void advise_smaller(const lar_advice *a, double ratio, double least, double allowed,
+                           lar_session_status *status) {
+    double wanted = ceil(ratio * a->busy / EFFICIENCY);
+    char way[64] = "";
+    if (a->cores > a->busy && wanted <= a->cores) {
+        char grid[32];
+        name_grid((int32_t)wanted, grid);
+        snprintf(way, sizeof way, "--grid %s, ", grid);
+    }
+    snprintf(status->slow_advice, sizeof status->slow_advice,
+             "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %sa mesh "
+             "of about %.0f elements, or a slower pace",
+             1e6 * least, 1e6 * allowed / ROOM, way, rounded(a->elements / ratio));
+}
+
+void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
+    status->slow_cause = LAR_SLOW_NOT;
+    status->slow_advice[0] = '\0';
+    if (!status->slow_motion || status->step_least <= 0 || pace <= 0) return;
+    double allowed = ROOM * a->time_step / pace, least = status->step_least;
+    if (least > allowed && status->step_parts > 1 && least / status->step_parts <= allowed) {
+        status->slow_cause = LAR_SLOW_DIVISION;
+        snprintf(status->slow_advice, sizeof status->slow_advice,
+                 "steps are divided by %d while tissue is strained or tools press hard; let go or "
+                 "pull less, or choose a slower pace",
+                 (int)status->step_parts);
+    } else if (least > allowed) {
+        status->slow_cause = LAR_SLOW_STEP;
+        advise_smaller(a, least / allowed, least, allowed, status);
+    } else {
+        status->slow_cause = LAR_SLOW_MACHINE;
+        snprintf(status->slow_advice, sizeof status->slow_advice,
+                 "a step takes %.3g us of the %.3g us that it has, but other programs keep the "
+                 "processor busy; end them%s",
+                 1e6 * least, 1e6 * allowed / ROOM,
+                 a->priority > 0 ? "" : ", or start with --priority 10");
+    }
+}

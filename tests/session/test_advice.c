@@ -1,0 +1,80 @@
+/* Which slow motion it is, and what would help. */
+#include <string.h>
+
+#include "session/advice.h"
+#include "testing.h"
+
+static const lar_advice organ = {
+    .time_step = 1e-4, .elements = 13000, .busy = 1, .cores = 4, .priority = 0};
+
+static lar_session_status slow(const lar_advice *advice, double pace, double least, int parts) {
+    lar_session_status status = {.slow_motion = 1, .step_least = least, .step_parts = parts};
+    lar_advise(advice, pace, &status);
+    return status;
+}
+
+static void has(const lar_session_status *status, const char *words) {
+    if (!strstr(status->slow_advice, words)) fail_msg("no '%s' in: %s", words, status->slow_advice);
+}
+
+static void a_step_that_is_too_long_names_grid_and_elements(void **unused) {
+    (void)unused;
+    lar_session_status s = slow(&organ, 1, 1.17e-4, 1);
+    assert_int_equal(s.slow_cause, LAR_SLOW_STEP);
+    has(&s, "a step takes 117 us and stands for 100 us of the clock");
+    has(&s, "--grid 2x1x1, ");
+    has(&s, "a mesh of about 10000 elements");
+    has(&s, "a slower pace");
+    s = slow(&organ, 1, 2.5e-4, 1);
+    has(&s, "--grid 2x2x1, ");
+    s = slow(&organ, 0.5, 2.5e-4, 1);
+    has(&s, "stands for 200 us");
+    has(&s, "--grid 2x1x1, ");
+    /* No grid where there are no cores for it. */
+    s = slow(&organ, 1, 9e-4, 1);
+    has(&s, "what would hold: a mesh of about 1300 elements");
+    lar_advice full = organ;
+    full.busy = 4;
+    s = slow(&full, 1, 1.17e-4, 1);
+    assert_null(strstr(s.slow_advice, "--grid"));
+}
+
+static void strained_tissue_is_named(void **unused) {
+    (void)unused;
+    lar_session_status s = slow(&organ, 1, 1.6e-4, 4);
+    assert_int_equal(s.slow_cause, LAR_SLOW_DIVISION);
+    has(&s, "divided by 4");
+    s = slow(&organ, 1, 1.6e-3, 4); /* too long undivided, too */
+    assert_int_equal(s.slow_cause, LAR_SLOW_STEP);
+}
+
+static void a_busy_machine_is_named(void **unused) {
+    (void)unused;
+    lar_session_status s = slow(&organ, 1, 2.4e-5, 1);
+    assert_int_equal(s.slow_cause, LAR_SLOW_MACHINE);
+    has(&s, "24 us of the 100 us");
+    has(&s, "--priority 10");
+    lar_advice urgent = organ;
+    urgent.priority = 5;
+    s = slow(&urgent, 1, 2.4e-5, 1);
+    assert_null(strstr(s.slow_advice, "--priority"));
+}
+
+static void without_slow_motion_or_knowledge_there_is_none(void **unused) {
+    (void)unused;
+    lar_session_status s = slow(&organ, 1, 0, 1);
+    assert_int_equal(s.slow_cause, LAR_SLOW_NOT);
+    assert_string_equal(s.slow_advice, "");
+    s = (lar_session_status){.step_least = 1, .slow_cause = LAR_SLOW_STEP, .slow_advice = "x"};
+    lar_advise(&organ, 1, &s);
+    assert_int_equal(s.slow_cause, LAR_SLOW_NOT);
+    assert_string_equal(s.slow_advice, "");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_step_that_is_too_long_names_grid_and_elements),
+        cmocka_unit_test(strained_tissue_is_named), cmocka_unit_test(a_busy_machine_is_named),
+        cmocka_unit_test(without_slow_motion_or_knowledge_there_is_none)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
