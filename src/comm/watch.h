@@ -3,12 +3,12 @@
  *     everyone  --- beat, ten times a second --->  zero  --- beat --->  everyone
  *     someone   --- "p sends nothing" ---------->  zero  --- "p is lost, because" ---> everyone
  *
- * Processor zero decides: a connection that ends without a goodbye, or three quarters of the timeout
- * without a beat, or the report of a processor that waited in vain: of several within a moment the
- * one from the earliest step, because who is held up by another who waits has come further (T
- * 6.5.2). The verdict goes into *comm->verdict, where every wait looks. The others decide only about
- * processor zero. Whoever was held up itself (its own beats came late) does not take the others'
- * silence for theirs.
+ * Processor zero decides: a connection that ends without a goodbye, or three quarters of the
+ * timeout without a beat, or the report of a processor that waited in vain: of several within a
+ * moment the one from the earliest step, because who is held up by another who waits has come
+ * further (T 6.5.2). The verdict goes into *comm->verdict, where every wait looks. The others
+ * decide only about processor zero. Whoever was held up itself (its own beats came late) does not
+ * take the others' silence for theirs.
  */
 #ifndef LAR_COMM_WATCH_H
 #define LAR_COMM_WATCH_H

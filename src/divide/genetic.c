@@ -253,8 +253,8 @@ static void search_run(search *s, lar_genetic_result *result) {
         s->done = share_done(o, &progress);
         if (o->watch && !o->watch(o->context, &progress)) more = false;
     }
-    *result =
-        (lar_genetic_result){progress.start, s->best.cost, progress.generation, lar_clock_seconds() - s->began};
+    *result = (lar_genetic_result){progress.start, s->best.cost, progress.generation,
+                                   lar_clock_seconds() - s->began};
 }
 
 lar_status lar_genetic_search(const lar_mesh *mesh, const lar_incidence *incidence,

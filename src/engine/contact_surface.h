@@ -64,14 +64,14 @@ typedef struct lar_contact_surface {
     int32_t slave_count;      /* those with passes */
     lar_contact_node *node;   /* [point_count] nodes ascending */
     lar_contact_point *point; /* [point_count - node_count] */
-    lar_contact_face *face; /* by the surface's order */
-    lar_contact_body *body; /* [body_count] */
-    double (*rest)[3];      /* [point_count] reference positions */
-    int64_t *apart_first;   /* [node_count + 1] faces that are never together with a node: */
-    int32_t *apart;         /* ascending for each node */
-    double reach;           /* the least of all bodies [m] */
-    double reach_most;      /* the largest [m] */
-    uint64_t possible;      /* pairs of a node and a face that belong together, neighbours too */
+    lar_contact_face *face;   /* by the surface's order */
+    lar_contact_body *body;   /* [body_count] */
+    double (*rest)[3];        /* [point_count] reference positions */
+    int64_t *apart_first;     /* [node_count + 1] faces that are never together with a node: */
+    int32_t *apart;           /* ascending for each node */
+    double reach;             /* the least of all bodies [m] */
+    double reach_most;        /* the largest [m] */
+    uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
 } lar_contact_surface;
 
 /* Without contacts of these kinds node_count is 0 and nothing is allocated. mass[local[node]] is

@@ -36,7 +36,7 @@ typedef struct lar_trip {
     double speed;        /* of the node [m/s] */
     double given;        /* of LAR_TRIP_GAIN: more than it took [J] */
     bool examined;
-    bool crowded;        /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
+    bool crowded; /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
     /* What lar_trip_blame found. */
     bool blamed, tool_pulls;
     int32_t tool;      /* counted from 1; 0: none has to do with it */

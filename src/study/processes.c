@@ -292,7 +292,9 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
 }
 
 void lar_processes_hesitate(const lar_processes *p) {
-    for (double until = lar_clock_seconds() + HESITATION; p->has_parent && lar_clock_seconds() < until;) nap();
+    for (double until = lar_clock_seconds() + HESITATION;
+         p->has_parent && lar_clock_seconds() < until;)
+        nap();
 }
 
 /* ---- the end ------------------------------------------------------------------------------- */
