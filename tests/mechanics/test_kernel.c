@@ -102,7 +102,8 @@ static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count,
     static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
     assert_true(count <= MOST);
     for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    lar_hex8_watch listed = {.limit = limit, .lane = lane};
+    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
     int64_t found = kernels[k]->recover(&run, u, force, limits, watch ? &listed : NULL);
     /* The first lane of those of the block that is named. */
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));

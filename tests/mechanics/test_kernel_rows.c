@@ -135,7 +135,8 @@ static int64_t recover_run(int k, const lar_block_run *run, const double *u, int
     static int32_t lane[MOST * LAR_BLOCK];
     static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
     for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    lar_hex8_watch listed = {.limit = limit, .lane = lane};
+    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
     int64_t found = kernels[k]->recover(run, u, force, limits, watch ? &listed : NULL);
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }

@@ -135,6 +135,7 @@ static double *read_array(const lar_bytes *bytes, const char *name, size_t count
         .name = name,
         .type = LAR_VTK_FLOAT64,
         .encoding = LAR_VTU_RAW,
+        .appended = true,
         .compressed = true,
         .header64 = true,
         .payload = {split.appended.at + offset, split.appended.length - offset}};

@@ -132,11 +132,12 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
                                .blocks = boxes ? (const void *)w->box : w->general};
     static int32_t lane[BLOCKS * LAR_BLOCK];
     static double limit[BLOCKS * LAR_BLOCK] __attribute__((aligned(64)));
+    static float strain[BLOCKS * LAR_BLOCK][LAR_STRAIN_NUMBERS];
     for (int i = 0; i < BLOCKS * LAR_BLOCK; i++) limit[i] = INFINITY;
     bool good = true;
     double damped = 0, fastest = 0;
     for (int step = 0; step < STEPS && good; step++) {
-        lar_hex8_watch watch = {.limit = limit, .lane = lane};
+        lar_hex8_watch watch = {.limit = limit, .lane = lane, .strain = strain};
         good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits,
                                 step % 10 == 0 ? &watch : NULL) < 0 &&
                kernels->update(&motion, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
