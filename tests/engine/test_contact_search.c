@@ -25,11 +25,15 @@ static void create(lar_model *model) {
     free(local);
 }
 
+/* Of a node, or a point of a sharp edge between two of them. */
 static double distance(const double (*x)[3], int32_t node, int32_t face) {
-    double corner[4][3];
+    double corner[4][3], at[3], weight[2];
+    int32_t parent[2];
+    lar_contact_parents(&search.surface, node, parent, weight);
+    for (int i = 0; i < 3; i++) at[i] = weight[0] * x[parent[0]][i] + weight[1] * x[parent[1]][i];
     for (int a = 0; a < 4; a++)
         memcpy(corner[a], x[search.surface.face[face].corner[a]], sizeof corner[a]);
-    return lar_face_distance(x[node], (const double(*)[3])corner);
+    return lar_face_distance(at, (const double(*)[3])corner);
 }
 
 static bool listed(int32_t node, int32_t face) {
@@ -40,13 +44,20 @@ static bool listed(int32_t node, int32_t face) {
     return false;
 }
 
+/* Points of edges meet no face of their own body. */
+static bool kept_apart(int32_t node, int32_t face) {
+    const lar_contact_surface *s = &search.surface;
+    if (node < s->node_count) return lar_contact_apart(s, node, face);
+    return s->node[node].body == s->face[face].body;
+}
+
 /* Pairs that belong together and are nearer than the reach, all of them listed. */
 static int32_t check_complete(const double (*x)[3]) {
     const lar_contact_surface *s = &search.surface;
     int32_t near = 0;
-    for (int32_t n = 0; n < s->node_count; n++)
+    for (int32_t n = 0; n < s->point_count; n++)
         for (int32_t f = 0; f < s->face_count; f++) {
-            if (!lar_contact_active(&s->node[n], &s->face[f]) || lar_contact_apart(s, n, f) ||
+            if (!lar_contact_active(&s->node[n], &s->face[f]) || kept_apart(n, f) ||
                 distance(x, n, f) > lar_contact_reach(s, &s->node[n], &s->face[f]))
                 continue;
             near++;
