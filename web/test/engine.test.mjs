@@ -207,7 +207,7 @@ test('colour maps change the picture, the legend and its range', async () => {
 
     await v.page.getByRole('radio', { name: 'displacement' }).click();
     await v.page.getByLabel('range follows the picture').uncheck();
-    await v.page.getByLabel('from').fill('-1');
+    await v.page.getByLabel('from', { exact: true }).fill('-1');
     await v.page.getByLabel('to', { exact: true }).fill('0.00001');
     assert.equal(await v.page.locator('#legend-least').innerText(), '−1.00 m');
     await v.until(() => window.lariat.field === 1);

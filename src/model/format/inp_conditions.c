@@ -187,7 +187,7 @@ static lar_status hold_of(inp_deck *deck, double value, int curve, int32_t *hold
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {
     lar_span field[4];
     const int32_t *index;
-    int32_t own, nodes, hold = 1;
+    int32_t own, nodes = 0, hold = 1;
     int count, curve = 0;
     unsigned axes = 0;
     double value = 0.0;
