@@ -41,7 +41,7 @@ static lar_status forces_on(inp_deck *deck, int curve, inp_forces **forces) {
 static lar_status read_force(inp_deck *deck, inp_forces *forces, lar_span line) {
     lar_span field[3];
     const int32_t *index;
-    int32_t own, nodes, twice = 0;
+    int32_t own, nodes = 0, twice = 0;
     int count;
     int64_t axis = 0;
     double value;
@@ -85,7 +85,7 @@ static lar_status add_pressure(inp_deck *deck, int32_t face, double pressure, in
 
 static lar_status read_pressure(inp_deck *deck, const lar_span *field, int count, int curve) {
     const int32_t *index;
-    int32_t own, elements;
+    int32_t own, elements = 0;
     double pressure;
     lar_span label = field[1];
     int face = inp_face_of(label.at[1]);
