@@ -104,7 +104,7 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     const int32_t *list = domain->strained + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < domain->strained_count[r]; i++) {
-        int32_t block = list[i] >> LAR_BLOCK;
+        int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
         unsigned below =
             domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);

@@ -79,6 +79,7 @@ function start(): void {
             transport.update(status);
             saved.update(status);
             replay.update(status);
+            hints.silence(replay.shown || trouble.shown);
             panel.update(status);
             line.update(status);
             toolCard.update(status);
@@ -96,7 +97,7 @@ function start(): void {
             hand.forget();
             transport.enable(false);
             line.lost();
-            hints.hide();
+            hints.silence(true);
             const again = { text: 'Try now', do: () => session.connect() };
             if (!loss.again)
                 return trouble.show(
@@ -154,7 +155,7 @@ function start(): void {
         if (because === stopped) return;
         stopped = because;
         if (!because) return trouble.hide();
-        hints.hide();
+        hints.silence(true);
         pointer.end();
         hand.forget();
         if (status.lost)

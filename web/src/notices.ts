@@ -16,6 +16,7 @@ export function note(text: string, ms = NOTE_MS): void {
 /* One after the other, each until the user has done it. */
 export class Hints {
     private readonly done = new Set<string>();
+    private silent = true;
     private readonly touch = matchMedia('(pointer: coarse)').matches;
     private readonly steps: [what: string, text: string][] = [
         ['pull', this.touch ? 'Put a finger on the organ and pull' : 'Press on the organ and drag to pull it'],
@@ -23,6 +24,14 @@ export class Hints {
     ];
 
     start(): void {
+        this.silent = false;
+        this.show();
+    }
+
+    /* While a recording is played nobody can pull. */
+    silence(silent: boolean): void {
+        if (silent === this.silent) return;
+        this.silent = silent;
         this.show();
     }
 
@@ -33,12 +42,8 @@ export class Hints {
         setTimeout(() => this.show(), what === 'pull' ? 1500 : 0);
     }
 
-    hide(): void {
-        write(element('hint'), '');
-    }
-
     private show(): void {
-        const next = this.steps.find(([what]) => !this.done.has(what));
+        const next = this.silent ? undefined : this.steps.find(([what]) => !this.done.has(what));
         write(element('hint'), next ? next[1] : '');
     }
 }

@@ -143,6 +143,7 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await p.page.locator('#picture').focus();
     await p.page.keyboard.press('Space');
     await p.until(() => window.lariat.state === 'paused');
+    assert.equal(await p.page.locator('#hint').innerText(), '', 'nobody can pull now');
     await p.shot('11-replay');
     const slider = p.page.getByLabel('Place in the recording');
     const half = (Number(await slider.getAttribute('max')) / 2).toFixed(2);
