@@ -189,17 +189,36 @@ static void set_level(lar_collide *collide, const lar_state *state, int32_t node
         (lar_collide_level){collide->view.value[node] + 3, level};
 }
 
-/* From which depth on a node is pushed by its own body, `depth` deep and sinking at `rate`. Who was
- * before the face a step ago has come through it. */
-static double follow_level(lar_collide *collide, const lar_state *state, int32_t node, double depth,
-                           double rate) {
+/* Who is so deep when it appears behind a face belongs inside. */
+static double deep_of(const lar_collide *collide, int32_t node, int32_t face) {
+    const lar_contact_surface *s = collide->surface;
+    return 0.25 * lar_contact_reach(s, &s->node[node], &s->face[face]);
+}
+
+/* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
+ * `rate`. Who was before the face a step ago has come through it. */
+static double follow_level(lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
+                           double depth, double rate) {
     double before = level_of(collide, state, node), level = depth;
-    if (depth <= collide->time_step * rate)
+    double deep = deep_of(collide, node, face);
+    bool home = before == LAR_LEVEL_OUT || before == LAR_LEVEL_HOME;
+    if (home)
+        level = LAR_LEVEL_HOME;
+    else if (depth <= collide->time_step * rate)
         level = LAR_LEVEL_FRONT;
-    else if (before > 0 && before < depth)
+    else if (before > 0 && (before < depth || before >= deep))
         level = before;
     set_level(collide, state, node, level);
-    return level;
+    return home ? depth : level;
+}
+
+/* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
+ * has come out through the back. */
+static void leave_level(lar_collide *collide, const lar_state *state, int32_t node, int32_t face) {
+    double before = level_of(collide, state, node), level = 0;
+    bool inside = before == LAR_LEVEL_HOME || (face >= 0 && before >= deep_of(collide, node, face));
+    if (before == LAR_LEVEL_OUT || (face >= 0 && inside)) level = LAR_LEVEL_OUT;
+    set_level(collide, state, node, level);
 }
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -370,7 +389,7 @@ static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_
     if (isnan(depth)) return false;
     for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
     double level =
-        same_body(collide, node, face) ? follow_level(collide, state, node, depth, rate) : 0;
+        same_body(collide, node, face) ? follow_level(collide, state, node, face, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
@@ -418,7 +437,7 @@ static bool contact(lar_collide *collide, const lar_state *state, int32_t g, tou
     if (face >= 0 && touches(collide, group->node, face, &point))
         return push(collide, state, g, face, &point, &s, t);
     if (same_body(collide, group->node, collide->list.face[group->first]))
-        set_level(collide, state, group->node, 0);
+        leave_level(collide, state, group->node, face);
     return false;
 }
 

@@ -23,9 +23,11 @@
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
  * rest. Pushed from there it would get energy that contact never took. So the depth at which it
  * appears is its level, and only what it sinks below that pushes it; coming out, it takes the level
- * along. A node that came through the face has the level 0. Levels are the one thing that contact
- * remembers: they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is
- * not inside, and belong to the state like u and v.
+ * along. A node that came through the face has the level 0. One that appears deep belongs inside,
+ * as in a thin part that is squeezed: it keeps its level, and when it comes out through the back of
+ * the face nothing hinders it from going home. Levels are the one thing that contact remembers:
+ * they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is not inside,
+ * and belong to the state like u and v.
  *
  * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
  * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
@@ -71,8 +73,12 @@ typedef struct lar_collide_part {
     double force[LAR_CONTACT_PARTS][3];
 } lar_collide_part;
 
-/* The level of a node that came through the face: nothing that can be measured, but not 0. */
+/* Levels that cannot be measured, but are not 0: of a node that came through the face; of one that
+ * belongs inside and is outside, having come out through the back of a face; of the same on its way
+ * in again, which nothing hinders. */
 #define LAR_LEVEL_FRONT 1e-300
+#define LAR_LEVEL_OUT   2e-300
+#define LAR_LEVEL_HOME  3e-300
 
 /* A level that is another than in the last step. */
 typedef struct lar_collide_level {
