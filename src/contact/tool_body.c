@@ -203,10 +203,11 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
 }
 
 /* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
- * harder, interval by interval, as long as no more parts are needed than there may be. */
+ * harder, the more so the deeper it is; no faster than it sinks, for what is already in the tool is
+ * driven out by that. */
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
                      double fading, double unit) {
-    static const double SOFT = 0.3, HARD = 0.15, FASTER = 1.4;
+    static const double SOFT = 0.3, HARD = 0.15;
     double deepest = 0;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
@@ -218,7 +219,10 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
             depth = fmin(depth, SOFT);
         deepest = fmax(deepest, depth);
     }
-    if (deepest > SOFT) return fmin(FASTER * hardness, LAR_HARDNESS_MOST);
+    if (deepest > SOFT) {
+        double over = deepest / SOFT;
+        return fmin(fmax(hardness, over * over * over * over), LAR_HARDNESS_MOST);
+    }
     return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
