@@ -1,5 +1,6 @@
 /* A tool that is pushed into tissue: stays outside, says that it is kept from following its hand,
  * and comes back to it. */
+#include "contact/tool_body.h"
 #include "engine/engine_test.h"
 #include "engine/touch_test.h"
 
@@ -156,10 +157,39 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
     lar_model_destroy(model);
 }
 
+/* However long tissue is so deep in a tool: the tool becomes only so hard, and softer outside. */
+static void hardness_follows_the_depth(void **unused) {
+    (void)unused;
+    static const double SECONDS = 1e-4, MOST = 0.9, UNIT = 1e-12;
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    const lar_tool_list *list = simulation->domain.acting.touch.list;
+    lar_tools tools = simulation->tools;
+    double before = 1;
+    for (double part = 0.3; part < 0.8; part += 0.1) {
+        for (int n = 0; n < 50; n++) {
+            tools.follower[0].felt = (lar_tool_felt){.depth = part * ball.radius, .steps = 1};
+            lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, MOST, UNIT);
+        }
+        double hardness = tools.division.hardness;
+        assert_below(fabs(hardness - fmax(1, pow(part / 0.3, 4))), 1e-9 * hardness);
+        assert_true(hardness >= before && tools.division.parts * tools.division.parts >= hardness);
+        before = hardness;
+    }
+    for (int n = 0; n < 10000; n++) {
+        tools.follower[0].felt = (lar_tool_felt){.steps = 1};
+        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, MOST, UNIT);
+    }
+    assert_true(tools.division.hardness == 1 && tools.division.parts == 1);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
+        cmocka_unit_test(hardness_follows_the_depth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
