@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "mechanics/face_contact.h"
+#include "engine/touch_face.h"
 
 /* ---- set-up -------------------------------------------------------------------------------- */
 
@@ -53,7 +53,8 @@ static lar_status allocate(const lar_model *model, int32_t faces, int tools, lar
     touch->acting = lar_calloc(count, sizeof *touch->acting);
     touch->foreign = lar_calloc(nodes, sizeof *touch->foreign);
     touch->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *touch->face_of);
-    bool fits = touch->face && touch->acting && touch->foreign && touch->face_of;
+    touch->weights = lar_calloc(1, sizeof *touch->weights);
+    bool fits = touch->face && touch->acting && touch->foreign && touch->face_of && touch->weights;
     for (int t = 0; t < tools && fits; t++) {
         lar_tool_watch *watch = &touch->watch[t];
         watch->near = lar_calloc(count, sizeof *watch->near);
@@ -78,6 +79,8 @@ static lar_status create_faces(const lar_model *model, const int32_t *local,
             for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
         for (int32_t f = 0; f < surface->face_count; f++)
             if (mine(model, share, f)) add_face(model, local, marked, f, touch);
+        for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
+            for (int i = 0; i < n * n; i++) lar_touch_weights(i, n, touch->weights->of[n][i]);
         status = lar_touch_group_faces(touch, error);
     }
     if (!status) {
@@ -111,6 +114,7 @@ void lar_touch_destroy(lar_touch *touch) {
     free(touch->acting);
     free(touch->foreign);
     free(touch->face_of);
+    free(touch->weights);
     *touch = (lar_touch){0};
 }
 
@@ -199,148 +203,6 @@ static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool
     return watch->known ? lar_tool_way(old.now, body->now, body->count) : 0;
 }
 
-/* ---- contact of one face ------------------------------------------------------------------- */
-
-int lar_touch_points(const lar_touch_face *face, double radius) {
-    double wanted = ceil(2 * face->edge / radius);
-    return wanted < 2 ? 2 : wanted > 6 ? 6 : (int)wanted;
-}
-
-void lar_touch_weights(int point, int n, double weight[4]) {
-    lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
-}
-
-/* The mass behind each of n x n points: with weights w_a of all points their sum over a node's
- * faces is at most the node's mass (mechanics/contact.h, row sums). */
-static double point_mass(const lar_touch_face *face, const double *mass, int n) {
-    double least = INFINITY;
-    for (int a = 0; a < 4; a++) least = fmin(least, mass[face->value[a] / 4] * face->share[a]);
-    return 4 * least / (n * n);
-}
-
-typedef struct lar_patch { /* one face before one tool */
-    const lar_touch_face *face;
-    const lar_tool_body *body;
-    double radius, mass, rate_of; /* of a point; 1 / time step */
-    double x[4][3], v[4][3], out[3];
-    double force[4][3];
-    double closest; /* distance of the closest point [m] */
-    double covered; /* how many of the points are as deep in the tool as the wall */
-    double depth;   /* the deepest point [m] */
-    double squeeze; /* of the jaws [N] */
-    int32_t touching;
-} lar_patch;
-
-/* Where the wall begins, in radii of the tool. */
-static const double WALL = 0.2;
-
-/* A point that has been passed by the middle of the tool sees a normal that would push it on, out
- * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
- * goes along the face. */
-static double facing(const lar_patch *patch, const double normal[3]) {
-    double against =
-        -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
-    return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
-}
-
-/* A point of the face is pushed along the normal of segment s. */
-static void push_point(lar_patch *patch, const lar_contact_law *law, int32_t s, double along,
-                       const double weight[4], const double normal[3], double mass, double depth) {
-    const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
-    double v[3], rate = 0;
-    lar_face_mean((const double(*)[3])patch->v, weight, v);
-    for (int i = 0; i < 3; i++) {
-        double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
-        rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
-    }
-    double force = lar_contact_force(law, mass, depth, rate);
-    for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
-    if (patch->body->count == 2)
-        patch->squeeze -= force * along * lar_dot(normal, patch->body->outward[s]);
-    patch->touching++;
-}
-
-static void touch_point(lar_patch *patch, const lar_contact_law *law, const double weight[4]) {
-    double x[3], normal[3], along;
-    lar_face_mean((const double(*)[3])patch->x, weight, x);
-    for (int32_t s = 0; s < patch->body->count; s++) {
-        double depth = lar_segment_depth(&patch->body->now[s], patch->radius, x, normal, &along);
-        patch->closest = fmin(patch->closest, -depth);
-        if (!(depth > 0)) continue;
-        double share = facing(patch, normal);
-        if (share == 0) continue;
-        patch->depth = fmax(patch->depth, share * depth);
-        patch->covered += fmin(1, depth / (WALL * patch->radius));
-        push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
-    }
-}
-
-/* What a point with these weights may count as, so that the stiffness at each corner stays within
- * its mass: the row sums of theory.md, with one point instead of many. */
-static double wall_mass(const lar_touch_face *face, const double *mass, const double weight[4]) {
-    double most = INFINITY;
-    for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) most = fmin(most, mass[face->value[a] / 4] * face->share[a] / weight[a]);
-    return most;
-}
-
-/* The wall. Of a tool that is small beside a face few points of the grid touch, or none, and they
- * bear what so few may. What the others could bear belongs to the closest point of the face, when
- * that is deep in the tool: as much as its corners bear, at whatever size of tool and face. Returns
- * how far the face is from where the wall begins. */
-static double touch_wall(lar_patch *patch, const lar_contact_law *law, const double *mass, int n) {
-    double free_share = 1 - patch->covered / (n * n), gap = INFINITY;
-    if (!(free_share > 0)) return -patch->radius;
-    for (int32_t s = 0; s < patch->body->count; s++) {
-        lar_face_segment at;
-        lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
-        double depth = patch->radius - at.distance;
-        gap = fmin(gap, WALL * patch->radius - depth);
-        if (!(depth > WALL * patch->radius)) continue;
-        if (!(at.distance > 0)) /* the middle line goes through the face: out the way it came */
-            for (int i = 0; i < 3; i++) at.normal[i] = -patch->out[i];
-        double share = facing(patch, at.normal);
-        if (share == 0) continue;
-        patch->depth = fmax(patch->depth, share * depth);
-        push_point(patch, law, s, at.along, at.weight, at.normal,
-                   free_share * share * wall_mass(patch->face, mass, at.weight),
-                   depth - WALL * patch->radius);
-    }
-    return gap;
-}
-
-/* How far the face is at least from where the wall begins: no point of it is farther from a point
- * of the grid than half of the diagonal between two of these. */
-static double wall_gap(const lar_patch *patch, int n) {
-    double longest = 0;
-    for (int a = 0; a < 4; a++) {
-        double edge[3];
-        lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
-        longest = fmax(longest, lar_dot(edge, edge));
-    }
-    return patch->closest - sqrt(0.5 * longest) / n + WALL * patch->radius;
-}
-
-static void touch_face(lar_patch *patch, const lar_contact_law *law, const double *v,
-                       const double *mass) {
-    const lar_touch_face *face = patch->face;
-    int n = lar_touch_points(face, patch->radius);
-    patch->mass = point_mass(face, mass, n);
-    for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
-    lar_face_normal((const double(*)[3])patch->x, patch->out);
-    double size = lar_length(patch->out);
-    for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
-    for (int i = 0; i < n * n; i++) {
-        double weight[4];
-        lar_touch_weights(i, n, weight);
-        touch_point(patch, law, weight);
-    }
-    double gap = wall_gap(patch, n);
-    if (gap < 0) gap = touch_wall(patch, law, mass, n);
-    patch->closest = fmin(patch->closest, gap);
-}
-
 /* ---- forces -------------------------------------------------------------------------------- */
 
 /* Gives the corners their forces in whole units, and the tool exactly the opposite: nothing is lost
@@ -393,7 +255,7 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
         touch->seen.tested++;
         watch->look[i] = watch->path + lar_touch_clear(gap, patch.radius);
         if (gap > 0) continue;
-        touch_face(&patch, law, state->v, context->mass);
+        lar_patch_touch(&patch, law, state->v, context->mass, touch->weights);
         watch->look[i] = watch->path + lar_touch_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &touch->sum[tool];
@@ -435,7 +297,7 @@ static void hold_point(lar_touch *touch, const lar_condition_context *context,
     lar_face_mean((const double(*)[3])x, hold->weight, point);
     lar_face_mean((const double(*)[3])v, hold->weight, speed);
     int n = lar_touch_points(face, tool->radius);
-    double most = 0.5 * law->stiffness * point_mass(face, context->mass, n);
+    double most = 0.5 * law->stiffness * lar_touch_point_mass(face, context->mass, n);
     double stiffness = fmin(hold->stiffness, most), damping = sqrt(stiffness * most) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);

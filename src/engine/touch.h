@@ -47,6 +47,12 @@ typedef struct lar_touch_face {
     double edge;       /* the longest at rest [m] */
 } lar_touch_face;
 
+/* Weights of the corners in the points of a face, n x n of them (lar_touch_points). */
+enum { LAR_POINTS_ALONG_EDGE = 6 };
+typedef struct lar_point_weights {
+    double of[LAR_POINTS_ALONG_EDGE + 1][LAR_POINTS_ALONG_EDGE * LAR_POINTS_ALONG_EDGE][4];
+} lar_point_weights;
+
 /* Neighbouring faces in a ball. */
 typedef struct lar_touch_group {
     int32_t first, count;
@@ -91,6 +97,7 @@ typedef struct lar_touch {
     int32_t *face_of;       /* [faces of the model's surface] index into `face`, or -1 */
     int32_t *foreign;       /* [foreign_count] 4 * local node: corners that others move */
     lar_touch_force *acting;
+    lar_point_weights *weights; /* NULL: no faces */
     lar_tool_watch watch[LAR_TOOLS_MOST];
     double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
@@ -135,8 +142,7 @@ typedef struct lar_touch_note {
 void lar_touch_remember(const lar_touch *touch, lar_touch_note *note);
 void lar_touch_restore(lar_touch *touch, const lar_touch_note *note);
 
-/* ---- for touch_search.c, hold.c and trip_tool.c
- * ------------------------------------------------------ */
+/* ---- for touch_face.c, touch_search.c, hold.c and trip_tool.c ------------------------------- */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_touch_group_faces(lar_touch *touch, lar_error *error);

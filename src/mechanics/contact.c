@@ -53,22 +53,8 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
 
 double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
                          double normal[3], double *along) {
-    const double *a = segment->end[0], *b = segment->end[1];
-    double ab[3], ap[3], square = 0, dot = 0, distance = 0;
-    for (int i = 0; i < 3; i++) {
-        ab[i] = b[i] - a[i];
-        ap[i] = point[i] - a[i];
-        square += ab[i] * ab[i];
-        dot += ab[i] * ap[i];
-    }
-    double t = dot > 0 ? dot < square ? dot / square : 1 : 0;
-    if (!(square > 0)) t = 0;
-    for (int i = 0; i < 3; i++) {
-        normal[i] = ap[i] - t * ab[i];
-        distance += normal[i] * normal[i];
-    }
-    distance = sqrt(distance);
-    *along = t;
+    const lar_segment_axis axis = lar_segment_axis_of(segment);
+    double distance = sqrt(lar_segment_away(segment, &axis, point, normal, along));
     if (!(distance > 0)) return -radius;
     for (int i = 0; i < 3; i++) normal[i] /= distance;
     return radius - distance;

@@ -73,6 +73,39 @@ typedef struct lar_segment {
     double end[2][3];
 } lar_segment;
 
+/* What many points need of a segment. */
+typedef struct lar_segment_axis {
+    double way[3], square; /* from its first end to the second [m], and its length squared */
+} lar_segment_axis;
+
+static inline lar_segment_axis lar_segment_axis_of(const lar_segment *segment) {
+    lar_segment_axis axis = {.square = 0};
+    for (int i = 0; i < 3; i++) {
+        axis.way[i] = segment->end[1][i] - segment->end[0][i];
+        axis.square += axis.way[i] * axis.way[i];
+    }
+    return axis;
+}
+
+/* The way from the closest point of a segment to a point [m], and where on the segment that is (0
+ * to 1). Returns its length squared. */
+static inline double lar_segment_away(const lar_segment *segment, const lar_segment_axis *axis,
+                                      const double point[3], double away[3], double *along) {
+    double from[3], dot = 0, square = 0;
+    for (int i = 0; i < 3; i++) {
+        from[i] = point[i] - segment->end[0][i];
+        dot += axis->way[i] * from[i];
+    }
+    double t = dot > 0 ? dot < axis->square ? dot / axis->square : 1 : 0;
+    if (!(axis->square > 0)) t = 0;
+    for (int i = 0; i < 3; i++) {
+        away[i] = from[i] - t * axis->way[i];
+        square += away[i] * away[i];
+    }
+    *along = t;
+    return square;
+}
+
 /* How deep a point is inside the tool around a segment [m] (negative: how far outside), the unit
  * normal from the segment to the point, and where on the segment (0 to 1) it starts. A point on the
  * segment itself has no normal, and counts as outside. */
