@@ -227,7 +227,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
 }
 
 bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
-                      double most, double unit) {
+                      const lar_step_room *room, double unit) {
     /* What was needed lately counts for some time: strained tissue trembles [s]. */
     static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
@@ -236,9 +236,10 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     bool close = lar_division_is_close(d);
     d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;
+    double asked = d->lately + room->springs * hardness;
     int32_t wanted = 1;
     while (wanted < LAR_PARTS_MOST &&
-           (d->lately > most * wanted * wanted || hardness > wanted * wanted))
+           (asked > room->most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
     bool changed =
         hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);

@@ -51,11 +51,13 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
 
 /* How much of the 4 that central differences bear elements may take, over 4: all that the step took
  * at rest, and more as long as no tool touches them, which takes its own part (theory.md 10). */
-static double most_of(const lar_domain *whole, const lar_tools *tools) {
-    double share = whole->time_step / whole->stable_step, most = 0.9;
+static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
+    static const double MOST = 0.9, SPRINGS = 0.25;
+    double share = whole->time_step / whole->stable_step, rest = 1.02 * share * share;
+    lar_step_room room = {.most = fmax(MOST, rest)};
     for (int32_t i = 0; i < tools->count; i++)
-        if (tools->follower[i].felt.depth > 0) most = 0.65;
-    return fmax(most, 1.02 * share * share);
+        if (tools->follower[i].felt.depth > 0) room.springs = fmin(SPRINGS, room.most - rest);
+    return room;
 }
 
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
@@ -63,9 +65,9 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     lar_step_division *division = &tools->division;
     if (!list || (step % whole->interval != 0 && !lar_division_is_close(division))) return false;
     double seconds = (double)(step - division->decided) * whole->time_step;
+    const lar_step_room room = room_of(whole, tools);
     division->decided = step;
-    bool changed =
-        lar_tools_divide(list, tools, step, seconds, most_of(whole, tools), 1 / whole->scale);
+    bool changed = lar_tools_divide(list, tools, step, seconds, &room, 1 / whole->scale);
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, 1 / whole->scale) ||
            changed;
