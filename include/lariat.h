@@ -217,6 +217,9 @@ typedef struct lar_tool_force {
     double apart;     /* from its tip to where its hand asks the tip to be, now [m] */
     int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
                          back to it; else 0 */
+    double grasp;     /* what both jaws of a grasper press with on the tissue between them [N], the
+                         mean over the last advance: the smaller of what each is pushed outwards
+                         with; 0 when a jaw is not, and for other tools */
 } lar_tool_force;
 
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
@@ -645,6 +648,7 @@ typedef struct lar_tool_load {
     double force; /* the largest of all ticks [N] */
     double limit; /* lar_tool_force.limit [N] */
     int reached;  /* not 0: it was kept from following its hand (lar_tool_force.limited) */
+    double grasp; /* the largest lar_tool_force.grasp of all ticks [N] */
 } lar_tool_load;
 
 LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t tool,

@@ -58,6 +58,30 @@ static void write_contact(json_writer *json, const lar_simulation *simulation) {
     json_close(json);
 }
 
+/* Name and force of a tool of the scene or a hand, as of the last step. */
+static bool tool_of(const lar_simulation *simulation, int32_t tool, lar_tool_info *info,
+                    lar_tool_force *force) {
+    return !lar_simulation_tool(simulation, tool, info, NULL) &&
+           !lar_simulation_tool_force(simulation, tool, force, NULL);
+}
+
+static void write_tools(json_writer *json, const lar_simulation *simulation) {
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
+        lar_tool_info info;
+        lar_tool_force force;
+        if (!tool_of(simulation, i, &info, &force)) continue;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", info.name);
+        json_vector(json, "force", force.force);
+        json_number(json, "grasp", force.grasp);
+        json_integer(json, "touching", force.touching);
+        json_integer(json, "held", force.held);
+        json_close(json);
+    }
+    json_close(json);
+}
+
 /* Only what is known. */
 static void write_rest(json_writer *json, const run_report *report) {
     const lar_rest *rest = report->rest;
@@ -104,6 +128,7 @@ void run_report_json(const run_report *report, FILE *out) {
     json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     write_contact(&json, simulation);
+    write_tools(&json, simulation);
     write_rest(&json, report);
     json_integer(&json, "divided_steps", (int64_t)divided);
     json_integer(&json, "most_parts", most_parts);
@@ -144,6 +169,22 @@ static void print_contact(const lar_simulation *simulation, FILE *out) {
             fmax(tested, LEAST));
 }
 
+/* Nothing of tools that neither touch nor hold. */
+static void print_tools(const lar_simulation *simulation, FILE *out) {
+    for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
+        lar_tool_info info;
+        lar_tool_force force;
+        if (!tool_of(simulation, i, &info, &force)) continue;
+        if (force.touching == 0 && force.held == 0) continue;
+        const double *f = force.force;
+        fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
+                sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
+        if (force.grasp > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp);
+        if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
+        fputc('\n', out);
+    }
+}
+
 /* Nothing where steps stayed whole. */
 static void print_parts(const lar_simulation *simulation, FILE *out) {
     int32_t most;
@@ -173,6 +214,7 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     fprintf(out, "; external %.4g\n", energy.external);
     print_contact(report->simulation, out);
+    print_tools(report->simulation, out);
     print_parts(report->simulation, out);
     print_rest(report, out);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));

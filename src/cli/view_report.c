@@ -33,6 +33,7 @@ static void write_tools(json_writer *json, const view_report *report) {
         json_number(json, "largest_force", load->force);
         json_number(json, "limit", load->limit);
         json_boolean(json, "limit_reached", load->reached != 0);
+        json_number(json, "largest_grasp", load->grasp);
         json_close(json);
     }
     json_close(json);
@@ -41,9 +42,10 @@ static void write_tools(json_writer *json, const view_report *report) {
 static void print_tools(const view_report *report, FILE *out) {
     for (int32_t i = 0; i < report->tools; i++) {
         const lar_tool_load *load = &report->tool[i].load;
-        fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s\n", "tool",
-                report->tool[i].name, load->force, load->limit,
-                load->reached ? "; the limit was reached" : "");
+        fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s", "tool", report->tool[i].name,
+                load->force, load->limit, load->reached ? "; the limit was reached" : "");
+        if (load->grasp > 0) fprintf(out, "; jaws grasped with up to %.3g N", load->grasp);
+        fputc('\n', out);
     }
 }
 

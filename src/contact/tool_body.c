@@ -16,6 +16,9 @@ static const double DEPTH_MOST = 0.5, BEARS = 0.45;
 /* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
 static const double BORNE_RATE = 100;
 static const double GRASP_SHARE = 0.5;
+/* Jaws close on a fold until its elements become fast: so much harder than shear moduli on half of
+ * a jaw's side they press only while these are sound. */
+static const double PINCH = 1, SOUND = 1, CRUSHED = 2; /* the latter two as BORNE_RATE */
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
 
@@ -45,6 +48,7 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
                                     .travel = 0.5 * tool->spread * tool->length,
                                     .drag = DRAG * scale->stiffness * scale->interval};
         limits->grasp = GRASP_SHARE * limits->force;
+        limits->pinch = fmin(limits->grasp, PINCH * scale->shear * tool->radius * tool->length);
     }
 }
 
@@ -65,12 +69,21 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 typedef struct mean_load {
     double force[3], torque[3]; /* [N] [N m] */
     double squeeze;             /* [N] */
+    double grasp;               /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
 } mean_load;
 
-static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, double need,
-                         double unit, double *load) {
-    mean_load mean = {.excess = 1};
+/* What closes on a fold crushes it with less than what a tool may press with from one side: between
+ * two jaws tissue gives way to nowhere but out of them. */
+static double grasp_limit(const lar_tool_limits *limits, double need) {
+    double share = fmax(0, fmin(1, (CRUSHED - need) / (CRUSHED - SOUND)));
+    return limits->pinch + share * (limits->grasp - limits->pinch);
+}
+
+/* `closes`: its jaws are asked to be closer than they can be pushed apart. */
+static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, bool closes,
+                         double need, double unit, double *load) {
+    mean_load mean = {.excess = 1, .grasp = grasp_limit(limits, need)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
         mean.force[i] = (double)felt->force[i] * share;
@@ -79,7 +92,7 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     mean.squeeze = (double)felt->squeeze * share;
     double force = lar_length(mean.force) / limits->force;
     double turn = lar_length(mean.torque) / (limits->force * limits->lever);
-    double grasp = mean.squeeze / limits->grasp;
+    double grasp = closes ? mean.squeeze / mean.grasp : 0;
     double depth = felt->depth / limits->depth;
     double most = fmax(fmax(force, turn), grasp);
     double other = fmax(depth, most > 0 ? need / BORNE_RATE : 0);
@@ -158,7 +171,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
     pushed[0] = mean->excess * mean->squeeze;
-    if (!go(law, 1, gap, pushed, limits->grasp, way))
+    if (!go(law, 1, gap, pushed, mean->grasp, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
 
@@ -213,7 +226,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
         const lar_tool_felt *felt = &tools->follower[i].felt;
         double load, depth = felt->depth / list->tool[i].radius;
         if (!(depth > 0)) continue;
-        mean_load mean = mean_of(felt, &list->limits[i], 0, unit, &load);
+        mean_load mean = mean_of(felt, &list->limits[i], false, 0, unit, &load);
         /* One that presses too hard gives way before it is made harder. */
         if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
             depth = fmin(depth, SOFT);
@@ -260,7 +273,9 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
         if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
-        mean_load mean = mean_of(&felt, limits, tools->division.lately, unit, &follower->load);
+        bool closes = follower->hand.to.opening < 1 || tools->motion[i].to.opening < 1;
+        mean_load mean =
+            mean_of(&felt, limits, closes, tools->division.lately, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

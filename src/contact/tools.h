@@ -90,6 +90,7 @@ typedef struct lar_tool_limits {
     double depth;  /* tissue in the tool [m] */
     double lever;  /* [m]: torques are forces at this distance from the tip */
     double grasp;  /* of closing jaws, at their ends [N] */
+    double pinch;  /* the same where elements are crushed [N] */
     double travel; /* of a jaw's end from open to closed [m] */
     double drag;   /* of a tool on its own way [N s/m] */
 } lar_tool_limits;

@@ -40,6 +40,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
             to->rest[k] += from->rest[k];
         }
         to->squeeze += from->squeeze;
+        for (int s = 0; s < 2; s++) to->jaw[s] += from->jaw[s];
         to->depth = from->depth > to->depth ? from->depth : to->depth;
         to->touching += from->touching;
         to->held += from->held;

@@ -158,6 +158,12 @@ static double limit_of(const lar_tool_list *list, int32_t tool) {
     return list->tool[tool].shape == LAR_TOOL_HAND ? 0 : list->limits[tool].force;
 }
 
+/* What both jaws have in common; what one of them is pushed with besides is a force on the tool. */
+static double grasp_of(const lar_tool_sum *sum, double unit) {
+    double jaw[2] = {(double)sum->jaw[0] * unit, (double)sum->jaw[1] * unit};
+    return fmax(0, fmin(jaw[0], jaw[1]));
+}
+
 lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                      lar_tool_force *force, lar_error *error) {
     lar_status status = check_tool(simulation, tool, force, error);
@@ -179,6 +185,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     force->depth = simulation->report_steps ? interval->depth[tool] : 0;
     force->apart = lar_length(apart);
     force->limited = tools->follower[tool].lagging != 0;
+    force->grasp = grasp_of(sum, unit);
     for (int i = 0; i < 3; i++) {
         force->force[i] = (double)sum->force[i] * unit;
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;

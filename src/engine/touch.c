@@ -238,6 +238,11 @@ static void give(lar_touch *touch, const lar_condition_context *context, int32_t
     }
 }
 
+/* Nothing of a run that is about to break. */
+static int64_t whole_units(double units) {
+    return fabs(units) < 0x1p56 ? llrint(units) : 0;
+}
+
 static void touch_near(lar_touch *touch, const lar_condition_context *context,
                        const lar_state *state, int32_t tool, const lar_contact_law *law) {
     lar_tool_watch *watch = &touch->watch[tool];
@@ -261,8 +266,9 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
         lar_tool_sum *sum = &touch->sum[tool];
         sum->touching += patch.touching;
         sum->depth = fmax(sum->depth, patch.depth);
-        if (fabs(patch.squeeze * context->scale) < 0x1p56)
-            sum->squeeze += context->shares * llrint(patch.squeeze * context->scale);
+        sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
+        for (int s = 0; s < 2; s++)
+            sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
         give(touch, context, watch->near[i], tool, watch->body.now[0].end[0],
              (const double(*)[3])patch.x, (const double(*)[3])patch.force);
     }

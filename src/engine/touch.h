@@ -31,6 +31,7 @@ typedef struct lar_tool_sum {
     lar_wide force[3], torque[3]; /* of the tissue on the tool; about the tip */
     int64_t rest[3];              /* of the torques, in LAR_TORQUE_REST: arms are short */
     lar_wide squeeze;             /* of the jaws, outwards, as a force at their ends */
+    lar_wide jaw[2];              /* of the tissue on each jaw, outwards */
     double depth;                 /* the deepest point since the last stretch of steps began [m] */
     int32_t touching, held;       /* in the last step */
 } lar_tool_sum;

@@ -48,8 +48,11 @@ static void push_point(lar_patch *patch, const lar_contact_law *law, int32_t s, 
     double force = lar_contact_force(law, mass, depth, rate);
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
-    if (patch->body->count == 2)
-        patch->squeeze -= force * along * lar_dot(normal, patch->body->outward[s]);
+    if (patch->body->count == 2) {
+        double outwards = lar_dot(normal, patch->body->outward[s]);
+        patch->squeeze -= force * along * outwards;
+        patch->jaw[s] -= force * outwards;
+    }
     patch->touching++;
 }
 

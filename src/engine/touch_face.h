@@ -24,7 +24,8 @@ typedef struct lar_patch { /* one face before one tool */
     double closest;  /* distance of the closest point [m] */
     double covered;  /* how many of the points are as deep in the tool as the wall */
     double depth;    /* the deepest point [m] */
-    double squeeze;  /* of the jaws [N] */
+    double squeeze;  /* of the jaws, as a force at their ends [N] */
+    double jaw[2];   /* on each jaw, outwards [N] */
     int32_t touching;
 } lar_patch;
 

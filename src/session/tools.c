@@ -96,6 +96,7 @@ static void note_load(lar_session_tool *tool) {
     double force = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     tool->load.limit = tool->force.limit;
     tool->load.force = fmax(tool->load.force, force);
+    tool->load.grasp = fmax(tool->load.grasp, tool->force.grasp);
     tool->load.reached = tool->load.reached || tool->force.limited;
 }
 
@@ -118,6 +119,7 @@ static void shrink(lar_tool_force *force, double share) {
         force->force[k] *= share;
         force->torque[k] *= share;
     }
+    force->grasp *= share;
 }
 
 bool lar_session_idle_tools(lar_session *session, double share) {

@@ -124,12 +124,6 @@ static lar_status tick(lar_scripts *s, double time, lar_error *error) {
     return status;
 }
 
-/* The jaws' forces on what they hold, as the engine sums them. */
-static double grasp_of(const lar_simulation *simulation, int32_t tool) {
-    double share = LAR_STEP_SHARES * simulation->domain.scale * (double)simulation->report_steps;
-    return (double)simulation->report.tool[tool].squeeze / share;
-}
-
 /* The fastest node, and the fastest within `reach` of a place. */
 static double fastest_node(const lar_scripts *s, const double place[3], double reach) {
     const double *v = s->simulation->state.v;
@@ -141,8 +135,7 @@ static double fastest_node(const lar_scripts *s, const double place[3], double r
     return most;
 }
 
-static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *force, double grasp,
-                  double winding) {
+static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *force, double winding) {
     const lar_step_division *division = &s->simulation->tools.division;
     lar_tool_pose pose;
     lar_energy energy;
@@ -152,7 +145,7 @@ static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *forc
             "%.4f,%s,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%d,%d,%d,%.5f,%.6f,%d,%.2f,%.3f,%.4f,%.4f,%.3g,"
             "%.2f,%.1f\n",
             lar_simulation_time(s->simulation), led->guide.info.name, led->hand.opening,
-            pose.opening, force->force[0], force->force[1], force->force[2], grasp,
+            pose.opening, force->force[0], force->force[1], force->force[2], force->grasp,
             (int)force->held, (int)force->touching, (int)force->limited, force->apart, force->depth,
             (int)division->parts, division->hardness, division->lately, fastest_node(s, NULL, 0),
             fastest_node(s, pose.position, led->guide.info.length + 0.005), energy.kinetic, winding,
@@ -170,15 +163,15 @@ static void look(lar_scripts *s, double seconds) {
         lar_tool_pose pose;
         lar_simulation_tool_force(s->simulation, led->guide.tool, &force, NULL);
         lar_simulation_tool_pose(s->simulation, led->guide.tool, &pose, NULL);
-        double grasp = grasp_of(s->simulation, led->guide.tool), winding = 0;
+        double winding = 0;
         if (s->options->inside) {
             const lar_line line = lar_tool_line(&led->guide.info, &pose);
             winding = lar_line_winding(&line, &s->body);
         }
         if (winding > 0.5) s->inside += seconds;
         s->force = fmax(s->force, lar_length(force.force));
-        s->grasp = fmax(s->grasp, grasp);
-        if (s->trace) trace(s, led, &force, grasp, winding);
+        s->grasp = fmax(s->grasp, force.grasp);
+        if (s->trace) trace(s, led, &force, winding);
     }
     s->all += s->busy;
     s->slowest = fmax(s->slowest, s->busy / seconds);

@@ -61,6 +61,7 @@ export interface ToolStatus extends Pose {
     depth: number; // of the tissue in it [m]
     apart: number; // from its tip to where its hand asks the tip to be [m]
     limited: boolean; // tissue keeps it from following its hand
+    grasp: number; // what both jaws press with on the tissue between them [N]
     by: 'nobody' | 'you' | 'other' | 'device';
 }
 

@@ -4,17 +4,20 @@ import { element, withUnit, write } from './dom';
 import type { Instrument } from './instrument';
 import type { Hello, Status, ToolStatus } from './protocol';
 
-/* What a tool bears: its force of its limit, and how deep the tissue is in it. */
-export function load(tool: Pick<ToolStatus, 'force' | 'limit' | 'depth' | 'limited'>): string {
+/* What a tool bears: its force of its limit, how hard its jaws grasp, and how deep the tissue is in
+ * it. */
+export function load(tool: Pick<ToolStatus, 'force' | 'limit' | 'depth' | 'limited' | 'grasp'>): string {
     const force = Math.hypot(...tool.force).toFixed(2);
     const words = [tool.limit > 0 ? `${force} of ${tool.limit.toFixed(2)} N` : `${force} N`];
+    if (tool.grasp > 0) words.push(`grasp ${tool.grasp.toFixed(2)} N`);
     if (tool.depth > 0) words.push(`${withUnit(tool.depth, 'm')} deep`);
     if (tool.limited) words.push('limit reached');
     return words.join(', ');
 }
 
 const LIMIT =
-    'Force on the tool and the most that it may bear; how deep tissue is in it. Once the limit is ' +
+    'Force on the tool and the most that it may bear; what both jaws grasp with; how deep tissue ' +
+    'is in it. Once the limit is ' +
     'reached the tool stays behind its hand, until the hand comes back.';
 
 function addLoad(entry: Element): HTMLElement {

@@ -188,8 +188,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         recoveries: state.recoveries, recovery: state.recovery,
         placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
-            ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true }
-                : { depth: 0, apart: 0, limited: false }),
+            ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true, grasp: 0 }
+                : { depth: 0, apart: 0, limited: false, grasp: 0 }),
             limit: tools[i].shape === 'hand' ? 0 : 1.76, touching: 0, held: 0, by: 'nobody' })),
     });
 
