@@ -16,9 +16,9 @@ static const double DEPTH_MOST = 0.5, BEARS = 0.45;
 /* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
 static const double BORNE_RATE = 100;
 static const double GRASP_SHARE = 0.5;
-/* Jaws close on a fold until its elements become fast: so much harder than shear moduli on half of
- * a jaw's side they press only while these are sound. */
-static const double PINCH = 1, SOUND = 1, CRUSHED = 2; /* the latter two as BORNE_RATE */
+/* Jaws press less the faster elements have become by that, as BORNE_RATE counts, down to so many
+ * shear moduli on half of a jaw's side. */
+static const double SOUND_RATE = 0.5, PINCH = 0.5;
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
 
@@ -74,10 +74,10 @@ typedef struct mean_load {
 } mean_load;
 
 /* What closes on a fold crushes it with less than what a tool may press with from one side: between
- * two jaws tissue gives way to nowhere but out of them. */
+ * two jaws tissue gives way to nowhere but out of them. (Steeper in `need` and jaws swing.) */
 static double grasp_limit(const lar_tool_limits *limits, double need) {
-    double share = fmax(0, fmin(1, (CRUSHED - need) / (CRUSHED - SOUND)));
-    return limits->pinch + share * (limits->grasp - limits->pinch);
+    double share = need > SOUND_RATE ? SOUND_RATE / need : 1;
+    return fmax(limits->pinch, limits->grasp * share * share);
 }
 
 /* `closes`: its jaws are asked to be closer than they can be pushed apart. */

@@ -3,9 +3,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/touch_face.h"
+
 /* All holds of one tool together [N/m]: the pads of two fingers give by about a centimetre at 5 N;
  * jaws are metal, and what is left is the tissue between them. */
 static const double HAND_STIFFNESS = 600, JAWS_STIFFNESS = 3000;
+
+/* Openings at which a tool takes hold and lets go. */
+static const double CLOSED = 0.25, OPEN = 0.5;
 
 /* More do not hold better, and cost time in every step. */
 enum { HOLDS_OF_A_TOOL = 48 };
@@ -88,7 +93,7 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
         most = reach.tool->radius;
     } else {
         lar_tool_at(&tools->motion[tool], state->step, whole->time_step, &reach.pose, NULL);
-        double opening = fmax(reach.pose.opening, 0.25);
+        double opening = fmax(reach.pose.opening, CLOSED);
         lar_sine_cosine(0.5 * reach.tool->spread * opening, &reach.sine, &reach.cosine);
         most = 2 * reach.tool->length + reach.tool->radius; /* the jaws themselves decide */
     }
@@ -119,12 +124,40 @@ lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
     lar_tool_shape shape = list->tool[tool].shape;
     lar_tool_motion *motion = &tools->motion[tool];
     if (shape != LAR_TOOL_HAND && shape != LAR_TOOL_GRASPER) return LAR_OK;
-    if (motion->holding && pose->opening > 0.5) {
+    if (motion->holding && pose->opening > OPEN) {
         let_go(tool, tools);
         motion->holding = 0;
-    } else if (!motion->holding && pose->opening < 0.25) {
+    } else if (!motion->holding && pose->opening < CLOSED) {
         take(whole, state, list, tool, pose, tools);
         motion->holding = 1;
     }
     return LAR_OK;
+}
+
+bool lar_hold_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
+    if (tool->shape != LAR_TOOL_GRASPER && tool->shape != LAR_TOOL_HAND) return false;
+    return motion->holding ? opening > OPEN : opening < CLOSED;
+}
+
+int32_t lar_hold_count(const lar_tools *tools, int32_t tool) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < tools->hold_count; i++) count += tools->hold[i].tool == tool;
+    return count;
+}
+
+void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
+                   lar_tools *tools) {
+    const lar_touch *touch = &whole->acting.touch;
+    if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
+    lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
+    double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));
+    double wanted = JAWS_STIFFNESS / fmax(1, lar_hold_count(tools, tool));
+    for (int32_t i = 0; i < tools->hold_count; i++) {
+        lar_hold *hold = &tools->hold[i];
+        if (hold->tool != tool) continue;
+        /* Of what it really has, or softening would begin unseen. */
+        double most = lar_hold_most(&touch->face[touch->face_of[hold->face]],
+                                    list->tool[tool].radius, &law, whole->mass);
+        hold->stiffness = share * fmin(wanted, most);
+    }
 }

@@ -3,6 +3,7 @@
  *     opening 1 ... 0.2    hand: takes hold of the points of the surface within its radius, or of
  *                          the nearest one within twice as much when there is none
  *                          grasper: of the points between its jaws
+ *     opening 0.25 .. 0.5  grasper: holds softer and softer
  *     opening 0.2 ... 0.6  lets go
  *
  * Points are those at which tools touch (engine/touch.h). A hold is a spring and a damper between
@@ -25,5 +26,15 @@
 lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
                            const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
                            lar_tools *tools, lar_error *error);
+/* Whether that is asked for: only then the state is looked at. */
+bool lar_hold_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening);
+
+/* How many points a tool holds. */
+int32_t lar_hold_count(const lar_tools *tools, int32_t tool);
+
+/* The jaws of a grasper are asked to be as open as that: on the way from closed to open they hold
+ * softer and softer, so that their letting go is no blow. */
+void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
+                   lar_tools *tools);
 
 #endif

@@ -86,12 +86,6 @@ static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, la
     return LAR_OK;
 }
 
-static int32_t holds_of(const lar_tools *tools, int32_t tool) {
-    int32_t count = 0;
-    for (int32_t i = 0; i < tools->hold_count; i++) count += tools->hold[i].tool == tool;
-    return count;
-}
-
 /* Contact is looked for once in a step: what goes farther could pass through a surface. */
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
@@ -107,12 +101,6 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                     "step (%.4g m/s); take more steps or a smaller way",
                     tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
                     0.5 * tool->radius / time_step);
-}
-
-/* Whether taking hold or letting go is asked for: only then the whole state is looked at. */
-static bool changes_hold(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
-    if (tool->shape != LAR_TOOL_GRASPER && tool->shape != LAR_TOOL_HAND) return false;
-    return motion->holding ? opening > 0.5 : opening < 0.25;
 }
 
 lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
@@ -131,17 +119,18 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
                         tool->name, (unsigned long long)steps);
     lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
     status = check_pose(tool, pose, &wanted, error);
-    if (!status && !(tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0))
+    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
-    if (!status && changes_hold(tool, motion, wanted.opening)) {
+    if (!status && lar_hold_changes(tool, motion, wanted.opening)) {
         /* An empty hand is where it takes hold: its way there means nothing. */
-        if (tool->shape == LAR_TOOL_HAND && holds_of(tools, index) == 0) now = wanted;
+        if (tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0) now = wanted;
         status = lar_simulation_gather(simulation, error);
         if (!status)
             status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
                                      index, &wanted, tools, error);
     }
     if (status) return status;
+    lar_hold_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
     lar_tool_ask(tools, index,
                  &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
     if (simulation->computer) simulation->computer->tools_sent = false;
@@ -180,7 +169,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     lar_minus(hand.position, now.position, apart);
     memset(force, 0, sizeof *force); /* gaps, too */
     force->touching = sum->touching;
-    force->held = holds_of(tools, tool);
+    force->held = lar_hold_count(tools, tool);
     force->limit = limit_of(&simulation->list, tool);
     force->depth = simulation->report_steps ? interval->depth[tool] : 0;
     force->apart = lar_length(apart);

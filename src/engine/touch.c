@@ -248,11 +248,11 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
     lar_tool_watch *watch = &touch->watch[tool];
     for (int32_t i = 0; i < watch->near_count; i++) {
         if (watch->path < watch->look[i] && !touch->always) continue;
-        lar_patch patch = {.face = &touch->face[watch->near[i]],
-                           .body = &watch->body,
-                           .radius = touch->list->tool[tool].radius,
-                           .rate_of = 1 / context->time_step,
-                           .closest = INFINITY};
+        lar_touched_face patch = {.face = &touch->face[watch->near[i]],
+                                  .body = &watch->body,
+                                  .radius = touch->list->tool[tool].radius,
+                                  .rate_of = 1 / context->time_step,
+                                  .closest = INFINITY};
         double center[3];
         lar_touch_corners(patch.face, state->u, patch.x);
         double size = lar_touch_ball((const double(*)[3])patch.x, center);
@@ -260,7 +260,7 @@ static void touch_near(lar_touch *touch, const lar_condition_context *context,
         touch->seen.tested++;
         watch->look[i] = watch->path + lar_touch_clear(gap, patch.radius);
         if (gap > 0) continue;
-        lar_patch_touch(&patch, law, state->v, context->mass, touch->weights);
+        lar_touch_push_face(&patch, law, state->v, context->mass, touch->weights);
         watch->look[i] = watch->path + lar_touch_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &touch->sum[tool];
@@ -302,8 +302,7 @@ static void hold_point(lar_touch *touch, const lar_condition_context *context,
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
     lar_face_mean((const double(*)[3])x, hold->weight, point);
     lar_face_mean((const double(*)[3])v, hold->weight, speed);
-    int n = lar_touch_points(face, tool->radius);
-    double most = 0.5 * law->stiffness * lar_touch_point_mass(face, context->mass, n);
+    double most = lar_hold_most(face, tool->radius, law, context->mass);
     double stiffness = fmin(hold->stiffness, most), damping = sqrt(stiffness * most) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);

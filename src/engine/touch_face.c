@@ -23,20 +23,25 @@ double lar_touch_point_mass(const lar_touch_face *face, const double *mass, int 
     return 4 * least / (n * n);
 }
 
+double lar_hold_most(const lar_touch_face *face, double radius, const lar_contact_law *law,
+                     const double *mass) {
+    return 0.5 * law->stiffness * lar_touch_point_mass(face, mass, lar_touch_points(face, radius));
+}
+
 /* Where the wall begins, in radii of the tool. */
 static const double WALL = 0.2;
 
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. */
-static double facing(const lar_patch *patch, const double normal[3]) {
+static double facing(const lar_touched_face *patch, const double normal[3]) {
     double against =
         -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
 /* A point of the face is pushed along the normal of segment s. */
-static void push_point(lar_patch *patch, const lar_contact_law *law, int32_t s, double along,
+static void push_point(lar_touched_face *patch, const lar_contact_law *law, int32_t s, double along,
                        const double weight[4], const double normal[3], double mass, double depth) {
     const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
     double v[3], rate = 0;
@@ -57,8 +62,8 @@ static void push_point(lar_patch *patch, const lar_contact_law *law, int32_t s, 
 }
 
 /* A point of the grid against the tool's segments. */
-static void touch_point(lar_patch *patch, const lar_contact_law *law, const lar_segment_axis *axis,
-                        const double weight[4]) {
+static void touch_point(lar_touched_face *patch, const lar_contact_law *law,
+                        const lar_segment_axis *axis, const double weight[4]) {
     /* More than what rounding could bring in; whether a point is in the tool its depth says. */
     const double within = patch->radius * patch->radius * (1 + 1e-9);
     double x[3], normal[3], along;
@@ -90,7 +95,7 @@ static double wall_mass(const lar_touch_face *face, const double *mass, const do
 }
 
 /* The wall of one segment. Returns how far the face is from where it begins. */
-static double touch_wall(lar_patch *patch, const lar_contact_law *law, const double *mass,
+static double touch_wall(lar_touched_face *patch, const lar_contact_law *law, const double *mass,
                          int32_t s, double free_share) {
     lar_face_segment at;
     lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
@@ -109,7 +114,7 @@ static double touch_wall(lar_patch *patch, const lar_contact_law *law, const dou
 
 /* How far a point of the face can be from the closest point of the grid: half of the diagonal
  * between two of these. */
-static double spacing(const lar_patch *patch, int n) {
+static double spacing(const lar_touched_face *patch, int n) {
     double longest = 0;
     for (int a = 0; a < 4; a++) {
         double edge[3];
@@ -123,7 +128,8 @@ static double spacing(const lar_patch *patch, int n) {
  * so few may. What the others could bear belongs to the closest point of the face, when that is
  * deep in the tool: as much as its corners bear, at whatever size of tool and face. Returns how far
  * the face is at least from where the wall begins. */
-static double touch_walls(lar_patch *patch, const lar_contact_law *law, const double *mass, int n) {
+static double touch_walls(lar_touched_face *patch, const lar_contact_law *law, const double *mass,
+                          int n) {
     double free_share = 1 - patch->covered / (n * n), between = spacing(patch, n), gap = INFINITY;
     for (int32_t s = 0; s < patch->body->count; s++) {
         double distance = sqrt(patch->least[s]) - patch->radius;
@@ -137,8 +143,8 @@ static double touch_walls(lar_patch *patch, const lar_contact_law *law, const do
 
 /* ---- the face ------------------------------------------------------------------------------ */
 
-void lar_patch_touch(lar_patch *patch, const lar_contact_law *law, const double *v,
-                     const double *mass, const lar_point_weights *weights) {
+void lar_touch_push_face(lar_touched_face *patch, const lar_contact_law *law, const double *v,
+                         const double *mass, const lar_point_weights *weights) {
     const lar_touch_face *face = patch->face;
     const lar_tool_body *body = patch->body;
     int n = lar_touch_points(face, patch->radius);

@@ -14,7 +14,7 @@
 
 #include "engine/touch.h"
 
-typedef struct lar_patch { /* one face before one tool */
+typedef struct lar_touched_face { /* one face before one tool */
     const lar_touch_face *face;
     const lar_tool_body *body;
     double radius, mass, rate_of; /* of a point; 1 / time step */
@@ -27,15 +27,19 @@ typedef struct lar_patch { /* one face before one tool */
     double squeeze;  /* of the jaws, as a force at their ends [N] */
     double jaw[2];   /* on each jaw, outwards [N] */
     int32_t touching;
-} lar_patch;
+} lar_touched_face;
 
 /* The mass behind each of n x n points [kg]: with weights w_a of all points their sum over a node's
  * faces is at most the node's mass (mechanics/contact.h, row sums). `mass`: by local node. */
 double lar_touch_point_mass(const lar_touch_face *face, const double *mass, int n);
 
+/* The stiffness of a hold of a point of the face that the step bears [N/m]. */
+double lar_hold_most(const lar_touch_face *face, double radius, const lar_contact_law *law,
+                     const double *mass);
+
 /* Fills in the forces on the corners of a face [N] whose places `x` are known, and what the tool
  * has of them. `weights`: of the points (lar_touch.weights). */
-void lar_patch_touch(lar_patch *patch, const lar_contact_law *law, const double *v,
-                     const double *mass, const lar_point_weights *weights);
+void lar_touch_push_face(lar_touched_face *patch, const lar_contact_law *law, const double *v,
+                         const double *mass, const lar_point_weights *weights);
 
 #endif

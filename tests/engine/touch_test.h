@@ -1,4 +1,5 @@
-/* What the tests of planes, tools and holds share: bodies with planes and tools, and energies.
+/* What the tests of planes, tools and holds share: bodies with planes and tools, energies, and what
+ * is inside a body.
  * Include engine_test.h first. */
 #ifndef LAR_TESTS_TOUCH_TEST_H
 #define LAR_TESTS_TOUCH_TEST_H
@@ -61,6 +62,39 @@ TEST_UNUSED static double stable_step_of(lar_model *model) {
     if (lar_model_check(model, &error) || lar_model_inspect(model, &info, &error))
         fail_msg("%s", error.message);
     return info.stable_step;
+}
+
+TEST_UNUSED static double size_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* The solid angle of a triangle, seen from the origin (Van Oosterom and Strackee 1983). */
+TEST_UNUSED static double solid_angle(const double a[3], const double b[3], const double c[3]) {
+    double la = size_of(a), lb = size_of(b), lc = size_of(c), ab = 0, bc = 0, ca = 0, volume = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        ab += a[i] * b[i];
+        bc += b[i] * c[i];
+        ca += c[i] * a[i];
+        volume += a[i] * (b[j] * c[k] - b[k] * c[j]);
+    }
+    return 2 * atan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb);
+}
+
+/* How often the deformed surface goes round a point: 1 inside, 0 outside. */
+TEST_UNUSED static double winding(const lar_simulation *simulation, const double point[3]) {
+    const lar_model *model = simulation->domain.model;
+    double sum = 0;
+    for (int32_t f = 0; f < model->surface.face_count; f++) {
+        double x[4][3];
+        for (int a = 0; a < 4; a++) {
+            int32_t node = model->surface.corner[f][a];
+            const double *u = node_u(simulation, node);
+            for (int i = 0; i < 3; i++) x[a][i] = model->mesh.position[node][i] + u[i] - point[i];
+        }
+        sum += solid_angle(x[0], x[1], x[2]) + solid_angle(x[0], x[2], x[3]);
+    }
+    return sum / (4 * 3.14159265358979);
 }
 
 #endif
