@@ -266,7 +266,7 @@ static uint64_t poked_hash(const lar_model *model, lar_options options, lar_tool
                            lar_contact_info *info) {
     lar_simulation *simulation = start_with(model, options);
     lar_error error;
-    poke(simulation, 40);
+    poke(simulation, 42);
     uint64_t hash = lar_simulation_hash(simulation);
     for (int tool = 0; tool < 3; tool++)
         assert_int_equal(lar_simulation_tool_force(simulation, tool, &force[tool], &error), LAR_OK);
