@@ -38,7 +38,7 @@ try_part() {
     grep -E '^(not )?ok |^# (pass|fail) ' "$2"
     return $status
 }
-for part in ${PARTS:-units mock engine}; do
+for part in ${PARTS:-units mock engine jaws}; do
     try_part "$part" "$out/$part.txt" && continue
     echo "$part failed, see $out/$part.txt; once more:"
     try_part "$part" "$out/$part-again.txt" && continue

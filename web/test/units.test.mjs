@@ -325,11 +325,12 @@ test('the first look is from where the scene says, or from low y', () => {
 
 test('a tool says its force, its limit, and when that is reached', () => {
     const { load } = parts.toolcard;
-    const rest = { force: [0, 0, 0], limit: 4.39, depth: 0, limited: false };
+    const rest = { force: [0, 0, 0], limit: 4.39, depth: 0, limited: false, grasp: 0 };
     assert.equal(load(rest), '0.00 of 4.39 N');
     assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
     assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+    assert.equal(load({ ...rest, grasp: 0.126, depth: 0.0004 }), '0.00 of 4.39 N, grasp 0.13 N, 400 µm deep');
 });
 
 test('the panel says into how many parts steps are divided', () => {
