@@ -127,7 +127,8 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
 /* However long tissue is so deep in a tool: the tool becomes only so hard, and softer outside. */
 static void hardness_follows_the_depth(void **unused) {
     (void)unused;
-    static const double SECONDS = 1e-4, MOST = 0.9, UNIT = 1e-12;
+    static const double SECONDS = 1e-4, UNIT = 1e-12;
+    const lar_step_room room = {.most = 0.9};
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
     const lar_tool_list *list = simulation->domain.acting.touch.list;
@@ -136,7 +137,7 @@ static void hardness_follows_the_depth(void **unused) {
     for (double part = 0.3; part < 0.8; part += 0.1) {
         for (int n = 0; n < 50; n++) {
             tools.follower[0].felt = (lar_tool_felt){.depth = part * ball.radius, .steps = 1};
-            lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, MOST, UNIT);
+            lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
         }
         double hardness = tools.division.hardness;
         assert_below(fabs(hardness - fmax(1, pow(part / 0.3, 4))), 1e-9 * hardness);
@@ -145,7 +146,7 @@ static void hardness_follows_the_depth(void **unused) {
     }
     for (int n = 0; n < 10000; n++) {
         tools.follower[0].felt = (lar_tool_felt){.steps = 1};
-        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, MOST, UNIT);
+        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
     }
     assert_true(tools.division.hardness == 1 && tools.division.parts == 1);
     lar_simulation_destroy(simulation);
