@@ -216,11 +216,11 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
 }
 
 /* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
- * harder, the more so the deeper it is; no faster than it sinks, for what is already in the tool is
- * driven out by that. */
+ * harder, but not at once: what is already in the tool is driven out by that. */
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
-                     double fading, double unit) {
-    static const double SOFT = 0.3, HARD = 0.15;
+                     double fading, double seconds, double unit) {
+    static const double SOFT = 0.3, HARD = 0.15; /* radii */
+    static const double RISE = 1e-3;             /* [s] */
     double deepest = 0;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
@@ -232,10 +232,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
             depth = fmin(depth, SOFT);
         deepest = fmax(deepest, depth);
     }
-    if (deepest > SOFT) {
-        double over = deepest / SOFT;
-        return fmin(fmax(hardness, over * over * over * over), LAR_HARDNESS_MOST);
-    }
+    if (deepest > SOFT) return fmin((1 + seconds / RISE) * hardness, LAR_HARDNESS_MOST);
     return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
@@ -245,7 +242,7 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
-    double hardness = harden(list, tools, d->hardness, fading, unit);
+    double hardness = harden(list, tools, d->hardness, fading, seconds, unit);
     bool close = lar_division_is_close(d);
     d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;

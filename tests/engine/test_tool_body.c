@@ -124,8 +124,8 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
     lar_model_destroy(model);
 }
 
-/* However long tissue is so deep in a tool: the tool becomes only so hard, and softer outside. */
-static void hardness_follows_the_depth(void **unused) {
+/* Hardness grows with time, not with the number of intervals, and is gone some time after. */
+static void hardness_grows_with_time(void **unused) {
     (void)unused;
     static const double SECONDS = 1e-4, UNIT = 1e-12;
     const lar_step_room room = {.most = 0.9};
@@ -133,17 +133,15 @@ static void hardness_follows_the_depth(void **unused) {
     lar_simulation *simulation = start(model);
     const lar_tool_list *list = simulation->domain.acting.touch.list;
     lar_tools tools = simulation->tools;
-    double before = 1;
-    for (double part = 0.3; part < 0.8; part += 0.1) {
-        for (int n = 0; n < 50; n++) {
-            tools.follower[0].felt = (lar_tool_felt){.depth = part * ball.radius, .steps = 1};
-            lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
-        }
-        double hardness = tools.division.hardness;
-        assert_below(fabs(hardness - fmax(1, pow(part / 0.3, 4))), 1e-9 * hardness);
-        assert_true(hardness >= before && tools.division.parts * tools.division.parts >= hardness);
-        before = hardness;
+    for (int n = 1; n <= 100; n++) {
+        double before = tools.division.hardness;
+        tools.follower[0].felt = (lar_tool_felt){.depth = 0.6 * ball.radius, .steps = 1};
+        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
+        assert_below(tools.division.hardness, exp(n * SECONDS / 1e-3) * 1.001);
+        assert_true(tools.division.hardness > before || before == LAR_HARDNESS_MOST);
+        assert_true(tools.division.parts * tools.division.parts >= tools.division.hardness);
     }
+    assert_true(tools.division.hardness == LAR_HARDNESS_MOST);
     for (int n = 0; n < 10000; n++) {
         tools.follower[0].felt = (lar_tool_felt){.steps = 1};
         lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
@@ -157,7 +155,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
-        cmocka_unit_test(hardness_follows_the_depth),
+        cmocka_unit_test(hardness_grows_with_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
