@@ -24,34 +24,77 @@ static int common_nodes(const int32_t a[4], const int32_t b[4], int common[4]) {
     return count;
 }
 
-/* Whether a plane divides the faces, across the way from the middle of the one to that of the
- * other, or through the edge that they share: so it does for nearly all pairs, at a small part of
- * the work. Corners are given from a corner of `a`. */
+/* Compares, where fmin and fmax would be calls: most pairs end here. */
+static double least(const double (*x)[3], const int32_t face[4], int i) {
+    const double one = x[face[0]][i] < x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
+    const double other = x[face[2]][i] < x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
+    return one < other ? one : other;
+}
+
+static double most(const double (*x)[3], const int32_t face[4], int i) {
+    const double one = x[face[0]][i] > x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
+    const double other = x[face[2]][i] > x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
+    return one > other ? one : other;
+}
+
+static bool boxes_apart(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
+    for (int i = 0; i < 3; i++)
+        if (least(x, b, i) - most(x, a, i) > gap || least(x, a, i) - most(x, b, i) > gap)
+            return true;
+    return false;
+}
+
+/* Whether a plane across `way` divides the faces, `b` in front of it. */
+static bool divides(const double way[3], const double a[4][3], const double b[4][3], bool touching,
+                    double gap) {
+    double front = lar_dot(way, a[0]), back = lar_dot(way, b[0]), square = 0;
+    for (int k = 0; k < 4; k++) {
+        const double of_a = lar_dot(way, a[k]), of_b = lar_dot(way, b[k]);
+        const double far = lar_dot(b[k], b[k]);
+        front = of_a > front ? of_a : front;
+        back = of_b < back ? of_b : back;
+        square = far > square ? far : square;
+    }
+    const double length = lar_length(way), rounding = 1e-12 * sqrt(square);
+    if (!(length > rounding)) return false;
+    return back - front > length * (touching ? -rounding : gap);
+}
+
+/* The way across a face that leads towards `to`. */
+static void way_across(const double face[4][3], const double to[3], double way[3]) {
+    double along[3], across[3];
+    lar_minus(face[2], face[0], along);
+    lar_minus(face[3], face[1], across);
+    lar_cross(along, across, way);
+    const double sign = lar_dot(way, to) < 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++) way[i] *= sign;
+}
+
+/* Whether a plane is found that divides the faces: across the way from the middle of the one to
+ * that of the other, or through the edge that they share, or along one of them. So it is for nearly
+ * all other pairs, at a small part of the work. Corners are given from a corner of `a`. */
 static bool divided(const double a[4][3], const double b[4][3], int shared, const int common[4],
                     double gap) {
-    double way[3] = {0};
+    double way[3] = {0}, across[3];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 4; k++) way[i] += b[k][i] - a[k][i];
-    if (shared == 2) {
-        double edge[3];
-        lar_minus(a[common[1]], a[common[0]], edge);
-        const double along = lar_dot(way, edge) / lar_dot(edge, edge);
-        for (int i = 0; i < 3; i++) way[i] -= along * edge[i];
-    }
-    double front = -INFINITY, back = INFINITY, size = 0;
-    for (int k = 0; k < 4; k++) {
-        front = fmax(front, lar_dot(way, a[k]));
-        back = fmin(back, lar_dot(way, b[k]));
-        size = fmax(size, fmax(lar_length(a[k]), lar_length(b[k])));
-    }
-    const double length = lar_length(way), rounding = 1e-12 * size;
-    if (!(length > rounding)) return false;
-    return back - front > length * (shared > 0 ? -rounding : gap);
+    if (shared != 2 && divides(way, a, b, shared > 0, gap)) return true;
+    way_across(a, way, across);
+    if (divides(across, a, b, shared > 0, gap)) return true;
+    way_across(b, way, across);
+    if (divides(across, a, b, shared > 0, gap)) return true;
+    if (shared != 2) return false;
+    double edge[3];
+    lar_minus(a[common[1]], a[common[0]], edge);
+    const double along = lar_dot(way, edge) / lar_dot(edge, edge);
+    for (int i = 0; i < 3; i++) way[i] -= along * edge[i];
+    return divides(way, a, b, true, gap);
 }
 
 double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
     double at[4][3], bt[4][3], deepest = 0;
     int common[4];
+    if (boxes_apart(x, a, b, gap)) return 0;
     const int shared = common_nodes(a, b, common);
     for (int k = 0; k < 4; k++) {
         lar_minus(x[a[k]], x[a[0]], at[k]);
