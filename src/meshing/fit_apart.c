@@ -15,7 +15,7 @@
 
 /* Faces that share no node keep so far apart, so that no rounding in a file makes them cross; a
  * watched node moves no farther in a round, for which the faces near it are listed [cells]. */
-static const double GAP = 0.01, LEASH = 0.3;
+static const double GAP = 0.01, LEASH = 0.5;
 /* Faces that come so near, and so many rings of faces around them, are watched as soon as some
  * cross: they may be the next. */
 static const double WARY = 0.15;

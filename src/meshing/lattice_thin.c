@@ -16,7 +16,7 @@ static const double REACH = 1.5;
  * other in many places; thinner parts would be elements that ask for a short time step. More than
  * a cell for slots: those that lie across the axes shall still have cells that hang together by
  * faces. */
-static const double SLOT_LEAST = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
+static const double SLOT_LEAST = 0.12, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
 static const double PART_LEAST = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
 
 /* Where a ball touches the surface a second time it must be so far on its other side: the cosine of
