@@ -24,9 +24,9 @@ enum { RINGS = 2 };
 static const double ALIKE = 0.8;
 
 void lar_fit_apart_clear(lar_fit_apart *apart) {
-    void *const owned[] = {apart->face,    apart->start, apart->around,
-                           apart->watched, apart->from,  apart->near_start,
-                           apart->near,    apart->awake, apart->crosses};
+    void *const owned[] = {apart->face,    apart->start,      apart->around, apart->watched,
+                           apart->from,    apart->near_start, apart->near,   apart->awake,
+                           apart->crosses, apart->box};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     *apart = (lar_fit_apart){0};
 }
@@ -39,12 +39,13 @@ lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
     if (status) return status;
     apart->face = lar_calloc((size_t)apart->count, sizeof *apart->face);
     apart->crosses = lar_calloc((size_t)apart->count, sizeof *apart->crosses);
+    apart->box = lar_calloc((size_t)apart->count, sizeof *apart->box);
     apart->near_start = lar_calloc((size_t)apart->count + 1, sizeof *apart->near_start);
     apart->watched = lar_calloc(nodes, sizeof *apart->watched);
     apart->awake = lar_calloc(nodes, sizeof *apart->awake);
     apart->from = lar_calloc(nodes, sizeof *apart->from);
-    bool ready = apart->face && apart->crosses && apart->near_start && apart->watched &&
-                 apart->awake && apart->from;
+    bool ready = apart->face && apart->crosses && apart->box && apart->near_start &&
+                 apart->watched && apart->awake && apart->from;
     for (int32_t f = 0; ready && f < apart->count; f++)
         for (int a = 0; a < 4; a++)
             apart->face[f][a] = work->mesh->element[outer[f] / 6][lar_face_node[outer[f] % 6][a]];
@@ -105,6 +106,20 @@ static bool is_watched(const lar_fit_apart *apart, const int32_t face[4]) {
            apart->watched[face[3]];
 }
 
+/* By comparisons: fmin and fmax would be calls, for every step that is tried. */
+static void find_box(const lar_fit_work *work, int32_t f) {
+    double(*box)[3] = work->apart.box[f];
+    const int32_t *node = work->apart.face[f];
+    for (int i = 0; i < 3; i++) {
+        box[0][i] = box[1][i] = work->x[node[0]][i];
+        for (int a = 1; a < 4; a++) {
+            const double x = work->x[node[a]][i];
+            box[0][i] = x < box[0][i] ? x : box[0][i];
+            box[1][i] = x > box[1][i] ? x : box[1][i];
+        }
+    }
+}
+
 /* The faces that each face with a watched node may meet in this round. */
 static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
@@ -115,6 +130,7 @@ static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_status status = lar_face_boxes_create(
         (const double(*)[3])work->x, (const int32_t(*)[4])apart->face, apart->count, &boxes, error);
     for (int32_t f = 0; !status && f < apart->count; f++) {
+        find_box(work, f);
         list.face = f;
         if (is_watched(apart, apart->face[f]))
             lar_face_boxes_near(&boxes, f, 2 * LEASH + GAP, add_near, &list);
@@ -134,22 +150,48 @@ lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error) {
     return apart->any ? list_near(work, error) : LAR_OK;
 }
 
-bool lar_fit_apart_allows(lar_fit_work *work, int32_t n, const double x[3]) {
+static bool boxes_near(const double (*a)[3], const double (*b)[3]) {
+    for (int i = 0; i < 3; i++)
+        if (a[0][i] - b[1][i] > GAP || b[0][i] - a[1][i] > GAP) return false;
+    return true;
+}
+
+static bool is_clear(const lar_fit_work *work, int32_t n) {
     const lar_fit_apart *apart = &work->apart;
-    double away[3], before[3];
-    lar_minus(x, apart->from[n], away);
-    if (!(lar_length(away) < LEASH)) return false;
-    memcpy(before, work->x[n], sizeof before);
-    memcpy(work->x[n], x, sizeof before);
-    bool clear = true;
-    for (int32_t i = apart->start[n]; clear && i < apart->start[n + 1]; i++) {
+    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++) {
         const int32_t f = apart->around[i] / 4;
-        for (int32_t k = apart->near_start[f]; clear && k < apart->near_start[f + 1]; k++)
-            clear = !(lar_faces_cross((const double(*)[3])work->x, apart->face[f],
-                                      apart->face[apart->near[k]], GAP) > 0);
+        for (int32_t k = apart->near_start[f]; k < apart->near_start[f + 1]; k++) {
+            const int32_t g = apart->near[k];
+            if (boxes_near((const double(*)[3])apart->box[f], (const double(*)[3])apart->box[g]) &&
+                lar_faces_cross((const double(*)[3])work->x, apart->face[f], apart->face[g], GAP) >
+                    0)
+                return false;
+        }
     }
-    memcpy(work->x[n], before, sizeof before);
-    return clear;
+    return true;
+}
+
+static void place(lar_fit_work *work, int32_t n, const double x[3]) {
+    const lar_fit_apart *apart = &work->apart;
+    memcpy(work->x[n], x, sizeof work->x[n]);
+    if (!apart->any) return;
+    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++)
+        find_box(work, apart->around[i] / 4);
+}
+
+bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]) {
+    const lar_fit_apart *apart = &work->apart;
+    const bool watched = apart->any && apart->watched[n];
+    double away[3], before[3];
+    if (watched) {
+        lar_minus(x, apart->from[n], away);
+        if (!(lar_length(away) < LEASH)) return false;
+    }
+    memcpy(before, work->x[n], sizeof before);
+    place(work, n, x);
+    if (!watched || is_clear(work, n)) return true;
+    place(work, n, before);
+    return false;
 }
 
 /* ---- after a round -------------------------------------------------------------------------- */

@@ -155,7 +155,6 @@ static double move(lar_fit_work *work, int32_t n) {
     newton_step(&all, step);
     double length = lar_length(step);
     if (!(length > 0.1 * STILL)) return 0;
-    const bool watched = work->apart.any && work->apart.watched[n];
     int blocked = 0;
     double part = length > LONGEST ? LONGEST / length : 1;
     for (int halving = 0; halving < HALVINGS; halving++, part *= 0.5) {
@@ -167,12 +166,8 @@ static double move(lar_fit_work *work, int32_t n) {
         const double value =
             quadratic(&boundary, tried) + elements_value(work, n, x) + slots_value(work, n, x);
         if (!(value <= all.value + 1e-3 * lar_dot(all.gradient, tried))) continue;
-        if (watched && !lar_fit_apart_allows(work, n, x)) {
-            if (++blocked == BLOCKED) return 0;
-            continue;
-        }
-        for (int i = 0; i < 3; i++) work->x[n][i] = x[i];
-        return part * length;
+        if (lar_fit_apart_move(work, n, x)) return part * length;
+        if (++blocked == BLOCKED) return 0;
     }
     return 0;
 }

@@ -62,6 +62,7 @@ typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
     int32_t *start, *around;    /* per node: face * 4 + corner */
     bool *crosses;              /* per face */
+    double (*box)[2][3];        /* per face, lower and upper, once nodes are watched */
     bool *watched;              /* per node: its faces must stay clear of others */
     bool any, all, strict;      /* of nodes; of neighbours that look the same way too */
     int32_t *near_start, *near; /* per face with a watched node: the faces that it may meet */
@@ -120,8 +121,8 @@ lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error);
 /* After the round: when outer faces cross, everything is as it was before it, more nodes are
  * watched, and it is to be done *again. */
 lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error);
-/* Whether a watched node may go to `x`. */
-bool lar_fit_apart_allows(lar_fit_work *work, int32_t n, const double x[3]);
+/* Moves a node to `x`; a watched one only when its faces stay clear of others: whether it did. */
+bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]);
 
 /* Lists, per node, of the places that name it: node[i * stride + a] for i < count and a < per, as
  * i * per + a, in that order. False: no memory. */
