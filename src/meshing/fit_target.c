@@ -21,43 +21,16 @@ static const double CUT_WEIGHT = 4;
 
 /* ---- trees ---------------------------------------------------------------------------------- */
 
-/* The triangles between each two sides, side by side: looked through once for all pairs. */
-enum { SIDES = LAR_REGION_CUT + LAR_CUTS };
-
-typedef struct sorted_triangles {
-    int32_t *start;    /* [SIDES * SIDES + 1] by the lower side, then the higher one */
-    int32_t *triangle; /* ascending */
-} sorted_triangles;
-
-/* Of nested surfaces the region behind says all (lar_boundary_between). */
-static size_t sides_key(const lar_boundary *boundary, uint16_t a, uint16_t b) {
-    const size_t low = boundary->nested ? 0 : a < b ? a : b, high = a < b ? b : a;
-    return low * SIDES + high;
-}
-
-static bool sort_triangles(const lar_boundary *boundary, sorted_triangles *sorted) {
-    const int32_t count = boundary->triangles.triangle_count;
-    sorted->start = lar_calloc(SIDES * SIDES + 2, sizeof *sorted->start);
-    sorted->triangle = lar_calloc((size_t)count, sizeof *sorted->triangle);
-    if (!sorted->start || !sorted->triangle) return false;
-    for (int32_t t = 0; t < count; t++)
-        sorted->start[sides_key(boundary, boundary->side[t][0], boundary->side[t][1]) + 2]++;
-    for (size_t k = 1; k < SIDES * SIDES + 2; k++) sorted->start[k] += sorted->start[k - 1];
-    for (int32_t t = 0; t < count; t++) {
-        const size_t key = sides_key(boundary, boundary->side[t][0], boundary->side[t][1]);
-        sorted->triangle[sorted->start[key + 1]++] = t;
-    }
-    return true;
-}
-
-/* What stands for the boundary between a and b where there are no triangles between them, since a
- * gap or a third region between them is thinner than a cell: all of either. */
+/* What stands for the boundary between a and b: the triangles between them; where there are none,
+ * since a gap or a third region between them is thinner than a cell, all of either. */
 static int32_t choose_triangles(const lar_fit_work *work, const uint16_t region[2],
                                 int32_t *chosen) {
     const lar_boundary *boundary = work->boundary;
     const int32_t triangles = boundary->triangles.triangle_count;
     int32_t count = 0;
     for (int32_t t = 0; t < triangles; t++)
+        if (lar_boundary_between(boundary, t, region[0], region[1])) chosen[count++] = t;
+    for (int32_t t = 0; count == 0 && t < triangles; t++)
         for (int k = 0; k < 2; k++)
             if (boundary->side[t][k] != 0 &&
                 (boundary->side[t][k] == region[0] || boundary->side[t][k] == region[1])) {
@@ -69,43 +42,29 @@ static int32_t choose_triangles(const lar_fit_work *work, const uint16_t region[
 
 typedef struct planting {
     lar_fit_work *work;
-    sorted_triangles sorted;
     bool failed; /* atomic */
 } planting;
 
-static bool plant_tree(const planting *all, lar_fit_pair *pair) {
-    const lar_triangles *triangles = &all->work->boundary->triangles;
-    const size_t key = sides_key(all->work->boundary, pair->region[0], pair->region[1]);
-    const int32_t first = all->sorted.start[key];
-    int32_t count = all->sorted.start[key + 1] - first, *chosen = NULL;
-    bool ready = true;
-    if (count == 0) {
-        chosen = lar_calloc((size_t)triangles->triangle_count, sizeof *chosen);
-        ready = chosen != NULL;
-        if (ready) count = choose_triangles(all->work, pair->region, chosen);
-    }
-    const int32_t *index = chosen ? chosen : &all->sorted.triangle[first];
-    ready = ready &&
-            (count == 0 || !lar_triangle_tree_create(triangles, index, count, &pair->tree, NULL));
-    free(chosen);
-    return ready;
-}
-
 static void plant_trees(void *context, int32_t first, int32_t end) {
     planting *all = context;
-    for (int32_t p = first; p < end; p++)
-        if (!plant_tree(all, &all->work->pair[p]))
-            __atomic_store_n(&all->failed, true, __ATOMIC_RELAXED);
+    const lar_triangles *triangles = &all->work->boundary->triangles;
+    int32_t *chosen = lar_calloc((size_t)triangles->triangle_count, sizeof *chosen);
+    bool ready = chosen != NULL;
+    for (int32_t p = first; ready && p < end; p++) {
+        lar_fit_pair *pair = &all->work->pair[p];
+        const int32_t count = choose_triangles(all->work, pair->region, chosen);
+        ready =
+            count == 0 || !lar_triangle_tree_create(triangles, chosen, count, &pair->tree, NULL);
+    }
+    if (!ready) __atomic_store_n(&all->failed, true, __ATOMIC_RELAXED);
+    free(chosen);
 }
 
 lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
     enum { PORTION = 4 };
     const size_t bytes = (size_t)work->boundary->triangles.triangle_count * sizeof(int32_t);
     planting all = {.work = work};
-    all.failed = !sort_triangles(work->boundary, &all.sorted);
-    if (!all.failed) lar_share(work->pair_count, PORTION, plant_trees, &all);
-    free(all.sorted.start);
-    free(all.sorted.triangle);
+    lar_share(work->pair_count, PORTION, plant_trees, &all);
     if (!all.failed) return LAR_OK;
     return lar_fail_memory(error, bytes, "the triangles between two regions");
 }
