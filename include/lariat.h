@@ -237,6 +237,8 @@ typedef struct lar_mesh_quality {
     double deviation_mean;      /* between both surfaces, both ways, by area [m] */
     double deviation_95;        /* 95 % of the area is nearer [m] */
     double deviation_most;      /* the largest: Hausdorff distance [m] */
+    int32_t crossings;          /* pairs of outer faces that go through each other */
+    double crossing_depth;      /* of the deepest of them [m]; 0: there is none */
 } lar_mesh_quality;
 
 /* Compares a model's mesh with a surface (.stl .obj .vtk .vtp, in the model's metres times

@@ -189,6 +189,7 @@ void info_report_table(const info_report *report) {
            info->upper[0], info->upper[1], info->upper[2]);
     printf("%-17s%.4g m^3, %.4g kg\n", "volume, mass", info->volume, info->mass);
     cli_print_deviation(&report->quality);
+    cli_print_crossings(&report->quality);
     printf("%-17s%.4g m, mean %.4g m\n", "shortest edge", info->shortest_edge,
            report->quality.mean_edge);
     printf("%-17smean %.3f, worst %.3f (element %" PRId64 "); a box has 1\n", "scaled Jacobian",

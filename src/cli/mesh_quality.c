@@ -84,6 +84,18 @@ void cli_print_deviation(const lar_mesh_quality *quality) {
     putchar('\n');
 }
 
+void cli_print_crossings(const lar_mesh_quality *quality) {
+    printf("%-17s", "crossing");
+    if (quality->crossings == 0) {
+        printf("none: no outer face goes through another one\n");
+        return;
+    }
+    printf("%d pair%s of outer faces go%s through each other, by up to ", (int)quality->crossings,
+           quality->crossings == 1 ? "" : "s", quality->crossings == 1 ? "es" : "");
+    print_distance(quality, quality->crossing_depth);
+    putchar('\n');
+}
+
 void cli_write_quality(json_writer *json, const lar_mesh_quality *quality) {
     json_open(json, "quality", '{');
     json_open(json, "jacobian_histogram", '[');
@@ -97,6 +109,8 @@ void cli_write_quality(json_writer *json, const lar_mesh_quality *quality) {
     json_number(json, "deviation_mean", quality->deviation_mean);
     json_number(json, "deviation_95", quality->deviation_95);
     json_number(json, "deviation_max", quality->deviation_most);
+    json_integer(json, "crossings", quality->crossings);
+    json_number(json, "crossing_depth", quality->crossing_depth);
     json_close(json);
 }
 

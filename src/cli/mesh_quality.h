@@ -18,6 +18,8 @@ cli_measure cli_volume(double cubic_metres);
 void cli_print_jacobians(const lar_mesh_quality *quality);
 /* Volumes and distances to the true surface; nothing where there is none. */
 void cli_print_deviation(const lar_mesh_quality *quality);
+/* Outer faces that go through each other, or that there are none. */
+void cli_print_crossings(const lar_mesh_quality *quality);
 void cli_write_quality(json_writer *json, const lar_mesh_quality *quality);
 
 /* The model's speed on this machine, or why it has none. */

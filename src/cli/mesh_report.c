@@ -159,6 +159,7 @@ void mesh_report_table(const mesh_report *report) {
     print_cleaning(info);
     print_support(report);
     cli_print_deviation(&info->quality);
+    cli_print_crossings(&info->quality);
     printf("%-17smean %.3f, worst %.3f (element %" PRId32 "); a box has 1\n", "scaled Jacobian",
            model->scaled_jacobian_mean, model->scaled_jacobian_min, model->scaled_jacobian_worst);
     cli_print_jacobians(&info->quality);

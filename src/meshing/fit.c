@@ -6,6 +6,7 @@
  *     planes at the true boundary, from where faces and nodes are    fit_target.c
  *     offsets of these planes, so that regions keep their volumes    fit_volume.c
  *     some sweeps of Newton steps, node by node                      fit_sweep.c
+ *     the same again, watched, where outer faces cross               fit_apart.c
  *     ... and again, until the nodes are still
  */
 #include <math.h>
@@ -23,7 +24,7 @@ static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 /* Rounds of some sweeps each. From BALANCE on volumes are balanced; from STAND on the planes stand,
  * so that points of something thin, which are drawn to its one side now and to its other one then,
  * come to rest and volumes with them. */
-enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9 };
+enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
@@ -34,6 +35,19 @@ static lar_status check_start(lar_fit_work *work, lar_error *error) {
     work->law.floor = fmin(work->law.floor, 0.9 * least);
     work->law.aim = fmax(work->law.aim, work->law.floor);
     return LAR_OK;
+}
+
+/* A round's sweeps, until no outer faces cross; where they never cease to, as if there were none.
+ */
+static lar_status sweep_apart(lar_fit_work *work, lar_error *error) {
+    lar_status status = lar_fit_apart_begin(work, error);
+    bool again = true;
+    for (int attempt = 0; !status && again && attempt < ATTEMPTS; attempt++) {
+        for (int sweep = 0; sweep < SWEEPS; sweep++)
+            if (lar_fit_sweep(work) == 0) break;
+        status = lar_fit_apart_check(work, &again, error);
+    }
+    return status;
 }
 
 static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_error *error) {
@@ -47,8 +61,8 @@ static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_er
         }
         if (round < STAND) lar_fit_targets_renew(work);
         lar_fit_wake_boundary(work);
-        for (int sweep = 0; sweep < SWEEPS; sweep++)
-            if (lar_fit_sweep(work) == 0) break;
+        lar_status status = sweep_apart(work, error);
+        if (status != LAR_OK) return status;
     }
     return LAR_OK;
 }

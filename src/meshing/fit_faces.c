@@ -7,9 +7,8 @@
 
 /* ---- which elements and faces are around each node ------------------------------------------ */
 
-/* Lists, per node, of the places that name it: node[i] for i < count, in that order. */
-static bool list_around(const int32_t *node, size_t stride, size_t count, int per, int32_t nodes,
-                        int32_t **start, int32_t **around) {
+bool lar_fit_list_around(const int32_t *node, size_t stride, size_t count, int per, int32_t nodes,
+                         int32_t **start, int32_t **around) {
     *start = lar_calloc((size_t)nodes + 1, sizeof **start);
     *around = lar_calloc(count * (size_t)per, sizeof **around);
     if (!*start || !*around) return false;
@@ -155,12 +154,12 @@ static lar_status list_faces(lar_fit_work *work, lar_error *error) {
 static bool list_neighbours(lar_fit_work *work, size_t slots) {
     const lar_mesh *mesh = work->mesh;
     const size_t stride = sizeof *work->face / sizeof(int32_t);
-    return list_around(mesh->element[0], 8, (size_t)mesh->element_count, 8, mesh->node_count,
-                       &work->element_start, &work->element_around) &&
-           list_around(work->face[0].node, stride, (size_t)work->face_count, 4, mesh->node_count,
-                       &work->face_start, &work->face_around) &&
-           list_around(slots > 0 ? work->slot[0] : NULL, 4, slots, 4, mesh->node_count,
-                       &work->slot_start, &work->slot_around);
+    return lar_fit_list_around(mesh->element[0], 8, (size_t)mesh->element_count, 8,
+                               mesh->node_count, &work->element_start, &work->element_around) &&
+           lar_fit_list_around(work->face[0].node, stride, (size_t)work->face_count, 4,
+                               mesh->node_count, &work->face_start, &work->face_around) &&
+           lar_fit_list_around(slots > 0 ? work->slot[0] : NULL, 4, slots, 4, mesh->node_count,
+                               &work->slot_start, &work->slot_around);
 }
 
 lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
@@ -184,7 +183,7 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mes
     if (status == LAR_OK) status = list_faces(work, error);
     if (status == LAR_OK && !list_neighbours(work, (size_t)draft->slot_count))
         status = lar_fail_memory(error, nodes * 12 * sizeof(int32_t), "the elements around nodes");
-    return status;
+    return status ? status : lar_fit_apart_create(work, error);
 }
 
 void lar_fit_work_clear(lar_fit_work *work) {
@@ -195,6 +194,7 @@ void lar_fit_work_clear(lar_fit_work *work) {
         work->slot_start, work->slot_around, work->point,         work->pair,
         work->region};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    lar_fit_apart_clear(&work->apart);
     memset(work, 0, sizeof *work);
 }
 

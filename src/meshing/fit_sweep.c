@@ -9,7 +9,7 @@
 
 /* Steps below it [cells] do not wake the neighbours; none is longer than the other. */
 static const double STILL = 5e-3, LONGEST = 0.35;
-enum { HALVINGS = 12 };
+enum { HALVINGS = 12, BLOCKED = 3 }; /* of a step; because faces would cross */
 
 /* ---- the energy around a node --------------------------------------------------------------- */
 
@@ -155,6 +155,7 @@ static double move(lar_fit_work *work, int32_t n) {
     newton_step(&all, step);
     double length = lar_length(step);
     if (!(length > 0.1 * STILL)) return 0;
+    int blocked = 0;
     double part = length > LONGEST ? LONGEST / length : 1;
     for (int halving = 0; halving < HALVINGS; halving++, part *= 0.5) {
         double tried[3], x[3];
@@ -165,8 +166,8 @@ static double move(lar_fit_work *work, int32_t n) {
         const double value =
             quadratic(&boundary, tried) + elements_value(work, n, x) + slots_value(work, n, x);
         if (!(value <= all.value + 1e-3 * lar_dot(all.gradient, tried))) continue;
-        for (int i = 0; i < 3; i++) work->x[n][i] = x[i];
-        return part * length;
+        if (lar_fit_apart_move(work, n, x)) return part * length;
+        if (++blocked == BLOCKED) return 0;
     }
     return 0;
 }

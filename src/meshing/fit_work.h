@@ -6,6 +6,7 @@
  *     fit_target.c   where faces and nodes shall lie: planes at the true boundary
  *     fit_volume.c   how far off the boundary they shall lie, so that regions keep their volumes
  *     fit_sweep.c    nodes move, one after the other
+ *     fit_apart.c    no outer face goes through another one
  *     fit_quality.c  the energy of a corner
  */
 #ifndef LAR_MESHING_FIT_WORK_H
@@ -56,6 +57,19 @@ typedef struct lar_fit_region {
     double missing, weight;
 } lar_fit_region;
 
+/* What keeps outer faces apart (fit_apart.c). */
+typedef struct lar_fit_apart {
+    int32_t (*face)[4], count;
+    int32_t *start, *around;    /* per node: face * 4 + corner */
+    bool *crosses;              /* per face */
+    double (*box)[2][3];        /* per face, lower and upper, once nodes are watched */
+    bool *watched;              /* per node: its faces must stay clear of others */
+    bool any, all, strict;      /* of nodes; of neighbours that look the same way too */
+    int32_t *near_start, *near; /* per face with a watched node: the faces that it may meet */
+    double (*from)[3];          /* per node: where it was before this round, */
+    bool *awake;                /* and whether it was worth moving */
+} lar_fit_apart;
+
 typedef struct lar_fit_work {
     const lar_boundary *boundary;
     const lar_mesh *mesh; /* its elements; positions are in `x` */
@@ -76,6 +90,7 @@ typedef struct lar_fit_work {
     lar_fit_law law, slot_law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
     bool *awake;                     /* per node: worth moving */
+    lar_fit_apart apart;
 } lar_fit_work;
 
 /* Fills a zeroed one. The draft and the boundary must outlive it. */
@@ -97,6 +112,22 @@ void lar_fit_wake_boundary(lar_fit_work *work);
 
 /* Moves every node that is awake once; the number that moved. */
 int32_t lar_fit_sweep(lar_fit_work *work);
+
+/* Makes apart's lists; all are freed with `work`. */
+lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error);
+void lar_fit_apart_clear(lar_fit_apart *apart);
+/* Notes where a round of sweeps begins. */
+lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error);
+/* After the round: when outer faces cross, everything is as it was before it, more nodes are
+ * watched, and it is to be done *again. */
+lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error);
+/* Moves a node to `x`; a watched one only when its faces stay clear of others: whether it did. */
+bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]);
+
+/* Lists, per node, of the places that name it: node[i * stride + a] for i < count and a < per, as
+ * i * per + a, in that order. False: no memory. */
+bool lar_fit_list_around(const int32_t *node, size_t stride, size_t count, int per, int32_t nodes,
+                         int32_t **start, int32_t **around);
 
 /* The least scaled Jacobian, the part of the elements above `bar`. */
 double lar_fit_least(const lar_fit_work *work, double bar, double *part_above);

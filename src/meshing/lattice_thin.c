@@ -12,11 +12,11 @@
 static const double REACH = 1.5;
 
 /* Slots from SLOT_LEAST on are widened to SLOT_WIDE, as far as the body beside them keeps
- * PART_KEPT; parts the same. Walls of narrower slots, fitted each to its own side, go through each
- * other in many places; thinner parts would be elements that ask for a short time step. More than
- * a cell for slots: those that lie across the axes shall still have cells that hang together by
- * faces. */
-static const double SLOT_LEAST = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
+ * PART_KEPT; parts the same. Narrower slots cost more in cells than they gain, and among several
+ * regions they take the cells of those that have but a few; thinner parts would be elements that
+ * ask for a short time step. More than a cell for slots: those that lie across the axes shall still
+ * have cells that hang together by faces. */
+static const double SLOT_LEAST = 0.12, SLOT_LEAST_REGIONS = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
 static const double PART_LEAST = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
 
 /* Where a ball touches the surface a second time it must be so far on its other side: the cosine of
@@ -229,9 +229,9 @@ typedef struct widening {
 
 /* How far the surface counts as moved [cells]: outwards when it is positive. A slot goes before a
  * part. */
-static double way_of(const lar_thin_place *place, double size) {
+static double way_of(const lar_thin_place *place, double least, double size) {
     const double slot = place->slot / size, part = place->part / size;
-    if (slot > SLOT_LEAST && slot < SLOT_WIDE && part > PART_KEPT)
+    if (slot > least && slot < SLOT_WIDE && part > PART_KEPT)
         return -fmin(SLOT_WIDE - slot, part - PART_KEPT) / 2;
     if (part > PART_LEAST && part < PART_WIDE && slot > SLOT_KEPT)
         return fmin(PART_WIDE - part, slot - SLOT_KEPT) / 2;
@@ -320,6 +320,7 @@ void lar_thin_changes_clear(lar_thin_changes *changes) {
 lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
                           const lar_lattice *lattice, lar_thin_changes *changes, lar_error *error) {
     if (!thin || thin->count == 0) return LAR_OK;
+    const double least = boundary->region_count > 1 ? SLOT_LEAST_REGIONS : SLOT_LEAST;
     widening w = {.boundary = boundary, .lattice = lattice};
     const size_t cells =
         (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
@@ -329,7 +330,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
     for (size_t c = 0; c < cells; c++) w.of[c] = -1;
     for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(lattice->axis[a], lattice->origin);
     for (size_t p = 0; !status && p < thin->count; p++) {
-        const double way = way_of(&thin->place[p], lattice->size);
+        const double way = way_of(&thin->place[p], least, lattice->size);
         if (way != 0 && !add_half_ball(&w, &thin->place[p], way))
             status =
                 lar_fail_memory(error, 2 * w.capacity * sizeof *w.fine, "what is thin of the body");

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "meshing/crossing.h"
 #include "meshing/deviation.h"
 #include "meshing/meshing.h"
 #include "model/model.h"
@@ -16,18 +17,33 @@ static double volume(const lar_mesh *mesh) {
     return sum;
 }
 
-static lar_status measure_deviation(const lar_mesh *mesh, const lar_triangles *surface,
-                                    lar_mesh_quality *quality, lar_error *error) {
-    int32_t *face = NULL, count = 0;
+static lar_status measure_deviation(const lar_mesh *mesh, const int32_t *face, int32_t count,
+                                    const lar_triangles *surface, lar_mesh_quality *quality,
+                                    lar_error *error) {
     lar_deviation deviation;
-    lar_status status = lar_mesh_boundary(mesh, &face, &count, error);
-    if (!status) status = lar_deviation_measure(mesh, face, count, surface, &deviation, error);
-    free(face);
+    lar_status status = lar_deviation_measure(mesh, face, count, surface, &deviation, error);
     if (status) return status;
     quality->deviation_mean = deviation.mean;
     quality->deviation_95 = deviation.most_95;
     quality->deviation_most = deviation.hausdorff;
     return LAR_OK;
+}
+
+static lar_status count_crossings(const lar_mesh *mesh, const int32_t *face, int32_t count,
+                                  lar_mesh_quality *quality, lar_error *error) {
+    lar_face_crossings found = {0};
+    int32_t(*node)[4] = lar_calloc((size_t)count, sizeof *node);
+    if (!node) return lar_fail_memory(error, (size_t)count * sizeof *node, "the outer faces");
+    for (int32_t f = 0; f < count; f++)
+        for (int a = 0; a < 4; a++)
+            node[f][a] = mesh->element[face[f] / 6][lar_face_node[face[f] % 6][a]];
+    lar_status status =
+        lar_faces_find_crossings((const double(*)[3])mesh->position, (const int32_t(*)[4])node,
+                                 count, 0, NULL, &found, error);
+    free(node);
+    quality->crossings = found.pairs;
+    quality->crossing_depth = found.deepest;
+    return status;
 }
 
 lar_status lar_quality_measure(const lar_mesh *mesh, const lar_triangles *surface,
@@ -39,7 +55,12 @@ lar_status lar_quality_measure(const lar_mesh *mesh, const lar_triangles *surfac
     quality->above_05 = jacobians.above_05;
     quality->mean_edge = lar_mesh_mean_edge(mesh);
     quality->volume = volume(mesh);
-    return surface ? measure_deviation(mesh, surface, quality, error) : LAR_OK;
+    int32_t *face = NULL, count = 0;
+    lar_status status = lar_mesh_boundary(mesh, &face, &count, error);
+    if (!status) status = count_crossings(mesh, face, count, quality, error);
+    if (!status && surface) status = measure_deviation(mesh, face, count, surface, quality, error);
+    free(face);
+    return status;
 }
 
 /* ---- of a model --------------------------------------------------------------------------- */

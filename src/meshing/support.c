@@ -21,13 +21,13 @@
 #include "meshing/pads.h"
 
 static const double TENTH = 0.1;
-/* What the pull would stretch a bar of the handle's cross-section by. */
+/* What the pull moves the handle by, as part of the body's length. Nothing else bounds it: what is
+ * taken from the handle's own cross-section, or from that of pads near it, is another on every
+ * mesh. */
+static const double MOVES = 0.02;
+/* Where nothing holds the body, and so nothing says how far it would move: what the pull would
+ * stretch a bar of the handle's cross-section by. */
 static const double STRETCH = 0.3;
-/* What the pull would move the handle by at most, as part of the body's length. Thin bodies that
- * are pulled across bend long before they stretch; and of most others, too, this is the less, so
- * that their pull does not go with the handle's cross-section and with the pads near it, which are
- * others on every mesh. */
-static const double BEND = 0.02;
 
 /* Sides by name, as direction: axis * 2, + 1 for the upper side. */
 enum { LEFT, RIGHT, BACK, FRONT, BOTTOM, TOP, SIDES };
@@ -309,9 +309,12 @@ static double rounded(double force) {
 
 static void choose_pull(choice *c, int side, const lar_motion *motion) {
     lar_support *support = &c->meshing->support;
-    double length = 0, force = 3 * mean_shear(c->meshing) * STRETCH * cross_section(c, side);
+    double length = 0, force;
     for (int i = 0; i < 3; i++) length = fmax(length, c->upper[i] - c->lower[i]);
-    if (motion->compliance > 0) force = fmin(force, BEND * length / motion->compliance);
+    if (motion->compliance > 0)
+        force = MOVES * length / motion->compliance;
+    else
+        force = 3 * mean_shear(c->meshing) * STRETCH * cross_section(c, side);
     if (!(force > 0)) return;
     support->handle = side_name[side];
     support->pull[side / 2] = (side % 2 ? 1 : -1) * rounded(force);

@@ -89,6 +89,11 @@ typedef struct lar_crossings {
     int32_t pair[2];       /* the triangles of the deepest one */
 } lar_crossings;
 
+/* The depth of two triangles, given by their corners from an origin near them; 0: they do not go
+ * through each other, or only as much as rounding makes of touching. With a `gap` above 0: how much
+ * nearer they are than that; it may find them nearer than they are where they lie askew. */
+double lar_triangle_overlap(const double a[3][3], const double b[3][3], double gap);
+
 lar_status lar_triangles_find_crossings(const lar_triangles *triangles, lar_crossings *crossings,
                                         lar_error *error);
 

@@ -38,9 +38,7 @@ static double overlap(const double axis[3], const double a[3][3], const double b
     return fmin(to[0] - from[1], to[1] - from[0]) / length;
 }
 
-/* Of two triangles given from an origin near them; 0: none, or only as much as rounding makes of
- * touching. */
-static double depth_of(const double a[3][3], const double b[3][3]) {
+double lar_triangle_overlap(const double a[3][3], const double b[3][3], double gap) {
     const double rounding = 1e-12; /* of their size */
     double e[3][3], f[3][3], square = 0;
     for (int k = 0; k < 3; k++) {
@@ -48,9 +46,9 @@ static double depth_of(const double a[3][3], const double b[3][3]) {
         lar_minus(b[(k + 1) % 3], b[k], f[k]);
         square = fmax(square, fmax(lar_dot(a[k], a[k]), lar_dot(b[k], b[k])));
     }
-    const double shortest = 1e-13 * square, touching = rounding * sqrt(square);
+    const double shortest = 1e-13 * square, apart = rounding * sqrt(square) - gap;
     double depth = INFINITY;
-    for (int test = 0; test < 11 && depth > touching; test++) {
+    for (int test = 0; test < 11 && depth > apart; test++) {
         double axis[3];
         if (test < 2)
             lar_cross(test ? f[0] : e[0], test ? f[1] : e[1], axis);
@@ -58,7 +56,7 @@ static double depth_of(const double a[3][3], const double b[3][3]) {
             lar_cross(e[(test - 2) / 3], f[(test - 2) % 3], axis);
         depth = fmin(depth, overlap(axis, a, b, shortest));
     }
-    return isfinite(depth) && depth > touching ? depth : 0;
+    return isfinite(depth) && depth > apart ? depth + gap : 0;
 }
 
 /* The same for two that lie on each other and look the same way, as the sides of two bodies do that
@@ -113,7 +111,8 @@ static bool compare(void *context, int32_t other) {
         lar_minus(s->surface->vertex[mine[k]], origin, a[k]);
         lar_minus(s->surface->vertex[its[k]], origin, b[k]);
     }
-    double depth = depth_of(a, b), lying = lying_depth(a, b);
+    double depth = lar_triangle_overlap((const double(*)[3])a, (const double(*)[3])b, 0),
+           lying = lying_depth(a, b);
     if (lying > s->harmless) depth = fmax(depth, lying);
     if (depth == 0) return true;
     lar_crossings *found = s->found;

@@ -95,13 +95,15 @@ fi
 expect 0 "$LARIAT" info Two_organs/Two_organs.yaml
 says '^title  *Two organs'
 says '^deviation  *mean'
+says '^crossing  *none'
 says '^speed  *[0-9.]* times as fast'
 says 'liver_left_kidney: [0-9]* faces'
 says 'support: [0-9]* nodes'
 expect 0 "$LARIAT" info Two_organs/Two_organs.yaml --json
 has_keys speed.why_not --numbers quality.jacobian_histogram.9 quality.above_02 quality.above_05 \
     quality.mean_edge quality.volume quality.true_volume quality.deviation_mean \
-    quality.deviation_95 quality.deviation_max speed.real_time_factor speed.wall_per_step_us
+    quality.deviation_95 quality.deviation_max quality.crossings quality.crossing_depth \
+    speed.real_time_factor speed.wall_per_step_us
 expect 0 "$LARIAT" info Two_organs/Two_organs.yaml --json --no-speed
 value_of speed.why_not >/dev/null 2>&1 && fail "the speed was measured with --no-speed"
 expect 0 "$LARIAT" info Two_organs/Two_organs.vtu --no-speed

@@ -3,6 +3,7 @@
 
 #include <locale.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "image_file.h"
 #include "lariat.h"
@@ -14,6 +15,7 @@
 #define RING   LAR_TEST_BUILD "/starter_ring.vtp"
 #define PAIR   LAR_TEST_BUILD "/starter_pair.nrrd"
 #define CUT    LAR_TEST_BUILD "/starter_cut.nrrd"
+#define ORGANS LAR_TEST_SHARED "/data/labels/totalseg_abdomen_pelvis_3mm.nii.gz"
 #define FOLDER LAR_TEST_BUILD "/starter/deep"
 
 static lar_error error;
@@ -131,6 +133,56 @@ static void a_pull_grows_and_lets_go(void **state) {
     assert_true(pulled > 5e-4 && pulled < 0.04);
     assert_below(after, 0.01 * pulled);
     lar_model_destroy(model);
+}
+
+/* The mean way of the handle while it is pulled, as part of the body's length. */
+static double way_of_handle(int32_t elements) {
+    const char *const path[] = {ORGANS}, *const pancreas[] = {"7"};
+    const lar_meshing_options options = {
+        .elements = elements, .labels = pancreas, .label_count = 1};
+    lar_meshing *meshing = NULL;
+    lar_model *model = NULL;
+    lar_simulation *simulation = NULL;
+    lar_model_info info;
+    const char *scene;
+    if (lar_meshing_create(path, 1, &options, &meshing, &error) ||
+        lar_meshing_write(meshing, FOLDER, &scene, &error) ||
+        lar_model_open(scene, &model, &error) || lar_model_inspect(model, &info, &error) ||
+        lar_simulation_create(model, NULL, &simulation, &error) ||
+        lar_simulation_advance(simulation, (uint64_t)(0.75 / info.time_step), &error))
+        fail_msg("%s", error.message);
+    double(*u)[3] = calloc((size_t)info.nodes, sizeof *u);
+    const lar_set *handle = lar_mesh_find_set(&model->mesh, "handle", LAR_SET_NODES);
+    double way = 0, length = 0;
+    assert_non_null(handle);
+    lar_simulation_displacements(simulation, u);
+    for (int32_t i = 0; i < handle->count; i++) way += u[handle->index[i]][1] / handle->count;
+    for (int i = 0; i < 3; i++) length = fmax(length, info.upper[i] - info.lower[i]);
+    free(u);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+    lar_meshing_destroy(meshing);
+    return way / length;
+}
+
+/* A pancreas has a thin end, whose elements have another cross-section on every mesh, and pads near
+ * it; the way is the same. */
+static void a_pull_is_alike_on_every_mesh(void **state) {
+    (void)state;
+    static const int32_t elements[] = {500, 1000, 2500};
+    if (access(ORGANS, R_OK) != 0) {
+        print_message("skipped: no shared data\n");
+        skip();
+    }
+#ifndef LAR_TEST_NIFTI
+    print_message("skipped: built without libnifti\n");
+    skip();
+#endif
+    for (size_t i = 0; i < sizeof elements / sizeof *elements; i++) {
+        const double way = way_of_handle(elements[i]);
+        if (!(fabs(way - 0.02) < 0.002))
+            fail_msg("%d elements: %.4f of the length", elements[i], way);
+    }
 }
 
 /* A thin ring bends easily and slowly; the scene pulls at it with less, and waits longer. */
@@ -340,6 +392,7 @@ static void numbers_have_a_point_everywhere(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
+                                       cmocka_unit_test(a_pull_is_alike_on_every_mesh),
                                        cmocka_unit_test(a_thin_body_is_at_rest_at_the_end),
                                        cmocka_unit_test(a_thin_body_bears_its_weight),
                                        cmocka_unit_test(a_long_title_is_cut_for_the_files),
