@@ -1,20 +1,20 @@
 /* The viewer: puts the parts together and runs the loop of animation frames. */
-import { Colours } from './colours';
+import { Colours } from './cards/colours';
 import { element } from './dom';
-import { ForceCard } from './forcecard';
-import { Hand } from './hand';
-import { Instrument } from './instrument';
-import { listenToKeys } from './keys';
-import { Hints, Trouble, note } from './notices';
-import { Panel, StateLine } from './panel';
-import { Pointer } from './pointer';
-import type { Status } from './protocol';
-import { ReplayBar } from './replaybar';
-import { SavedCard } from './savedcard';
-import { Session } from './session';
-import { ToolCard } from './toolcard';
-import { Transport } from './transport';
-import { View } from './view';
+import { ForceCard } from './cards/forcecard';
+import { Hand } from './hands/hand';
+import { Instrument } from './hands/instrument';
+import { listenToKeys } from './hands/keys';
+import { Hints, Trouble, note } from './cards/notices';
+import { Panel, StateLine } from './cards/panel';
+import { Pointer } from './hands/pointer';
+import type { Status } from './link/protocol';
+import { ReplayBar } from './cards/replaybar';
+import { SavedCard } from './cards/savedcard';
+import { Session } from './link/session';
+import { ToolCard } from './cards/toolcard';
+import { Transport } from './cards/transport';
+import { View } from './picture/view';
 import { publish } from './window';
 
 const trouble = new Trouble();

@@ -1,8 +1,8 @@
 /* window.lariat: what tests and curious people may read (docs/viewer.md). It changes nothing. */
-import type { ForceCard } from './forcecard';
-import type { Hand } from './hand';
-import type { Session } from './session';
-import type { View } from './view';
+import type { ForceCard } from './cards/forcecard';
+import type { Hand } from './hands/hand';
+import type { Session } from './link/session';
+import type { View } from './picture/view';
 
 export function publish(session: Session, view: View, hand: Hand, force: ForceCard): void {
     const state = {

@@ -12,12 +12,15 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera', 'range'];
+    const files = [
+        'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
+        'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+    ];
     await build({
-        entryPoints: names.map((name) => join(source, `${name}.ts`)),
+        entryPoints: files.map((file) => join(source, `${file}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
     });
-    for (const name of names) parts[name] = await import(join(folder, `${name}.mjs`));
+    for (const file of files) parts[file.split('/').pop()] = await import(join(folder, `${file}.mjs`));
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
 

@@ -1,8 +1,8 @@
 /* The bar of a recording that is played: where it is, to any place of it, and out of it. Play and pause are
  * those of the run. */
-import { element, write } from './dom';
-import type { Session } from './session';
-import type { Status } from './protocol';
+import { element, write } from '../dom';
+import type { Session } from '../link/session';
+import type { Status } from '../link/protocol';
 
 const SEEK_MS = 80;
 const HEARD_MS = 400; // the user's choice stands until the engine has heard of it

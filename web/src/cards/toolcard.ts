@@ -1,8 +1,8 @@
 /* The list of tools: the hand and the scene's instruments. */
 import { check, radios } from './colours';
-import { element, withUnit, write } from './dom';
-import type { Instrument } from './instrument';
-import type { Hello, Status, ToolStatus } from './protocol';
+import { element, withUnit, write } from '../dom';
+import type { Instrument } from '../hands/instrument';
+import type { Hello, Status, ToolStatus } from '../link/protocol';
 
 /* What a tool bears: its force of its limit, and how deep the tissue is in it. */
 export function load(tool: Pick<ToolStatus, 'force' | 'limit' | 'depth' | 'limited'>): string {

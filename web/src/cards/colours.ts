@@ -1,9 +1,9 @@
 /* What the colours show: tissue, or one of the engine's fields with its map, legend, range and unit. */
-import { element, withUnit, write } from './dom';
-import { STEPS, colourMap, css, organColour, processorColour, type MapName, type Rgb } from './palette';
+import { element, withUnit, write } from '../dom';
+import { STEPS, colourMap, css, organColour, processorColour, type MapName, type Rgb } from '../picture/palette';
 import { follow } from './range';
-import type { FieldInfo, Frame, Hello } from './protocol';
-import type { View } from './view';
+import type { FieldInfo, Frame, Hello } from '../link/protocol';
+import type { View } from '../picture/view';
 
 const PROCESSOR = 'processor';
 

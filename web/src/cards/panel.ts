@@ -1,6 +1,6 @@
 /* How the engine does: times, deadlines, rates. And what nobody must miss: slow motion. */
-import { element, number, write } from './dom';
-import type { Hello, Status } from './protocol';
+import { element, number, write } from '../dom';
+import type { Hello, Status } from '../link/protocol';
 
 /* Whether steps are computed in parts now. */
 export function division(parts: number): string {

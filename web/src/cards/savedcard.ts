@@ -1,7 +1,7 @@
 /* What was saved: states to go on from, and recordings to play. They outlive the session. */
-import { element } from './dom';
-import type { Session } from './session';
-import type { Hello, Status } from './protocol';
+import { element } from '../dom';
+import type { Session } from '../link/session';
+import type { Hello, Status } from '../link/protocol';
 
 export class SavedCard {
     private readonly card = element<HTMLDetailsElement>('saved');

@@ -3,9 +3,9 @@
  * the nearest point of the mesh's. The pulling is told at most 100 times a second. */
 import * as THREE from 'three';
 import { follow, nearestNode, type Hit } from './pick';
-import { TOOL_WORDS, type HandNews } from './protocol';
-import type { Session } from './session';
-import type { View } from './view';
+import { TOOL_WORDS, type HandNews } from '../link/protocol';
+import type { Session } from '../link/session';
+import type { View } from '../picture/view';
 
 const PULL_MS = 1000 / 100;
 

@@ -1,5 +1,5 @@
 /* Words for the user: hints of the first minute, short notes, and trouble with what to do about it. */
-import { element, write } from './dom';
+import { element, write } from '../dom';
 
 const NOTE_MS = 4500;
 

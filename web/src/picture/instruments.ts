@@ -2,7 +2,7 @@
  * is the origin, the shaft lies along +z, jaws open in the plane y = 0 towards -z. */
 import * as THREE from 'three';
 import { steel } from './steel';
-import { TOOL_WORDS, type Frame, type ToolInfo } from './protocol';
+import { TOOL_WORDS, type Frame, type ToolInfo } from '../link/protocol';
 
 const STEEL = [0.62, 0.65, 0.68] as const;
 const CHOSEN = [0.45, 0.75, 0.95] as const;

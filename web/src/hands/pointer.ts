@@ -8,7 +8,7 @@
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
 import { pick, type Hit } from './pick';
-import type { View } from './view';
+import type { View } from '../picture/view';
 
 type Doing = 'nothing' | 'pulling' | 'moving' | 'turning' | 'aside' | 'pinching';
 

@@ -1,8 +1,8 @@
 /* Moving one of the scene's instruments: with the pointer in a plane through its tip that is parallel
  * to the screen, with keys, with the slider of its opening. */
 import * as THREE from 'three';
-import type { Session } from './session';
-import type { View } from './view';
+import type { Session } from '../link/session';
+import type { View } from '../picture/view';
 
 const MOVE_MS = 1000 / 100;
 

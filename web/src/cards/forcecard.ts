@@ -1,7 +1,7 @@
 /* Force in newtons: number, bar with the peak of the last seconds, graph. */
-import { element, write } from './dom';
+import { element, write } from '../dom';
 import { ForceHistory, Graph, niceRange } from './graph';
-import type { Forces } from './protocol';
+import type { Forces } from '../link/protocol';
 
 export class ForceCard {
     readonly history = new ForceHistory();

@@ -1,7 +1,7 @@
 /* The hands of other viewers, each where it holds, with the arrow of its pull. */
 import * as THREE from 'three';
 import { OTHERS, PullPicture } from './arrow';
-import { TOOL_WORDS, type Frame, type Status } from './protocol';
+import { TOOL_WORDS, type Frame, type Status } from '../link/protocol';
 
 const HELD = 15; // word of a tool in a frame: what it holds
 

@@ -1,14 +1,14 @@
 /* The keyboard: everything that the mouse can do. The list for people is in index.html (#help). */
-import { element } from './dom';
-import type { Colours } from './colours';
+import { element } from '../dom';
+import type { Colours } from '../cards/colours';
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
-import type { ReplayBar } from './replaybar';
-import type { SavedCard } from './savedcard';
-import type { Panel } from './panel';
+import type { ReplayBar } from '../cards/replaybar';
+import type { SavedCard } from '../cards/savedcard';
+import type { Panel } from '../cards/panel';
 import { pick } from './pick';
-import type { Transport } from './transport';
-import type { View } from './view';
+import type { Transport } from '../cards/transport';
+import type { View } from '../picture/view';
 
 export interface Served {
     view: View;

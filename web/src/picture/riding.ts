@@ -5,7 +5,7 @@
  *
  * All arrays are made once; a frame only writes into them. 17,000 vertices take about a millisecond. */
 import { boxOf, type Drawn } from './drawn';
-import type { RidingMessage } from './protocol';
+import type { RidingMessage } from '../link/protocol';
 
 export class Riding implements Drawn {
     readonly nodes: number;

@@ -1,8 +1,8 @@
 /* The buttons of the run: play, step, reset, record, save, load, pace. */
-import { element, write } from './dom';
+import { element, write } from '../dom';
 import type { ReplayBar } from './replaybar';
-import type { Session } from './session';
-import type { Hello, Status } from './protocol';
+import type { Session } from '../link/session';
+import type { Hello, Status } from '../link/protocol';
 
 const PLAY = 'M7 4v16l13-8z';
 const PAUSE = 'M6 4h4v16H6zM14 4h4v16h-4z';

@@ -1,7 +1,7 @@
 /* Which point of the surface lies under the pointer: a ray against all drawn triangles. Asked for
  * when a button goes down and at most once a frame while the pointer moves, so brute force does. And
  * where the point that was hit is later, and which point of the mesh is nearest to it. */
-import type { Drawn } from './drawn';
+import type { Drawn } from '../picture/drawn';
 
 export interface Hit {
     point: [number, number, number];
