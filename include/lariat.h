@@ -813,7 +813,9 @@ typedef struct lar_server_options {
     const char *address; /* NULL: 127.0.0.1. Any other one needs a token */
     int port;            /* 0: a free one */
     const char *token;   /* what viewers must show: 8 to 128 letters, digits, - and _; NULL: none */
-    const char *folder;  /* of the viewer's files; NULL: those installed with the library */
+    const char *watch_token; /* who shows this one instead may watch and do nothing else; needs a
+                                token beside it; NULL: none */
+    const char *folder;      /* of the viewer's files; NULL: those installed with the library */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
 } lar_server_options;
@@ -827,6 +829,8 @@ LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
 /* "http://127.0.0.1:8000/", with "#token=..." behind when there is one; lives as long as the
  * server. */
 LAR_API const char *lar_server_url(const lar_server *server);
+/* The address for those who may only watch, likewise; "" without a watch_token. */
+LAR_API const char *lar_server_watch_url(const lar_server *server);
 LAR_API int32_t lar_server_viewers(const lar_server *server); /* connected now */
 LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
 /* 1 when the page that is served without a `folder` is there; 0 when a page stands in for it that

@@ -147,7 +147,22 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wi
         lar_viewer_note(server, viewer, error.message);
 }
 
+/* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
+ * grab that was refused: they need no sentence of their own. */
+static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (!viewer->watches || wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES)
+        return false;
+    if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
+    lar_viewer_note(server, viewer,
+                    "this viewer may only watch; to act on the run, open the address that has the "
+                    "other token");
+    if (wish->kind == LAR_WISH_GRAB)
+        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    return true;
+}
+
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (is_refused(server, viewer, wish)) return;
     switch (wish->kind) {
     case LAR_WISH_FRAME:
         ask_frame(viewer, wish);

@@ -277,6 +277,7 @@ static int send_hello(lar_server *server, lar_viewer *viewer) {
     json->empty = true;
     lar_json_raw(json, lar_json_data(&server->hello), server->hello.length);
     lar_json_integer(json, "viewer", (int64_t)viewer->number);
+    lar_json_boolean(json, "watches", viewer->watches);
     lar_json_end(json);
     return send_json(viewer, json);
 }

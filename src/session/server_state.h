@@ -60,6 +60,7 @@ typedef struct lar_viewer {
     uint64_t number;
     unsigned due;
     bool token_is_right;
+    bool watches; /* and may do nothing else */
     lar_close closing;
     bool told; /* why */
     char reason[LAR_REASON_BYTES];
@@ -90,7 +91,7 @@ struct lar_server {
     char host[LAR_HOST_BYTES]; /* as in addresses: "[::1]" */
     int port;
     bool loopback, any;
-    char *token, *save_folder, *url;
+    char *token, *watch_token, *save_folder, *url, *watch_url;
     char *stem; /* of names of files that are saved */
     lar_files files;
 

@@ -47,6 +47,7 @@ function start(): void {
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
+            element('watching').hidden = !hello.watches;
             force.clear();
             instrument.choose(-1);
             stopped = '';
@@ -58,7 +59,7 @@ function start(): void {
             view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
-            hints.start();
+            hints.start(session.watches);
         },
         riding(riding) {
             view.setRiding(riding);

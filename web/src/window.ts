@@ -16,6 +16,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get torn() { return session.torn; },
         get pictures() { return view.drawn; },
         get field() { return session.frame.field; },
+        get watches() { return session.watches; },
         get hand() { return hand.state; },
         get force() { return force.history.ago(0); },
         get forces() { return force.history.count; },

@@ -285,6 +285,23 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await v.until(() => window.lariat.others === 0, undefined, 20000);
 });
 
+test('who opens the second address can only watch', async () => {
+    const own = await view(model.scene, '--port', '0', '--token', 'for-the-surgeon', '--watch-token', 'for-the-class');
+    const w = await openPage(browser, own.url.replace('for-the-surgeon', 'for-the-class'));
+    assert.match(own.said(), /#token=for-the-class\nWho opens that one can only watch/);
+    assert.equal(await w.get('watches'), true);
+    // Past its own page: the engine itself refuses.
+    const answer = await w.page.evaluate(() => new Promise((done) => {
+        const socket = new WebSocket(`ws://${location.host}/socket?token=for-the-class`, 'lariat.1');
+        socket.onopen = () => socket.send('{"do":"pause"}');
+        socket.onmessage = ({ data }) => typeof data === 'string' && /"note"/.test(data) && done(data);
+    }));
+    assert.match(answer, /may only watch/);
+    assert.equal(await w.get('state'), 'playing');
+    await w.close();
+    await own.end();
+});
+
 test('instruments are chosen, moved and closed', async () => {
     await fresh();
     const tools = () => v.get('tools');

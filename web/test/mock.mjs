@@ -75,7 +75,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     const n = mesh.x.length / 3;
     const faces = mesh.f.length / 4;
@@ -92,6 +92,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
+        refused: [], // what those who may only watch have asked for
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -175,7 +176,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
             { name: 'energy', number: 16, title: 'strain energy density', unit: 'J/m³' },
             { name: 'processor', number: 32, title: 'processor', unit: '' },
         ],
-        saves: true, hand_force: 5, tool_speed: 1,
+        saves: true, hand_force: 5, tool_speed: 1, watches: false,
     });
     const status = () => ({
         kind: 'status', state: state.state, step: state.step, time: state.step * 1e-4, pace: state.pace,
@@ -298,11 +299,13 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const sockets = new WebSocketServer({ server, path: '/socket', handleProtocols: (p) => (p.has('lariat.1') ? 'lariat.1' : false) });
     const faults = []; // what a real server would have cut the viewer off for
     sockets.on('connection', (socket, request) => {
-        if (token && new URL(request.url, 'http://x').searchParams.get('token') !== token)
+        const asked = new URL(request.url, 'http://x').searchParams;
+        if (token && ![token, watchToken].includes(asked.get('token')))
             return socket.close(4001, 'The token is missing or wrong.');
+        const watches = asked.has('watch') || (watchToken !== null && asked.get('token') === watchToken);
         state.connections++;
         const say = (message) => socket.send(JSON.stringify(message));
-        say(hello());
+        say({ ...hello(), watches });
         socket.send(surfaceMessage());
         if (fine) socket.send(ridingMessage());
         say(status());
@@ -370,6 +373,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 },
                 seek: () => (state.replay.time = m.time),
             };
+            if (watches && !['frame', 'forces'].includes(m.do)) state.refused.push(m.do);
+            if (watches && !['frame', 'forces'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();
         });

@@ -23,7 +23,9 @@ export class Hints {
         ['look', this.touch ? 'Swipe beside it to look around, pinch to zoom' : 'Drag beside it to look around, wheel to zoom'],
     ];
 
-    start(): void {
+    /* `watches`: who may only watch is not told to pull. */
+    start(watches: boolean): void {
+        if (watches) this.steps.splice(0, 2, ['look', this.touch ? 'Swipe to look around, pinch to zoom' : 'Drag to look around, wheel to zoom']);
         this.silent = false;
         this.show();
     }

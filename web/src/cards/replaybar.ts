@@ -39,7 +39,7 @@ export class ReplayBar {
 
     /* By so many seconds. */
     seekBy(seconds: number): void {
-        if (!this.shown) return;
+        if (!this.shown || this.session.watches) return;
         const from = this.wanted ?? (performance.now() - this.movedAt < HEARD_MS ? this.slider.valueAsNumber : this.at);
         this.wanted = Math.max(0, Math.min(this.length, from + seconds));
         this.slider.value = String(this.wanted);
@@ -54,6 +54,7 @@ export class ReplayBar {
         const replay = status.replay;
         this.bar.hidden = !replay;
         if (!replay) return;
+        this.slider.disabled = element<HTMLButtonElement>('replay-leave').disabled = this.session.watches;
         this.length = replay.length;
         this.at = replay.time;
         write(element('replay-name'), replay.name);

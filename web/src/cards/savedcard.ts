@@ -42,6 +42,7 @@ export class SavedCard {
                 button.textContent = name;
                 button.title = `${act} ${name}`;
                 button.setAttribute('aria-label', button.title);
+                button.disabled = this.session.watches;
                 if (name === chosen) button.setAttribute('aria-current', 'true');
                 button.addEventListener('click', () => go(name));
                 return button;

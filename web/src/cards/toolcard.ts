@@ -37,6 +37,7 @@ export class ToolCard {
     }
 
     setHello(hello: Hello): void {
+        this.opening.disabled = hello.watches;
         const instruments = hello.tools.map((_, i) => i).filter((i) => !hello.hands.includes(i));
         this.tools = [-1, ...instruments];
         element('tools').hidden = instruments.length === 0;

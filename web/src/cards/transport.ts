@@ -15,6 +15,7 @@ export class Transport {
     private readonly pace = element<HTMLSelectElement>('pace');
     private allButtons = [...element('transport').querySelectorAll('button, select')] as HTMLButtonElement[];
     private saves = false;
+    private watches = false;
     private perTick = 10;
     private paceUntil = 0; // the user's choice stands until the engine has heard of it
 
@@ -36,13 +37,16 @@ export class Transport {
 
     setHello(hello: Hello): void {
         this.saves = hello.saves;
+        this.watches = hello.watches;
         this.perTick = Math.max(1, Math.round(hello.tick / hello.time_step));
         for (const button of [this.record, this.save])
             if (!hello.saves) button.title = 'The engine was started without a folder to save to';
         this.enable(true);
     }
 
-    enable(yes: boolean): void {
+    /* Help is there always. */
+    enable(connected: boolean): void {
+        const yes = connected && !this.watches;
         for (const button of this.allButtons) button.disabled = !yes && button.id !== 'ask';
         if (yes) this.record.disabled = this.save.disabled = !this.saves;
         if (yes) this.load.disabled = true; // until status says otherwise
@@ -50,17 +54,18 @@ export class Transport {
 
     update(status: Status): void {
         const playing = status.state === 'playing';
-        this.play.disabled = status.state === 'stopped';
-        element('step').toggleAttribute('disabled', status.state === 'stopped');
+        const fixed = this.watches || status.state === 'stopped';
+        this.play.disabled = fixed;
+        element('step').toggleAttribute('disabled', fixed);
         write(element('play-text'), playing ? 'Pause' : 'Play');
         this.play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
         element('play-shape').setAttribute('d', playing ? PAUSE : PLAY);
-        this.record.disabled = !this.saves || Boolean(status.replay);
+        this.record.disabled = this.watches || !this.saves || Boolean(status.replay);
         this.record.setAttribute('aria-pressed', String(status.recording));
         write(this.record.querySelector('span')!, status.recording ? 'Stop' : 'Record');
         this.record.setAttribute('aria-label', status.recording ? 'Stop recording' : 'Record');
-        this.load.disabled = !this.saves || status.saved.length === 0 || status.lost;
-        element('reset').toggleAttribute('disabled', status.lost);
+        this.load.disabled = this.watches || !this.saves || status.saved.length === 0 || status.lost;
+        element('reset').toggleAttribute('disabled', this.watches || status.lost);
         if (performance.now() > this.paceUntil) this.showPace(status.pace);
     }
 
@@ -94,6 +99,7 @@ export class Transport {
 
     /* One pace slower or faster. */
     shift(by: number): void {
+        if (this.pace.disabled) return;
         const index = this.pace.selectedIndex + by;
         if (index < 0 || index >= this.pace.options.length) return;
         this.pace.selectedIndex = index;

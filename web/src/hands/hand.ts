@@ -32,6 +32,11 @@ export class Hand {
         return this.state !== 'free';
     }
 
+    /* Whether this page may pull at all. */
+    get allowed(): boolean {
+        return !this.session.watches;
+    }
+
     grab(hit: Hit): void {
         this.state = 'asked';
         this.hit = hit;

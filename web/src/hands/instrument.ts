@@ -83,7 +83,7 @@ export class Instrument {
 
     open(opening: number): void {
         const tip = this.view.instruments.position(this.chosen);
-        if (!tip) return;
+        if (!tip || this.session.watches) return;
         this.opening = Math.min(1, Math.max(0, opening));
         if (!this.held) this.target.copy(tip);
         this.moved = true;

@@ -6,6 +6,7 @@ import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
 import type { SavedCard } from '../cards/savedcard';
 import type { Panel } from '../cards/panel';
+import { ONLY_WATCHES } from '../link/session';
 import { pick } from './pick';
 import type { Transport } from '../cards/transport';
 import type { View } from '../picture/view';
@@ -111,6 +112,7 @@ function letGo(s: Served): void {
 /* Takes hold of the chosen tool, or of the surface in the middle of the picture; again lets go. */
 function hold(s: Served): void {
     if (s.hand.busy || s.instrument.held) return letGo(s);
+    if (!s.hand.allowed) return s.say(ONLY_WATCHES);
     if (s.instrument.chosen >= 0) {
         s.instrument.take(null);
         s.used('move');

@@ -46,7 +46,7 @@ export class Pointer {
 
     /* The cursor tells what a press would do; once per animation frame. */
     update(): void {
-        if (!this.hover || this.doing !== 'nothing') return;
+        if (!this.hover || this.doing !== 'nothing' || !this.hand.allowed) return;
         const ray = this.ray(this.hover);
         this.hover = null;
         const over = this.hit(ray) !== null || this.view.instruments.under(ray, MARGIN.mouse) >= 0;
@@ -77,6 +77,7 @@ export class Pointer {
         }
         if (this.fingers.size > 2) return;
         if (event.button !== 0 || event.shiftKey) return this.do('aside');
+        if (!this.hand.allowed) return this.do('turning');
         const ray = this.ray({ x: event.clientX, y: event.clientY });
         const hit = this.hit(ray);
         const tool = this.view.instruments.under(

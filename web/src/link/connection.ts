@@ -26,9 +26,10 @@ export class Connection {
     private readonly url: string;
 
     constructor(private readonly listener: Listener) {
-        const token = new URLSearchParams(location.hash.slice(1)).get('token');
+        const said = new URLSearchParams(location.hash.slice(1));
+        const asked = ['token', 'watch'].filter((name) => said.get(name)).map((name) => `${name}=${said.get(name)}`);
         const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
-        this.url = `${scheme}//${location.host}/socket${token ? `?token=${token}` : ''}`;
+        this.url = `${scheme}//${location.host}/socket${asked.length ? `?${asked.join('&')}` : ''}`;
     }
 
     get open(): boolean {

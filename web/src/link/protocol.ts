@@ -43,6 +43,7 @@ export interface Hello {
     saves: boolean;
     hand_force: number;
     tool_speed: number;
+    watches: boolean; // this viewer may look, and do nothing to the run
 }
 
 export interface Percentiles {

@@ -11,6 +11,9 @@ const FRAME_MS = 1000 / 100; // displays faster than that get by with this
 const FORCES_MS = 1000 / 30;
 const AFTER_NONE_MS = 200;
 
+const LOOKING: Request['do'][] = ['frame', 'forces'];
+export const ONLY_WATCHES = 'This page may only watch. Ask for the other address to act on the run.';
+
 export interface Events {
     hello(hello: Hello): void;
     surface(surface: SurfaceMessage): void;
@@ -60,7 +63,13 @@ export class Session {
         return this.connection.open;
     }
 
+    /* This page may look, and do nothing to the run: the engine would refuse it. */
+    get watches(): boolean {
+        return this.hello?.watches ?? false;
+    }
+
     send(request: Request): void {
+        if (this.watches && !LOOKING.includes(request.do)) return this.events.note(ONLY_WATCHES);
         this.connection.send(request);
     }
 
