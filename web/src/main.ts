@@ -3,6 +3,7 @@ import { Colours } from './cards/colours';
 import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
 import { Hand } from './hands/hand';
+import { InsideCard } from './inspect/insidecard';
 import { Instrument } from './hands/instrument';
 import { listenToKeys } from './hands/keys';
 import { Hints, Trouble, note } from './cards/notices';
@@ -44,6 +45,7 @@ function start(): void {
             panel.setHello(hello);
             transport.setHello(hello);
             saved.setHello(hello);
+            inside.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
@@ -127,9 +129,10 @@ function start(): void {
     const saved = new SavedCard(session);
     const replay = new ReplayBar(session);
     const transport = new Transport(session, help, replay);
+    const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, used);
-    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, say: note, used, help });
+    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, inside, say: note, used, help });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));

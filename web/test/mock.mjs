@@ -75,8 +75,11 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
+    // Two organs, one above the other.
+    if (organs === 'halves')
+        mesh.m = mesh.m.map((_, q) => ([0, 1, 2, 3].reduce((z, c) => z + mesh.x[3 * mesh.f[4 * q + c] + 2], 0) > 4 * 0.045 ? 1 : 0));
     const n = mesh.x.length / 3;
     const faces = mesh.f.length / 4;
     const fine = riding ? fineSurface(mesh) : null;

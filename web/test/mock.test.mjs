@@ -292,6 +292,96 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
     await own.close();
 });
 
+test('the picture is cut open, by mouse and by keys, and what is cut away cannot be pulled', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(300);
+    const LEFT = [430, 260];
+    const RIGHT = [570, 260];
+    const [left, right] = await colours(v.page, [LEFT, RIGHT]);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('k');
+    assert.ok(await v.page.getByLabel('cut open').isChecked());
+    assert.equal(await v.page.locator('#cut-text').innerText(), 'x below 0 m');
+    await v.page.waitForTimeout(400);
+    await v.shot('cut-x');
+    const [leftCut, rightCut] = await colours(v.page, [LEFT, RIGHT]);
+    assert.ok(difference(left, leftCut) < 25, `${left} stays, ${leftCut}`);
+    assert.ok(difference(right, rightCut) > 40, `${right} is cut away, ${rightCut}`);
+    // A press there looks around: nothing is held.
+    await drag(v.page, ...RIGHT, 2, 2, 2);
+    await v.page.waitForTimeout(200);
+    assert.equal(await v.get('hand'), 'free');
+    await v.page.mouse.up();
+    await drag(v.page, ...LEFT, 2, 2, 2);
+    await v.until(() => window.lariat.hand === 'holding');
+    await v.page.mouse.up();
+    // The other side, another direction, another place, and none.
+    await v.page.getByLabel('the other side').check();
+    await v.page.waitForTimeout(400);
+    const [leftOther] = await colours(v.page, [LEFT]);
+    assert.ok(difference(left, leftOther) > 40, `${leftOther}`);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('b');
+    await v.page.keyboard.press('b');
+    assert.match(await v.page.locator('#cut-text').innerText(), /^z above 45\.0 mm$/);
+    await v.page.getByLabel('Place of the cut').fill('0.9');
+    await v.page.locator('#picture').focus();
+    const before = await v.page.locator('#cut-text').innerText();
+    await v.page.keyboard.press('<');
+    assert.notEqual(await v.page.locator('#cut-text').innerText(), before);
+    await v.page.keyboard.press('b');
+    assert.match(await v.page.locator('#cut-text').innerText(), /^towards the eye above/);
+    await v.page.keyboard.press('k');
+    assert.equal(await v.page.locator('#cut-part').isVisible(), false);
+    await v.page.waitForTimeout(400);
+    const [again] = await colours(v.page, [RIGHT]);
+    assert.ok(difference(right, again) < 25, `${right} is back, ${again}`);
+    await v.close();
+});
+
+for (const riding of [false, true])
+    test(`organs are faded and hidden${riding ? ', also of a fine surface' : ''}, and let the pointer through`, async (t) => {
+        const own = await mock({ riding, organs: 'halves' });
+        t.after(() => own.close());
+        const v = await openPage(browser, own.url);
+        await v.page.waitForTimeout(300);
+        const UPPER = [500, 200]; // the second organ
+        const LOWER = [500, 450];
+        const [upper, lower, beside] = await colours(v.page, [UPPER, LOWER, [300, 560]]);
+        await v.page.locator('#inside').evaluate((card) => (card.open = true));
+        const entry = v.page.locator('#organs button').nth(1);
+        assert.equal(await entry.getAttribute('aria-label'), 'tubes: shown');
+        await entry.click();
+        assert.equal(await entry.getAttribute('aria-label'), 'tubes: faded');
+        await v.page.waitForTimeout(400);
+        await v.shot(`organ-faded-${riding ? 'fine' : 'mesh'}`);
+        const [faded, still] = await colours(v.page, [UPPER, LOWER]);
+        assert.ok(difference(upper, faded) > 30, `${upper}, faded ${faded}`);
+        assert.ok(difference(lower, still) < 25, `${lower} stays, ${still}`);
+        await drag(v.page, ...UPPER, 2, 2, 2);
+        await v.page.waitForTimeout(200);
+        assert.equal(await v.get('hand'), 'free', 'what is faded is not pulled');
+        await v.page.mouse.up();
+        await entry.click();
+        await v.page.waitForTimeout(400);
+        const [hidden] = await colours(v.page, [UPPER]);
+        assert.ok(difference(hidden, beside) < 40, `${hidden} is background, ${beside}`);
+        await v.page.getByRole('button', { name: 'Show all' }).click();
+        // By keyboard: the one in the middle, twice, and all again.
+        await v.page.locator('#picture').focus();
+        await v.page.keyboard.press('h');
+        await v.page.keyboard.press('h');
+        await v.page.getByText(/(uterus|tubes): hidden/).first().waitFor({ timeout: 3000 });
+        await v.page.keyboard.press('u');
+        await v.page.waitForTimeout(400);
+        const [back] = await colours(v.page, [UPPER]);
+        assert.ok(difference(upper, back) < 25, `${upper} is back, ${back}`);
+        assert.equal(await v.page.getByRole('button', { name: 'Show all' }).isDisabled(), true);
+        await v.close();
+    });
+
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
     const own = await mock();
     t.after(() => own.close());

@@ -185,7 +185,7 @@ test('a riding surface is picked, followed, and held at the mesh', () => {
     parts.pick.follow(riding, near, now);
     assert.ok(Math.hypot(now.x - 0.1, now.y + 1.3, now.z - 0.2) < 0.15);
     const { x, quads } = cube(3, false);
-    const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] });
+    const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] }).point;
     assert.deepEqual(at([0.25, -1.5, 0.5]).map((v) => Math.round(v * 1e6) / 1e6), [0.25, -1, 0.5]);
     assert.deepEqual(at([3, 3, 3]), [1, 1, 1]);
     assert.deepEqual(at([2, 0.125, -4]).map((v) => Math.round(v * 1e6) / 1e6), [1, 0.125, -1]);

@@ -4,10 +4,10 @@ import type { Colours } from '../cards/colours';
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
+import type { InsideCard } from '../inspect/insidecard';
 import type { SavedCard } from '../cards/savedcard';
 import type { Panel } from '../cards/panel';
 import { ONLY_WATCHES } from '../link/session';
-import { pick } from './pick';
 import type { Transport } from '../cards/transport';
 import type { View } from '../picture/view';
 
@@ -20,6 +20,7 @@ export interface Served {
     saved: SavedCard;
     colours: Colours;
     panel: Panel;
+    inside: InsideCard;
     say(text: string): void;
     used(what: 'pull' | 'look' | 'move'): void;
     help(): void;
@@ -49,7 +50,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
     }
     const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[key];
     if (arrow) return go(s, arrow[0]!, arrow[1]!, event.shiftKey);
-    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.', ',', ';'].includes(key)) return false;
+    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.', ',', ';', '<', '>'].includes(key)) return false;
     const acts: Record<string, () => void> = {
         ' ': () => s.transport.playOrPause(),
         '.': () => s.transport.step(),
@@ -67,6 +68,12 @@ function press(s: Served, event: KeyboardEvent): boolean {
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
+        h: () => s.inside.fadeMiddle(),
+        u: () => s.inside.showAll(),
+        k: () => s.inside.toggleCut(),
+        b: () => s.inside.nextDirection(),
+        '<': () => s.inside.moveCut(-0.02),
+        '>': () => s.inside.moveCut(0.02),
         t: () => s.instrument.next(),
         p: () => hold(s),
         '+': () => s.view.endoscope.zoom(0.88),
@@ -118,20 +125,9 @@ function hold(s: Served): void {
         s.used('move');
         return s.say('Arrow keys move the instrument, P lets it go.');
     }
-    if (!s.view.surface) return;
-    // Around the middle in widening circles, until something is there.
-    for (let ring = 0; ring < 8; ring++)
-        for (let i = 0; i < (ring ? 8 : 1); i++) {
-            const angle = (i * Math.PI) / 4;
-            const ray = s.view.endoscope.rayThrough(
-                0.08 * ring * Math.cos(angle),
-                0.08 * ring * Math.sin(angle),
-            );
-            const hit = pick(s.view.surface, ray.origin, ray.direction);
-            if (!hit) continue;
-            s.hand.grab(hit);
-            s.used('pull');
-            return s.say('Arrow keys pull, P lets go.');
-        }
-    s.say('Nothing in the middle of the picture.');
+    const hit = s.view.middle();
+    if (!hit) return s.say('Nothing in the middle of the picture.');
+    s.hand.grab(hit);
+    s.used('pull');
+    s.say('Arrow keys pull, P lets go.');
 }

@@ -8,14 +8,25 @@ export interface Hit {
     distance: number;
     corners: [number, number, number]; // nodes of the drawn triangle
     weights: [number, number, number]; // of these, sum 1
+    triangle: number; // of those that were looked at; -1: a node
 }
 
 type Vector = { x: number; y: number; z: number };
 
+/* What a ray may hit of a surface: these triangles, but not where the plane (normal, distance) hides them. */
+export interface Among {
+    triangles: Uint32Array;
+    plane: { x: number; y: number; z: number; w: number };
+}
+
 /* The nearest hit of the ray on the outside of the surface (Möller and Trumbore 1997). */
-export function pick(surface: Drawn, origin: Vector, direction: Vector): Hit | null {
+export function pick(surface: Drawn, origin: Vector, direction: Vector, among?: Among): Hit | null {
     const x = surface.positions;
-    const t = surface.triangles;
+    const t = among?.triangles ?? surface.triangles;
+    // Along the ray: is beyond the plane where `ahead` + distance `speed` > 0.
+    const { x: nx, y: ny, z: nz, w } = among?.plane ?? { x: 0, y: 0, z: 0, w: 1 };
+    const ahead = nx * origin.x + ny * origin.y + nz * origin.z - w;
+    const speed = nx * direction.x + ny * direction.y + nz * direction.z;
     let best = Infinity;
     let found = -1;
     let weightB = 0;
@@ -46,7 +57,7 @@ export function pick(surface: Drawn, origin: Vector, direction: Vector): Hit | n
         const v = direction.x * qx + direction.y * qy + direction.z * qz;
         if (v < 0 || u + v > det) continue;
         const distance = (vx * qx + vy * qy + vz * qz) / det;
-        if (distance > 0 && distance < best) {
+        if (distance > 0 && distance < best && ahead + distance * speed <= 0) {
             best = distance;
             found = i;
             weightB = u / det;
@@ -63,6 +74,7 @@ export function pick(surface: Drawn, origin: Vector, direction: Vector): Hit | n
         distance: best,
         corners: [t[found]!, t[found + 1]!, t[found + 2]!],
         weights: [1 - weightB - weightC, weightB, weightC],
+        triangle: found / 3,
     };
 }
 
@@ -93,21 +105,26 @@ export function nearestNode(surface: Drawn, to: Vector): Hit {
         distance: Math.sqrt(best),
         corners: [found, found, found],
         weights: [1, 0, 0],
+        triangle: -1,
     };
 }
 
-/* The nearest point of quads, each as two triangles. */
-export function nearestPoint(x: Float32Array, quads: Uint32Array, to: Vector): [number, number, number] {
+/* The nearest point of quads, each as two triangles, and the quad that it is on. */
+export function nearestPoint(
+    x: Float32Array, quads: Uint32Array, to: Vector,
+): { point: [number, number, number]; quad: number } {
     const best: [number, number, number] = [to.x, to.y, to.z];
+    let quad = -1;
     let least = Infinity;
     for (let q = 0; q < quads.length; q += 4)
         for (let half = 1; half < 3; half++) {
             const square = nearOnTriangle(x, quads[q]! * 3, quads[q + half]! * 3, quads[q + half + 1]! * 3, to);
             if (square >= least) continue;
             least = square;
+            quad = q / 4;
             for (let k = 0; k < 3; k++) best[k] = near[k]!;
         }
-    return best;
+    return { point: best, quad };
 }
 
 const near = new Float64Array(3); // the answer of what follows

@@ -7,7 +7,6 @@
  */
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
-import { pick, type Hit } from './pick';
 import type { View } from '../picture/view';
 
 type Doing = 'nothing' | 'pulling' | 'moving' | 'turning' | 'aside' | 'pinching';
@@ -49,7 +48,7 @@ export class Pointer {
         if (!this.hover || this.doing !== 'nothing' || !this.hand.allowed) return;
         const ray = this.ray(this.hover);
         this.hover = null;
-        const over = this.hit(ray) !== null || this.view.instruments.under(ray, MARGIN.mouse) >= 0;
+        const over = this.view.hit(ray) !== null || this.view.instruments.under(ray, MARGIN.mouse) >= 0;
         this.view.canvas.classList.toggle('over', over);
     }
 
@@ -79,7 +78,7 @@ export class Pointer {
         if (event.button !== 0 || event.shiftKey) return this.do('aside');
         if (!this.hand.allowed) return this.do('turning');
         const ray = this.ray({ x: event.clientX, y: event.clientY });
-        const hit = this.hit(ray);
+        const hit = this.view.hit(ray);
         const tool = this.view.instruments.under(
             ray,
             event.pointerType === 'touch' ? MARGIN.touch : MARGIN.mouse,
@@ -154,7 +153,7 @@ export class Pointer {
     }
 
     private twice(event: MouseEvent): void {
-        const hit = this.hit(this.ray({ x: event.clientX, y: event.clientY }));
+        const hit = this.view.hit(this.ray({ x: event.clientX, y: event.clientY }));
         if (hit) this.view.endoscope.focus(hit.point);
         else this.view.endoscope.reset();
     }
@@ -174,10 +173,4 @@ export class Pointer {
             1 - (at.y / clientHeight) * 2,
         );
     }
-
-    private hit(ray: { origin: Hit3; direction: Hit3 }): Hit | null {
-        return this.view.surface ? pick(this.view.surface, ray.origin, ray.direction) : null;
-    }
 }
-
-type Hit3 = { x: number; y: number; z: number };

@@ -34,7 +34,8 @@ export class Surface implements Drawn {
     readonly normals: Float32Array;
     readonly rest: Float32Array;
     readonly triangles: Uint32Array;
-    readonly lines: Uint32Array; // ends of segments along the edges of the mesh
+    readonly lines: Uint32Array; // ends of segments along the edges of the mesh, edge after edge
+    readonly sides: Uint32Array; // four per face of the mesh: the edges around it
     readonly center: [number, number, number];
     readonly size: number;
     readonly meanEdge: number; // of the mesh, at rest
@@ -47,6 +48,7 @@ export class Surface implements Drawn {
         let nodes = this.meshNodes;
         let edges = edgesOf(nodes, quads);
         let lines = edges.ends;
+        this.sides = edges.ofSide;
         this.meanEdge = meanLength(rest, lines);
         let current = quads;
         while (this.levels.length < 2) {
@@ -69,6 +71,16 @@ export class Surface implements Drawn {
         this.update(rest);
         this.rest = this.positions.slice();
         ({ center: this.center, size: this.size } = boxOf(rest));
+    }
+
+    /* The face of the mesh that a drawn triangle is of. */
+    faceOf(triangle: number): number {
+        return triangle >> (1 + 2 * this.levels.length);
+    }
+
+    /* The edge of the mesh that a segment of its lines is of. */
+    edgeOf(segment: number): number {
+        return segment >> this.levels.length;
     }
 
     /* Takes the positions of a frame's nodes, of which the mesh's surface has the first. */

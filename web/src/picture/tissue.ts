@@ -16,10 +16,11 @@ attribute vec3 rest;
 attribute vec3 tint;
 attribute float value;
 attribute vec4 grain;
-varying vec3 vView, vNormal, vRest, vTint;
+varying vec3 vView, vNormal, vRest, vTint, vPlace;
 varying vec4 vGrain;
 varying float vValue;
 void main() {
+    vPlace = position;
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     vView = p.xyz;
     vNormal = normalMatrix * normal;
@@ -55,15 +56,18 @@ vec4 noise(vec3 x) {
 }`;
 
 const FRAGMENT = /* glsl */ `
-varying vec3 vView, vNormal, vRest, vTint;
+varying vec3 vView, vNormal, vRest, vTint, vPlace;
 varying vec4 vGrain;    // mottling, distances from two nets of vessels, openness: grain.ts
 varying float vValue;
 uniform mat3 turn;      // world to view
 uniform sampler2D map;
 uniform vec2 range;     // least value, 1 / span
 uniform float mapped;   // 0: tissue, 1: values by the map, 2: tints as they are
+uniform vec4 cut;       // what lies beyond this plane is not drawn: inspect/cut.ts
 ${NOISE}
 void main() {
+    float inside = cut.w - dot(cut.xyz, vPlace);
+    if (inside < 0.0) discard;
     vec3 view = normalize(-vView);
     vec3 normal = normalize(vNormal);
     if (!gl_FrontFacing) normal = -normal;
@@ -124,16 +128,24 @@ void main() {
     vec3 light = colour * lit * mix(1.36, 1.08, plain) + shine;
     // Bright places roll off instead of burning out.
     light = min(light, 0.62) + 0.38 * (1.0 - exp(-max(light - 0.62, 0.0) / 0.38));
+    // What a cut lays open is the back of the surface: matt, and with a bright rim.
+    if (!gl_FrontFacing) light = colour * lit * 0.55;
+    if (inside < 1.5 * fwidth(inside)) light = vec3(0.85, 0.72, 0.55);
+#ifdef FADED
+    gl_FragColor = vec4(light, 0.14 + 0.5 * grazing);
+#else
     gl_FragColor = vec4(light, 1.0);
+#endif
     #include <colorspace_fragment>
 }`;
 
 export class Tissue {
     readonly material: THREE.ShaderMaterial;
+    readonly faded: THREE.ShaderMaterial; // the same, seen through
     private readonly maps: Record<MapName, THREE.DataTexture>;
 
-    /* `fine`: also the finest bumps, which cost a third of the drawing. */
-    constructor(fine: boolean) {
+    /* `fine`: also the finest bumps, which cost a third of the drawing. `cut`: Cut.plane. */
+    constructor(fine: boolean, cut: THREE.Vector4) {
         this.maps = { rising: textureOf('rising'), signed: textureOf('signed') };
         this.material = new THREE.ShaderMaterial({
             vertexShader: VERTEX,
@@ -144,12 +156,19 @@ export class Tissue {
                 range: { value: new THREE.Vector2(0, 1) },
                 mapped: { value: 0 },
                 turn: { value: new THREE.Matrix3() },
+                cut: { value: cut },
             },
             side: THREE.DoubleSide,
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
         });
+        this.faded = this.material.clone();
+        this.faded.uniforms = this.material.uniforms;
+        this.faded.defines = { ...this.material.defines, FADED: 1 };
+        this.faded.side = THREE.FrontSide;
+        this.faded.transparent = true;
+        this.faded.depthWrite = false;
     }
 
     showTissue(): void {

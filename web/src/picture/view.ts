@@ -5,11 +5,12 @@ import { Endoscope } from './camera';
 import { Instruments } from './instruments';
 import { Cavity } from './cavity';
 import type { Drawn } from './drawn';
+import { Cut } from '../inspect/cut';
 import { Edges } from './edges';
-import { Organ } from './organ';
+import { Organ, type Seen } from './organ';
 import { Others } from './others';
 import { organColour, processorColour, type Rgb } from './palette';
-import { nearestPoint } from '../hands/pick';
+import { nearestPoint, pick, type Hit } from '../hands/pick';
 import type { Frame, RidingMessage, SurfaceMessage } from '../link/protocol';
 import { Riding } from './riding';
 import { Surface } from './surface';
@@ -20,6 +21,7 @@ export class View {
     readonly instruments = new Instruments();
     readonly pull = new PullPicture();
     readonly others = new Others();
+    readonly cut = new Cut();
     readonly tissue: Tissue;
     drawn = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
@@ -37,6 +39,8 @@ export class View {
     private edgesShown = false;
     private fineShown = true;
     private processorsShown = false;
+    private faceRegions: Uint32Array = new Uint32Array(0); // the organ of each face of the mesh
+    private seen: (region: number) => Seen = () => 'shown';
     private frameNodes = 0;
     private positions: Float32Array | null = null; // of the last frame
     private values: Float32Array | null = null;
@@ -47,7 +51,7 @@ export class View {
         const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
         this.fine = asked ? asked === 'fine' : drawnInHardware();
         this.adapts = !asked;
-        this.tissue = new Tissue(this.fine);
+        this.tissue = new Tissue(this.fine, this.cut.plane);
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
         this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group);
@@ -68,6 +72,10 @@ export class View {
         return this.shown !== null && this.shown === this.fineOrgan;
     }
 
+    private get materials(): [THREE.Material, THREE.Material] {
+        return [this.tissue.material, this.tissue.faded];
+    }
+
     private get shown(): Organ | null {
         return (this.fineShown && this.fineOrgan) || this.organ;
     }
@@ -84,13 +92,15 @@ export class View {
         this.mesh = surface;
         this.frameNodes = surface.meshNodes;
         this.processors = message.processor;
-        this.organ = new Organ(surface, tints, this.tissue.material);
-        this.edges = new Edges(surface.lines, this.organ.mesh.geometry);
+        this.organ = new Organ(surface, tints, this.materials, (t) => message.material[surface.faceOf(t)]!);
+        this.edges = new Edges(surface.lines, this.organ.mesh.geometry, this.cut.plane);
+        this.faceRegions = message.material;
         this.scene.add(this.organ.mesh, this.edges.lines);
         this.pull.setSize(surface.size);
         this.others.setSize(surface.size);
+        this.cut.setBody(surface.center, surface.size);
         this.endoscope.frame(surface.center, surface.size, from);
-        this.arrange();
+        this.see(this.seen);
     }
 
     /* A fine surface that rides on the organ's mesh. */
@@ -109,9 +119,9 @@ export class View {
         };
         this.frameNodes = rest.length / 3;
         this.positions = this.values = null;
-        this.fineOrgan = new Organ(riding, tints, this.tissue.material);
+        this.fineOrgan = new Organ(riding, tints, this.materials, (t) => message.material[riding.triangles[3 * t]!]!);
         this.scene.add(this.fineOrgan.mesh);
-        this.arrange();
+        this.see(this.seen);
     }
 
     /* Positions, values and tools of a frame. */
@@ -144,7 +154,48 @@ export class View {
     holdAt(point: [number, number, number]): [number, number, number] {
         if (!this.finer || !this.mesh) return point;
         const [x, y, z] = point;
-        return nearestPoint(this.mesh.positions, this.mesh.meshQuads, { x, y, z });
+        return nearestPoint(this.mesh.positions, this.mesh.meshQuads, { x, y, z }).point;
+    }
+
+    /* Shows, fades and hides organs, by their index. */
+    see(seen: (region: number) => Seen): void {
+        this.seen = seen;
+        if (!this.mesh || !this.edges) return;
+        for (const organ of [this.organ, this.fineOrgan]) organ?.see(seen);
+        const { mesh, faceRegions } = this;
+        const visible = new Uint8Array(mesh.sides.length);
+        mesh.sides.forEach((edge, side) => {
+            if (seen(faceRegions[side >> 2]!) !== 'hidden') visible[edge] = 1;
+        });
+        this.edges.show((segment) => visible[mesh.edgeOf(segment)] === 1);
+        this.arrange();
+    }
+
+    /* What of the organs a ray meets: what is hidden or cut away lets it through, and what is faded too,
+     * unless `faded`. */
+    hit(ray: THREE.Ray, faded = false): Hit | null {
+        const organ = this.shown;
+        if (!organ) return null;
+        const count = organ.shown + (faded ? organ.faded : 0);
+        const triangles = organ.triangles.subarray(0, 3 * count);
+        return pick(organ.drawn, ray.origin, ray.direction, { triangles, plane: this.cut.plane });
+    }
+
+    /* The organ that a hit is of, as it was when it was hit. */
+    regionOf(hit: Hit): number {
+        return this.shown?.regions[hit.triangle] ?? -1;
+    }
+
+    /* What is in the middle of the picture, or around it in widening circles. */
+    middle(faded = false): Hit | null {
+        for (let ring = 0; ring < 8; ring++)
+            for (let i = 0; i < (ring ? 8 : 1); i++) {
+                const angle = (i * Math.PI) / 4;
+                const ray = this.endoscope.rayThrough(0.08 * ring * Math.cos(angle), 0.08 * ring * Math.sin(angle));
+                const hit = this.hit(ray, faded);
+                if (hit) return hit;
+            }
+        return null;
     }
 
     /* What is drawn has changed. */
