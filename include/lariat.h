@@ -691,6 +691,12 @@ typedef enum lar_slow_cause {
     LAR_SLOW_MACHINE   /* a step does not, but other programs take the processor away */
 } lar_slow_cause;
 
+/* Counts of how long things took: bin i of lar_session_status.step_bins holds what took from
+ * lar_time_bin(i) to lar_time_bin(i + 1), two bins to every doubling; the first and the last one
+ * hold what is beyond, too. */
+enum { LAR_TIME_BINS = 40 };
+LAR_API double lar_time_bin(int bin); /* 1.024 us for bin 0 [s] */
+
 /* How it goes. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
@@ -698,6 +704,8 @@ typedef struct lar_session_status {
     double time;                                    /* simulated [s] */
     double step_p50, step_p99, step_p999, step_max; /* of a step, engine alone: tick / steps */
     double tick_p50, tick_p99, tick_p999, tick_max; /* from a tick's due time to its forces */
+    uint32_t step_bins[LAR_TIME_BINS]; /* steps and ticks by their time, since the start */
+    uint32_t tick_bins[LAR_TIME_BINS];
     uint64_t ticks, misses;      /* ticks whose forces came after the next was due, those of slow
                                     motion left out */
     uint64_t slow_ticks;         /* these: late because the session is in slow motion; their times
@@ -742,6 +750,7 @@ typedef struct lar_snapshot {
     uint64_t hash;  /* lar_simulation_hash of that step */
     int32_t nodes;  /* of the model */
     double (*u)[3]; /* [nodes] displacements [m] */
+    double kinetic; /* energy of its velocities, which are those of half a step before [J] */
 } lar_snapshot;
 
 /* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */

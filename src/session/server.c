@@ -125,6 +125,7 @@ static void beat(lws_sorted_usec_list_t *sul) {
     }
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
+    lar_server_ask_readings(server);
     lws_usec_t pause = !server->first                   ? IDLE_BEAT
                        : lar_hands_busy(&server->hands) ? QUICK_BEAT
                                                         : BEAT;

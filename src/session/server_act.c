@@ -101,6 +101,7 @@ static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what,
 }
 
 void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
+    if (end->job.kind == LAR_WISH_INSPECT) return lar_server_tell_reading(server, end);
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
     bool done = end->error.status == LAR_OK;
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
@@ -150,8 +151,9 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wi
 /* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
  * grab that was refused: they need no sentence of their own. */
 static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
-    if (!viewer->watches || wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES)
-        return false;
+    bool looks = wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES ||
+                 wish->kind == LAR_WISH_INSPECT;
+    if (!viewer->watches || looks) return false;
     if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
     lar_viewer_note(server, viewer,
                     "this viewer may only watch; to act on the run, open the address that has the "
@@ -198,6 +200,9 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         break;
     case LAR_WISH_SEEK:
         lar_session_seek(server->session, wish->time);
+        break;
+    case LAR_WISH_INSPECT:
+        lar_server_inspect(server, viewer, wish);
         break;
     case LAR_WISH_RESET:
     case LAR_WISH_SAVE:

@@ -138,6 +138,12 @@ static void write_times(lar_json *json, const char *name, double p50, double p99
     lar_json_close(json, '}');
 }
 
+static void write_bins(lar_json *json, const char *name, const uint32_t bin[LAR_TIME_BINS]) {
+    lar_json_open(json, name, '[');
+    for (int i = 0; i < LAR_TIME_BINS; i++) lar_json_integer(json, NULL, bin[i]);
+    lar_json_close(json, ']');
+}
+
 static void write_progress(lar_json *json, const lar_session_status *s) {
     static const char *const state[] = {"idle", "playing", "paused", "stopped"};
     static const char *const cause[] = {"", "step", "division", "machine"};
@@ -146,6 +152,8 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_number(json, "time", s->time);
     write_times(json, "step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
     write_times(json, "tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
+    write_bins(json, "step_bins", s->step_bins);
+    write_bins(json, "tick_bins", s->tick_bins);
     lar_json_integer(json, "ticks", (int64_t)s->ticks);
     lar_json_integer(json, "misses", (int64_t)s->misses);
     lar_json_integer(json, "slow_ticks", (int64_t)s->slow_ticks);

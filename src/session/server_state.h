@@ -71,6 +71,10 @@ typedef struct lar_viewer {
     uint64_t painted_step; /* of the last frame; UINT64_MAX: none */
     int painted_field;
 
+    bool inspects; /* `question` waits for its turn */
+    int64_t inspects_since;
+    lar_question question;
+
     int32_t forces_tool;
     uint64_t forces_after;
 
@@ -132,6 +136,7 @@ struct lar_server {
     char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
     char played[LAR_NAME_MOST + 1];
     lws_sorted_usec_list_t beat;
+    bool reading; /* a viewer's values are being read */
     int64_t status_at, watched_at, paint_begun, paint_cost;
 };
 
@@ -192,5 +197,12 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name);
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
+
+/* ---- server_inspect.c ---- */
+
+/* A viewer's question for values, answered when its turn comes; it replaces one that waits. */
+void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_ask_readings(lar_server *server);
+void lar_server_tell_reading(lar_server *server, const lar_job_end *end);
 
 #endif

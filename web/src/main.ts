@@ -4,6 +4,7 @@ import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
 import { Hand } from './hands/hand';
 import { InsideCard } from './inspect/insidecard';
+import { MeasureCard } from './inspect/measurecard';
 import { Instrument } from './hands/instrument';
 import { listenToKeys } from './hands/keys';
 import { Hints, Trouble, note } from './cards/notices';
@@ -46,6 +47,7 @@ function start(): void {
             transport.setHello(hello);
             saved.setHello(hello);
             inside.setHello(hello);
+            measure.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
@@ -82,7 +84,7 @@ function start(): void {
             transport.update(status);
             saved.update(status);
             replay.update(status);
-            hints.silence(replay.shown || trouble.shown);
+            hints.silence(replay.shown || trouble.shown || measure.press !== 'pull');
             panel.update(status);
             line.update(status);
             toolCard.update(status);
@@ -93,6 +95,9 @@ function start(): void {
         hand(news) {
             hand.news(news);
             chooseForce();
+        },
+        values(values) {
+            measure.values(values);
         },
         note,
         lost(loss) {
@@ -129,10 +134,11 @@ function start(): void {
     const saved = new SavedCard(session);
     const replay = new ReplayBar(session);
     const transport = new Transport(session, help, replay);
+    const measure = new MeasureCard(session, view, note);
     const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
-    const pointer = new Pointer(view, hand, instrument, used);
-    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, inside, say: note, used, help });
+    const pointer = new Pointer(view, hand, instrument, measure, used);
+    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, say: note, used, help });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
@@ -140,6 +146,7 @@ function start(): void {
     fine.addEventListener('change', () => {
         view.showFine(fine.checked);
         hand.surfaceChanged();
+        measure.surfaceChanged();
     });
 
     /* Bar and graph show the chosen instrument, or the hand. */
@@ -199,6 +206,7 @@ function start(): void {
         session.ask(now);
         hand.update(now, force.range);
         instrument.update(now);
+        measure.update(now);
         pointer.update();
         replay.look(now);
         if (view.draw(Math.min(0.1, (now - before) / 1000))) pictures++;
@@ -209,7 +217,7 @@ function start(): void {
             counted = now;
         }
     }
-    publish(session, view, hand, force);
+    publish(session, view, hand, force, measure);
     requestAnimationFrame(loop);
     session.connect();
 }

@@ -2,9 +2,10 @@
 import type { ForceCard } from './cards/forcecard';
 import type { Hand } from './hands/hand';
 import type { Session } from './link/session';
+import type { MeasureCard } from './inspect/measurecard';
 import type { View } from './picture/view';
 
-export function publish(session: Session, view: View, hand: Hand, force: ForceCard): void {
+export function publish(session: Session, view: View, hand: Hand, force: ForceCard, measure: MeasureCard): void {
     const state = {
         get connected() { return session.connected; },
         get connections() { return session.connections; },
@@ -23,6 +24,9 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get peak() { return force.history.peak(); },
         get displacement() { return view.displacement(); },
         get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
+        get press() { return measure.press; },
+        get reading() { return { node: measure.node, element: measure.elementNumber }; },
+        get measured() { return measure.distance; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
         get others() { return view.others.shown; },

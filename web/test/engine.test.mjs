@@ -285,6 +285,25 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await v.until(() => window.lariat.others === 0, undefined, 20000);
 });
 
+test('values of a node and an element are those of the engine', async () => {
+    await fresh();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('i');
+    await v.page.mouse.click(...FUNDUS);
+    await v.until(() => window.lariat.reading.node > 0 && window.lariat.reading.element > 0);
+    await v.page.keyboard.press('i');
+    await drag(v.page, ...FUNDUS, 40, -60);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
+    await v.until(() => /von Mises\s+[1-9][\d.]* k?Pa/.test(document.getElementById('reading').innerText));
+    // As colours have it: the node that is read is below the greatest of all.
+    const text = await v.page.locator('#reading').innerText();
+    assert.match(text, /displacement\s+[1-9][\d.]* mm/);
+    assert.match(text, /organ\s+uterus/i);
+    await v.shot('13-reading');
+    await v.page.mouse.up();
+    await v.page.getByRole('button', { name: 'Clear' }).click();
+});
+
 test('who opens the second address can only watch', async () => {
     const own = await view(model.scene, '--port', '0', '--token', 'for-the-surgeon', '--watch-token', 'for-the-class');
     const w = await openPage(browser, own.url.replace('for-the-surgeon', 'for-the-class'));

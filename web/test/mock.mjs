@@ -269,6 +269,19 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         return out;
     }
 
+    /* The numbers of the mesh's file begin at 1000 and 5000. */
+    function valuesMessage({ node, face, energy }) {
+        const moved = (i) => [0, 1, 2].map((k) => now[3 * i + k] - rest[3 * i + k]);
+        const size = node === undefined ? 0 : Math.hypot(...moved(node));
+        const read = { von_mises: size * 40000, pressure: -1250, energy: size * 900 };
+        return {
+            kind: 'values', step: state.step, time: state.step * 1e-4,
+            ...(node === undefined ? {} : { node: { index: node, number: 1000 + node, rest: [0, 1, 2].map((k) => rest[3 * node + k]), displacement: moved(node), ...read } }),
+            ...(face === undefined ? {} : { element: { index: face, number: 5000 + face, material: mesh.m[face], ...read, pressure: null } }),
+            ...(energy ? { energy: { kinetic: speed.reduce((s, v) => s + v * v, 0), strain: size || 1e-3, hourglass: 1e-5 } } : {}),
+        };
+    }
+
     function forcesMessage(index, after) {
         const all = forces[index];
         const count = Math.min(all.length, Math.max(0, state.tick - after));
@@ -329,6 +342,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
             const acts = {
                 frame: () => !state.mute && socket.send(frameMessage(m.field)),
                 forces: () => socket.send(forcesMessage(m.tool, m.after)),
+                inspect: () => say(valuesMessage(m)),
                 grab() {
                     state.grabbed = m.point;
                     const node = nearest(m.point);
@@ -376,8 +390,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 },
                 seek: () => (state.replay.time = m.time),
             };
-            if (watches && !['frame', 'forces'].includes(m.do)) state.refused.push(m.do);
-            if (watches && !['frame', 'forces'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
+            if (watches && !['frame', 'forces', 'inspect'].includes(m.do)) state.refused.push(m.do);
+            if (watches && !['frame', 'forces', 'inspect'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();
         });

@@ -382,6 +382,79 @@ for (const riding of [false, true])
         await v.close();
     });
 
+test('values of a node and its element are read where one presses, also by keyboard', async (t) => {
+    const own = await mock({ riding: true });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.locator('#measure').evaluate((card) => (card.open = true));
+    await v.page.getByRole('radio', { name: 'read values' }).click();
+    await v.page.mouse.click(500, 250);
+    await v.until(() => window.lariat.reading.node >= 1000);
+    assert.equal(await v.get('hand'), 'free', 'a press reads and does not pull');
+    const first = await v.get('reading');
+    // The node is the mesh's nearest to where it was pressed: high up, in front.
+    const at = [0, 1, 2].map((k) => own.mesh.x[3 * (first.node - 1000) + k]);
+    assert.ok(Math.abs(at[0]) < 0.008 && at[1] < 0 && at[2] > 0.05, `${at}`);
+    const text = await v.page.locator('#reading').innerText();
+    assert.match(text, /node 1\d\d\d[^]*von Mises[^]*pressure\s+−1\.25 kPa[^]*at rest[^]*mm[^]*element 5\d\d\d[^]*pressure\s+–[^]*(uterus|tubes)[^]*shear modulus\s+1\.50 kPa/);
+    await v.page.waitForTimeout(300);
+    const [mark] = await colours(v.page, [[500, 250]]);
+    await v.shot('reading');
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('Escape');
+    assert.equal(await v.get('press'), 'pull');
+    await v.page.keyboard.press('i');
+    assert.equal(await v.get('press'), 'read');
+    await v.page.keyboard.press('Enter');
+    await v.until((n) => window.lariat.reading.node !== n, first.node);
+    // Values follow the tissue.
+    await v.page.keyboard.press('i');
+    await v.page.keyboard.press('p');
+    await v.until(() => window.lariat.hand === 'holding');
+    for (let i = 0; i < 8; i++) await v.page.keyboard.press('ArrowUp');
+    await v.until(() => /displacement\s+[1-9][\d.]* mm/.test(document.getElementById('reading').innerText));
+    await v.page.keyboard.press('p');
+    await v.page.getByRole('button', { name: 'Clear' }).click();
+    assert.equal((await v.get('reading')).node, -1);
+    assert.equal(await v.page.locator('#reading').innerText(), '');
+    assert.ok(mark.length === 3);
+    await v.close();
+});
+
+test('a distance is measured between two places, now and at rest, and follows the tissue', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('d');
+    await v.page.mouse.click(500, 160);
+    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    await v.page.mouse.click(500, 480);
+    await v.until(() => window.lariat.measured > 0);
+    const still = await v.get('measured');
+    // The pear is 90 mm high.
+    assert.ok(still > 0.05 && still < 0.09, `${still} m`);
+    assert.match(await v.page.locator('#distance').innerText(), /^\d\d\.\d mm now, \d\d\.\d mm at rest \([+−]0\.0 %\)$/);
+    await v.page.waitForTimeout(300);
+    await v.shot('distance');
+    const [line] = await colours(v.page, [[500, 320]]);
+    assert.ok(line[1] > line[0] + 30, `the line is green: ${line}`);
+    await v.page.keyboard.press('d');
+    await drag(v.page, 500, 180, 0, -60);
+    await v.until((d) => window.lariat.measured > d + 0.002, still);
+    assert.match(await v.page.locator('#distance').innerText(), /\(\+[1-9][\d.]* %\)$/);
+    await v.page.mouse.up();
+    // By keyboard alone, and from anew with the third end.
+    await v.page.keyboard.press('d');
+    await v.page.keyboard.press('Enter');
+    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    for (let i = 0; i < 4; i++) await v.page.keyboard.press('ArrowUp');
+    await v.page.waitForTimeout(600);
+    await v.page.keyboard.press('Enter');
+    await v.until(() => window.lariat.measured > 0);
+    await v.close();
+});
+
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
     const own = await mock();
     t.after(() => own.close());

@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+        'inspect/measurecard', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -333,6 +333,13 @@ test('a tool says its force, its limit, and when that is reached', () => {
     assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
     assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+});
+
+test('a distance is told with what it was at rest', () => {
+    const { distanceText } = parts.measurecard;
+    assert.equal(distanceText(0.0312, 0.03), '31.2 mm now, 30.0 mm at rest (+4.0 %)');
+    assert.equal(distanceText(0.027, 0.03), '27.0 mm now, 30.0 mm at rest (−10.0 %)');
+    assert.equal(distanceText(0.01, 0), '10.0 mm now, 0 m at rest (+0.0 %)');
 });
 
 test('the panel says into how many parts steps are divided', () => {

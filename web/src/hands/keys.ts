@@ -5,6 +5,7 @@ import type { Hand } from './hand';
 import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
 import type { InsideCard } from '../inspect/insidecard';
+import type { MeasureCard } from '../inspect/measurecard';
 import type { SavedCard } from '../cards/savedcard';
 import type { Panel } from '../cards/panel';
 import { ONLY_WATCHES } from '../link/session';
@@ -21,6 +22,7 @@ export interface Served {
     colours: Colours;
     panel: Panel;
     inside: InsideCard;
+    measure: MeasureCard;
     say(text: string): void;
     used(what: 'pull' | 'look' | 'move'): void;
     help(): void;
@@ -35,7 +37,7 @@ export function listenToKeys(s: Served): void {
         const target = event.target as HTMLElement;
         if (document.querySelector('dialog[open]')) return;
         if (target.matches('input, select') && event.key !== 'Escape') return;
-        if (event.key === ' ' && target.matches('button, summary')) return;
+        if ([' ', 'Enter'].includes(event.key) && target.matches('button, summary')) return;
         if (press(s, event)) event.preventDefault();
     });
 }
@@ -68,6 +70,9 @@ function press(s: Served, event: KeyboardEvent): boolean {
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
+        i: () => s.measure.toggle('read'),
+        d: () => s.measure.toggle('distance'),
+        Enter: () => s.measure.pressMiddle(),
         h: () => s.inside.fadeMiddle(),
         u: () => s.inside.showAll(),
         k: () => s.inside.toggleCut(),
@@ -113,6 +118,7 @@ function deeper(s: Served, near: number): void {
 function letGo(s: Served): void {
     s.hand.release();
     s.instrument.drop();
+    if (s.measure.press !== 'pull') s.measure.choose('pull');
     element('cross').hidden = true;
 }
 

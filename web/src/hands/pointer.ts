@@ -6,6 +6,7 @@
  *     a second finger    let go; nearer, farther, aside
  */
 import type { Hand } from './hand';
+import type { MeasureCard } from '../inspect/measurecard';
 import type { Instrument } from './instrument';
 import type { View } from '../picture/view';
 
@@ -29,6 +30,7 @@ export class Pointer {
         private readonly view: View,
         private readonly hand: Hand,
         private readonly instrument: Instrument,
+        private readonly measure: MeasureCard,
         private readonly used: (what: 'pull' | 'look' | 'move') => void,
     ) {
         const canvas = view.canvas;
@@ -76,9 +78,13 @@ export class Pointer {
         }
         if (this.fingers.size > 2) return;
         if (event.button !== 0 || event.shiftKey) return this.do('aside');
-        if (!this.hand.allowed) return this.do('turning');
         const ray = this.ray({ x: event.clientX, y: event.clientY });
         const hit = this.view.hit(ray);
+        if (hit && this.measure.press !== 'pull') {
+            this.measure.take(hit);
+            return this.do('turning');
+        }
+        if (!this.hand.allowed) return this.do('turning');
         const tool = this.view.instruments.under(
             ray,
             event.pointerType === 'touch' ? MARGIN.touch : MARGIN.mouse,

@@ -108,7 +108,28 @@ export interface HandNews {
     state: 'holding' | 'missed' | 'refused' | 'lost';
 }
 
+/* What is read of a node or an element; null where there is none. */
+export interface Read {
+    index: number; // in the model
+    number: number; // in the mesh's file
+    von_mises: number | null;
+    pressure: number | null;
+    energy: number | null;
+}
+
+/* The answer to `inspect`: what was asked for, of one step. */
+export interface Values {
+    kind: 'values';
+    step: number;
+    time: number;
+    node?: Read & { rest: [number, number, number]; displacement: [number, number, number] };
+    element?: Read & { material: number };
+    energy?: { kinetic: number; strain: number; hourglass: number };
+}
+
 export type Text =
+    | Values
+    | { kind: 'no_values'; text: string }
     | Hello
     | Status
     | HandNews
@@ -265,6 +286,7 @@ type Point = readonly [number, number, number];
 export type Request =
     | { do: 'frame'; field: string }
     | { do: 'forces'; tool: number; after: number }
+    | { do: 'inspect'; node?: number; face?: number; energy?: boolean }
     | { do: 'grab'; hand: number; point: Point }
     | { do: 'pull'; hand: number; to: Point }
     | { do: 'release'; hand: number }

@@ -4,14 +4,15 @@ import { Connection, type Loss } from './connection';
 import {
     KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
     readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
-    type Status, type SurfaceMessage, type Text,
+    type Status, type SurfaceMessage, type Text, type Values,
 } from './protocol';
 
 const FRAME_MS = 1000 / 100; // displays faster than that get by with this
 const FORCES_MS = 1000 / 30;
+const VALUES_MS = 1000 / 5;
 const AFTER_NONE_MS = 200;
 
-const LOOKING: Request['do'][] = ['frame', 'forces'];
+const LOOKING: Request['do'][] = ['frame', 'forces', 'inspect'];
 export const ONLY_WATCHES = 'This page may only watch. Ask for the other address to act on the run.';
 
 export interface Events {
@@ -22,6 +23,7 @@ export interface Events {
     forces(forces: Forces): void;
     status(status: Status): void;
     hand(news: HandNews): void;
+    values(values: Values): void;
     note(text: string): void;
     lost(loss: Loss): void;
 }
@@ -35,18 +37,22 @@ export class Session {
     connections = 0;
     field = 'none';
     forceTool = -1; // whose forces the graph shows
+    inspected: { node: number; face: number } | null = null; // what values are asked for again and again
+    energies = false; // whether those of the whole body are asked for, too
     private readonly connection: Connection;
     private waiting = false;
     private nextFrame = 0;
     private forcesWaiting = false;
     private forcesAfter = 0;
     private nextForces = 0;
+    private valuesWaiting = false;
+    private nextValues = 0;
 
     constructor(private readonly events: Events) {
         this.connection = new Connection({
             opened: () => {
-                this.waiting = this.forcesWaiting = false;
-                this.nextFrame = this.nextForces = 0;
+                this.waiting = this.forcesWaiting = this.valuesWaiting = false;
+                this.nextFrame = this.nextForces = this.nextValues = 0;
                 this.connections++;
             },
             text: (message) => this.text(message as Text),
@@ -93,6 +99,11 @@ export class Session {
             this.nextForces = now + FORCES_MS - 4;
             this.send({ do: 'forces', tool: this.forceTool, after: this.forcesAfter });
         }
+        if (!this.valuesWaiting && (this.inspected || this.energies) && now >= this.nextValues) {
+            this.valuesWaiting = true;
+            this.nextValues = now + VALUES_MS;
+            this.send({ do: 'inspect', ...this.inspected, ...(this.energies ? { energy: true } : {}) });
+        }
     }
 
     private lastTick = 0;
@@ -108,6 +119,12 @@ export class Session {
             case 'status':
                 this.status = message;
                 return this.events.status(message);
+            case 'values':
+                this.valuesWaiting = false;
+                return this.events.values(message);
+            case 'no_values':
+                this.valuesWaiting = false;
+                return;
             case 'hand':
                 return this.events.hand(message);
             case 'saved':

@@ -6,6 +6,7 @@ import { Instruments } from './instruments';
 import { Cavity } from './cavity';
 import type { Drawn } from './drawn';
 import { Cut } from '../inspect/cut';
+import { Marks } from '../inspect/marks';
 import { Edges } from './edges';
 import { Organ, type Seen } from './organ';
 import { Others } from './others';
@@ -22,6 +23,7 @@ export class View {
     readonly pull = new PullPicture();
     readonly others = new Others();
     readonly cut = new Cut();
+    readonly marks = new Marks();
     readonly tissue: Tissue;
     drawn = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
@@ -54,7 +56,7 @@ export class View {
         this.tissue = new Tissue(this.fine, this.cut.plane);
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
-        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group);
+        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group, this.marks.group);
         new ResizeObserver(() => {
             this.resize();
             this.draw(0); // at once: an empty canvas would flash
@@ -98,6 +100,7 @@ export class View {
         this.scene.add(this.organ.mesh, this.edges.lines);
         this.pull.setSize(surface.size);
         this.others.setSize(surface.size);
+        this.marks.setSize(surface.size);
         this.cut.setBody(surface.center, surface.size);
         this.endoscope.frame(surface.center, surface.size, from);
         this.see(this.seen);
@@ -155,6 +158,23 @@ export class View {
         if (!this.finer || !this.mesh) return point;
         const [x, y, z] = point;
         return nearestPoint(this.mesh.positions, this.mesh.meshQuads, { x, y, z }).point;
+    }
+
+    /* The face of the mesh's surface that is nearest to a point, and the nearest of its corners. */
+    nodeAt([x, y, z]: readonly [number, number, number]): { node: number; face: number } | null {
+        if (!this.mesh) return null;
+        const { positions, meshQuads } = this.mesh;
+        const face = nearestPoint(positions, meshQuads, { x, y, z }).quad;
+        if (face < 0) return null;
+        const far = (node: number): number =>
+            Math.hypot(positions[3 * node]! - x, positions[3 * node + 1]! - y, positions[3 * node + 2]! - z);
+        const corners = [...meshQuads.subarray(4 * face, 4 * face + 4)];
+        return { face, node: corners.reduce((best, node) => (far(node) < far(best) ? node : best)) };
+    }
+
+    /* Where a node of the mesh's surface is now. */
+    placeOf(node: number, out: THREE.Vector3): void {
+        if (this.mesh) out.fromArray(this.mesh.positions, 3 * node);
     }
 
     /* Shows, fades and hides organs, by their index. */
