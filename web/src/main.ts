@@ -4,6 +4,7 @@ import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
 import { Hand } from './hands/hand';
 import { InsideCard } from './inspect/insidecard';
+import { Capture } from './inspect/capture';
 import { MeasureCard } from './inspect/measurecard';
 import { Instrument } from './hands/instrument';
 import { listenToKeys } from './hands/keys';
@@ -135,10 +136,13 @@ function start(): void {
     const replay = new ReplayBar(session);
     const transport = new Transport(session, help, replay);
     const measure = new MeasureCard(session, view, note);
+    const capture = new Capture(session, view, note);
     const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, measure, used);
-    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, say: note, used, help });
+    listenToKeys({
+        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, used, help, say: note,
+    });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));

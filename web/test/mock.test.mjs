@@ -1,5 +1,6 @@
 // The page against the stand-in for the server: what the engine does too rarely to test with it.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { colours, difference, drag, openBrowser, openPage } from './browser.mjs';
 import { mock } from './mock.mjs';
@@ -452,6 +453,70 @@ test('a distance is measured between two places, now and at rest, and follows th
     await v.page.waitForTimeout(600);
     await v.page.keyboard.press('Enter');
     await v.until(() => window.lariat.measured > 0);
+    await v.close();
+});
+
+/* What the browser saves when something is done, and its name. */
+async function saved(page, act) {
+    const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);
+    return { name: download.suggestedFilename(), data: readFileSync(await download.path()) };
+}
+
+test('a picture with its legend is saved, by button and by key', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.getByRole('radio', { name: 'von Mises stress' }).click();
+    await v.until(() => window.lariat.field === 4);
+    await v.page.locator('#picture').focus();
+    const { name, data } = await saved(v.page, () => v.page.keyboard.press('n'));
+    assert.match(name, /^pear-\d+\.png$/);
+    assert.equal(data.subarray(1, 4).toString(), 'PNG');
+    // As large as the picture, and a line of text below it; the organ is in its middle.
+    const seen = await v.page.evaluate(async (base64) => {
+        const image = new Image();
+        image.src = `data:image/png;base64,${base64}`;
+        await image.decode();
+        const canvas = document.createElement('canvas');
+        [canvas.width, canvas.height] = [image.width, image.height];
+        const pen = canvas.getContext('2d', { willReadFrequently: true });
+        pen.drawImage(image, 0, 0);
+        const row = (y) => {
+            const colours = new Set();
+            for (let x = 0; x < image.width; x++) colours.add(pen.getImageData(x, y, 1, 1).data.join());
+            return colours.size;
+        };
+        const picture = document.getElementById('picture');
+        return {
+            width: image.width, foot: image.height - picture.height, drawn: picture.width,
+            middle: [...pen.getImageData(image.width / 2, picture.height / 2, 1, 1).data],
+            legend: row(picture.height + (image.height - picture.height) / 2),
+        };
+    }, data.toString('base64'));
+    assert.equal(seen.width, seen.drawn);
+    assert.ok(seen.foot >= 30, `${seen.foot} pixels below`);
+    assert.ok(seen.middle[2] > seen.middle[1], `violet: ${seen.middle}`);
+    assert.ok(seen.legend > 60, `${seen.legend} colours in the line below`);
+    await v.page.locator('#keep').evaluate((card) => (card.open = true));
+    const second = await saved(v.page, () => v.page.getByRole('button', { name: 'Picture', exact: true }).click());
+    assert.match(second.name, /\.png$/);
+    await v.close();
+});
+
+test('a video is filmed and saved', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('w');
+    await v.page.locator('#filming').waitFor({ state: 'visible', timeout: 3000 });
+    for (let i = 0; i < 20; i++) {
+        await v.page.keyboard.press('ArrowLeft');
+        await v.page.waitForTimeout(60);
+    }
+    const { name, data } = await saved(v.page, () => v.page.keyboard.press('w'));
+    assert.match(name, /^pear-\d+\.webm$/);
+    assert.equal(data.readUInt32BE(0), 0x1a45dfa3, 'WebM');
+    assert.ok(data.length > 5000, `${data.length} bytes`);
+    await v.page.locator('#filming').waitFor({ state: 'hidden', timeout: 3000 });
+    // Clusters with blocks of pictures, one after the other.
+    assert.ok(data.includes(Buffer.from([0x1f, 0x43, 0xb6, 0x75])), 'pictures are in it');
     await v.close();
 });
 

@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'inspect/measurecard', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+        'inspect/measurecard', 'inspect/capture', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -333,6 +333,13 @@ test('a tool says its force, its limit, and when that is reached', () => {
     assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
     assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+});
+
+test('a picture is named after the scene and its step', () => {
+    const { fileName } = parts.capture;
+    assert.equal(fileName('Uterus', 12000, 'png'), 'uterus-12000.png');
+    assert.equal(fileName(' Left kidney (CT) ', 0, 'webm'), 'left-kidney-ct-0.webm');
+    assert.equal(fileName('', 7, 'png'), 'lariat-7.png');
 });
 
 test('a distance is told with what it was at rest', () => {

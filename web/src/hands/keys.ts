@@ -5,6 +5,7 @@ import type { Hand } from './hand';
 import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
 import type { InsideCard } from '../inspect/insidecard';
+import type { Capture } from '../inspect/capture';
 import type { MeasureCard } from '../inspect/measurecard';
 import type { SavedCard } from '../cards/savedcard';
 import type { Panel } from '../cards/panel';
@@ -23,6 +24,7 @@ export interface Served {
     panel: Panel;
     inside: InsideCard;
     measure: MeasureCard;
+    capture: Capture;
     say(text: string): void;
     used(what: 'pull' | 'look' | 'move'): void;
     help(): void;
@@ -70,6 +72,8 @@ function press(s: Served, event: KeyboardEvent): boolean {
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
+        n: () => s.capture.takePicture(),
+        w: () => s.capture.filmOrEnd(),
         i: () => s.measure.toggle('read'),
         d: () => s.measure.toggle('distance'),
         Enter: () => s.measure.pressMiddle(),
