@@ -6,6 +6,7 @@ import { Hand } from './hands/hand';
 import { InsideCard } from './inspect/insidecard';
 import { Capture } from './inspect/capture';
 import { MeasureCard } from './inspect/measurecard';
+import { Plots } from './inspect/plots';
 import { Instrument } from './hands/instrument';
 import { listenToKeys } from './hands/keys';
 import { Hints, Trouble, note } from './cards/notices';
@@ -49,6 +50,7 @@ function start(): void {
             saved.setHello(hello);
             inside.setHello(hello);
             measure.setHello(hello);
+            plots.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
@@ -87,6 +89,7 @@ function start(): void {
             replay.update(status);
             hints.silence(replay.shown || trouble.shown || measure.press !== 'pull');
             panel.update(status);
+            plots.update(status);
             line.update(status);
             toolCard.update(status);
             showStop(status);
@@ -99,6 +102,7 @@ function start(): void {
         },
         values(values) {
             measure.values(values);
+            plots.values(values);
         },
         note,
         lost(loss) {
@@ -137,11 +141,12 @@ function start(): void {
     const transport = new Transport(session, help, replay);
     const measure = new MeasureCard(session, view, note);
     const capture = new Capture(session, view, note);
+    const plots = new Plots(session);
     const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, measure, used);
     listenToKeys({
-        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, used, help, say: note,
+        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, plots, used, help, say: note,
     });
 
     const edges = element<HTMLInputElement>('edges');

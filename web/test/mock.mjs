@@ -95,6 +95,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
+        late: 0, energies: 0, // answers that were; questions for energies
         refused: [], // what those who may only watch have asked for
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
@@ -181,11 +182,13 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         ],
         saves: true, hand_force: 5, tool_speed: 1, watches: false,
     });
+    const bins = (...held) => Array.from({ length: 40 }, (_, i) => held.find(([bin]) => bin === i)?.[1] ?? 0);
     const status = () => ({
         kind: 'status', state: state.state, step: state.step, time: state.step * 1e-4, pace: state.pace,
         step_us: { p50: 21.0, p99: 30.1, p999: 44.0, max: 120.0 },
         tick_us: { p50: 231.0, p99: 320.0, p999: 450.0, max: 1520.0 },
-        ticks: state.tick, misses: 0, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
+        step_bins: bins([8, state.tick]), tick_bins: bins([15, state.tick], [24, state.late]),
+        ticks: state.tick, misses: state.late, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
         recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
@@ -271,6 +274,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
 
     /* The numbers of the mesh's file begin at 1000 and 5000. */
     function valuesMessage({ node, face, energy }) {
+        if (energy) state.energies++;
         const moved = (i) => [0, 1, 2].map((k) => now[3 * i + k] - rest[3 * i + k]);
         const size = node === undefined ? 0 : Math.hypot(...moved(node));
         const read = { von_mises: size * 40000, pressure: -1250, energy: size * 900 };

@@ -456,6 +456,41 @@ test('a distance is measured between two places, now and at rest, and follows th
     await v.close();
 });
 
+test('energies and times are plotted, and asked for only while they are seen', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(500);
+    assert.equal(own.state.energies, 0);
+    own.state.late = 3;
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('y');
+    await v.page.getByText('strain 1.01 mJ, kinetic').waitFor({ timeout: 3000 });
+    await v.page.getByText(/Answers to tools, due within 1\.00 ms: 3 of \d+ missed/).waitFor({ timeout: 3000 });
+    await v.page.getByText('A step, of the 100 µs that it stands for').waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(1500);
+    const drawn = (id) => v.page.evaluate((name) => {
+        const canvas = document.getElementById(name);
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        const count = (match) => data.reduce((sum, _, i) => sum + (i % 4 === 0 && data[i + 3] > 100 && match(data[i], data[i + 1], data[i + 2]) ? 1 : 0), 0);
+        return { red: count((r, g, b) => r > 200 && g < 150 && b < 150), blue: count((r, g, b) => b > 200 && r < 150), amber: count((r, g, b) => r > 200 && g > 150 && b < 100) };
+    }, id);
+    const [energies, answers, steps] = [await drawn('energies'), await drawn('answers'), await drawn('steps')];
+    assert.ok(energies.amber > 5, JSON.stringify(energies));
+    assert.ok(answers.blue > 20 && answers.red > 5, `late ones are red: ${JSON.stringify(answers)}`);
+    assert.ok(steps.blue > 20 && steps.red === 0, JSON.stringify(steps));
+    await v.page.setViewportSize({ width: 1000, height: 900 });
+    await v.page.waitForTimeout(700);
+    await v.shot('plots');
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('y');
+    await v.page.waitForTimeout(300);
+    const asked = own.state.energies;
+    await v.page.waitForTimeout(700);
+    assert.equal(own.state.energies, asked);
+    await v.close();
+});
+
 /* What the browser saves when something is done, and its name. */
 async function saved(page, act) {
     const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);

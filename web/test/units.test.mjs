@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'inspect/measurecard', 'inspect/capture', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -333,6 +333,20 @@ test('a tool says its force, its limit, and when that is reached', () => {
     assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
     assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+});
+
+test('bins of times begin where the engine says, and decades hold what is plotted', () => {
+    const { binStart, binAt, shownBins, decades } = parts.plots;
+    for (let bin = 0; bin < 40; bin++) {
+        assert.ok(Math.abs(binStart(bin) - 1.024e-6 * 2 ** (bin >> 1) * (bin & 1 ? 1.5 : 1)) < 1e-18);
+        assert.ok(Math.abs(binAt(binStart(bin)) - bin) < 1e-9);
+    }
+    assert.ok(binAt(1e-3) > 19 && binAt(1e-3) < 20);
+    const bins = Array.from({ length: 40 }, (_, i) => (i === 15 ? 10 : 0));
+    assert.deepEqual(shownBins(bins, binAt(1e-3)), [14, 22]);
+    assert.deepEqual(decades([2e-3, 5e-5, 0]), [-5, -2]);
+    assert.deepEqual(decades([1e-3, 1e-15]), [-9, -3]);
+    assert.deepEqual(decades([]), [-6, -3]);
 });
 
 test('a picture is named after the scene and its step', () => {

@@ -6,6 +6,7 @@ import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
 import type { InsideCard } from '../inspect/insidecard';
 import type { Capture } from '../inspect/capture';
+import type { Plots } from '../inspect/plots';
 import type { MeasureCard } from '../inspect/measurecard';
 import type { SavedCard } from '../cards/savedcard';
 import type { Panel } from '../cards/panel';
@@ -25,6 +26,7 @@ export interface Served {
     inside: InsideCard;
     measure: MeasureCard;
     capture: Capture;
+    plots: Plots;
     say(text: string): void;
     used(what: 'pull' | 'look' | 'move'): void;
     help(): void;
@@ -72,6 +74,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
+        y: () => s.plots.toggle(),
         n: () => s.capture.takePicture(),
         w: () => s.capture.filmOrEnd(),
         i: () => s.measure.toggle('read'),

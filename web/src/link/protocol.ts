@@ -73,6 +73,8 @@ export interface Status {
     pace: number;
     step_us: Percentiles;
     tick_us: Percentiles;
+    step_bins: number[]; // the same times as counts since the start: inspect/plots.ts
+    tick_bins: number[];
     ticks: number;
     misses: number;
     slow_ticks: number; // late in slow motion, and no misses
