@@ -566,6 +566,34 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     own.state.replay = { name: 'pear-1.recording', time: 0.4, length: 2 };
     await v.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
     await laidOut(v, [...always, '#replay'], 'replay');
+    own.state.replay = null;
+    await v.page.locator('#replay').waitFor({ state: 'hidden', timeout: 3000 });
+    // Every panel unfolded and full: it scrolls, and is nowhere wider than its column.
+    await v.page.evaluate(() => document.querySelectorAll('#looks details').forEach((card) => (card.open = true)));
+    await v.page.getByLabel('cut open').check();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('i');
+    await v.page.keyboard.press('Enter');
+    await v.page.keyboard.press('d');
+    await v.page.keyboard.press('Enter');
+    await v.until(() => window.lariat.reading.node > 0);
+    await v.page.keyboard.press('w');
+    await laidOut(v, always, 'unfolded');
+    for (const width of [390, 800, 1024, 1600]) {
+        await v.page.setViewportSize({ width, height: 780 });
+        await v.page.waitForTimeout(150);
+        const wide = await v.page.evaluate(() => {
+            const looks = document.getElementById('looks');
+            const { right } = looks.getBoundingClientRect();
+            return [...looks.querySelectorAll('*')].filter((part) => part.getBoundingClientRect().right > right + 1).map((part) => part.id || part.outerHTML.slice(0, 80));
+        });
+        assert.deepEqual(wide, [], `wider than the column at ${width}`);
+        await v.page.locator('#cut-across').scrollIntoViewIfNeeded();
+        await v.shot(`layout-inside-${width}`);
+        await v.page.locator('#steps').scrollIntoViewIfNeeded();
+        await v.shot(`layout-plots-${width}`);
+    }
+    await Promise.all([v.page.waitForEvent('download'), v.page.keyboard.press('w')]);
     await v.close();
 });
 

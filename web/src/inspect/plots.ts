@@ -106,7 +106,7 @@ export class Plots {
         if (!pen) return;
         const [low, high] = decades(this.samples.flatMap((sample) => [sample.strain, sample.kinetic]));
         const { width, height } = this.energies;
-        const left = 38;
+        const left = 52;
         const y = (value: number): number =>
             height - 4 - ((Math.log10(Math.max(value, 10 ** low)) - low) / (high - low)) * (height - 12);
         pen.textAlign = 'right';
