@@ -151,6 +151,9 @@ function start(): void {
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
+    const shadows = element<HTMLInputElement>('shadows');
+    shadows.checked = view.shadows;
+    shadows.addEventListener('change', () => view.showShadows(shadows.checked));
     const fine = element<HTMLInputElement>('fine');
     fine.addEventListener('change', () => {
         view.showFine(fine.checked);

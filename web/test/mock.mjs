@@ -408,6 +408,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 state,
                 faults,
                 mesh,
+                poses,
                 close() {
                     clearInterval(engine);
                     for (const socket of sockets.clients) socket.terminate();

@@ -491,6 +491,37 @@ test('energies and times are plotted, and asked for only while they are seen', a
     await v.close();
 });
 
+test('instruments throw shadows on tissue, not on colours that stand for values', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    // The jaws point at the organ from the front, a little above its middle.
+    own.poses[0].position = [0, -0.05, 0.055];
+    own.poses[0].orientation = [Math.SQRT1_2, Math.SQRT1_2, 0, 0];
+    const v = await openPage(browser, own.url);
+    assert.equal(await v.page.getByLabel('shadows').isChecked(), false, 'not where the main processor draws');
+    const places = Array.from({ length: 400 }, (_, i) => [390 + (i % 20) * 12, 180 + Math.floor(i / 20) * 16]);
+    const dark = async () => {
+        await v.page.waitForTimeout(500);
+        return colours(v.page, places);
+    };
+    const plain = await dark();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('z');
+    const shaded = await dark();
+    await v.shot('shadows');
+    const darker = plain.filter((colour, i) => colour[0] - shaded[i][0] > 30).length;
+    const brighter = plain.filter((colour, i) => shaded[i][0] - colour[0] > 30).length;
+    assert.ok(darker > 8 && darker < 200, `${darker} of 400 places are in the shadow`);
+    assert.ok(brighter < 5, `${brighter} are brighter`);
+    await v.page.keyboard.press('3');
+    await v.until(() => window.lariat.field === 4);
+    const mapped = await dark();
+    await v.page.keyboard.press('z');
+    const without = await dark();
+    assert.ok(mapped.every((colour, i) => difference(colour, without[i]) < 20), 'values keep their colours');
+    await v.close();
+});
+
 /* What the browser saves when something is done, and its name. */
 async function saved(page, act) {
     const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);

@@ -1,6 +1,7 @@
 /* The scene's tools as they are drawn, at the poses that the last frame told. A tool's own axes: the tip
  * is the origin, the shaft lies along +z, jaws open in the plane y = 0 towards -z. */
 import * as THREE from 'three';
+import type { Rod } from './shadows';
 import { steel } from './steel';
 import { TOOL_WORDS, type Frame, type ToolInfo } from '../link/protocol';
 
@@ -12,6 +13,7 @@ interface Drawn {
     group: THREE.Group;
     jaws: [THREE.Object3D, THREE.Object3D] | null;
     material: THREE.ShaderMaterial;
+    rods: Rod[]; // what throws its shadow
     reach: number; // radius of a ball about the tip that takes the pointer
 }
 
@@ -72,6 +74,11 @@ export class Instruments {
         return found;
     }
 
+    /* What throws shadows, in the order of the tools. */
+    get rods(): Rod[] {
+        return this.drawn.flatMap((one) => one?.rods ?? []);
+    }
+
     position(tool: number): THREE.Vector3 | null {
         return this.drawn[tool]?.group.position ?? null;
     }
@@ -85,28 +92,37 @@ function draw(info: ToolInfo): Drawn {
         to.add(mesh);
         return mesh;
     };
+    const rods: Rod[] = [];
+    const shade = (from: number, to: number, radius: number, of: THREE.Object3D = group): void => {
+        rods.push({ from: new THREE.Vector3(0, 0, from), to: new THREE.Vector3(0, 0, to), radius, of });
+    };
     let jaws: [THREE.Object3D, THREE.Object3D] | null = null;
     let reach = info.radius;
     if (info.shape === 'sphere') {
         add(new THREE.SphereGeometry(info.radius, 40, 28));
         // What holds the ball; it touches nothing.
         add(rod(info.radius * 0.28, info.radius * 0.9, info.radius * 14));
+        shade(0, 0, info.radius);
+        shade(info.radius * 0.9, info.radius * 14, info.radius * 0.28);
         reach = info.radius * 6;
     } else if (info.shape === 'capsule') {
         add(round(info.radius, info.length)).position.z = info.length / 2;
+        shade(0, info.length, info.radius);
     } else {
         const jaw = (): THREE.Object3D => {
             const pivot = new THREE.Group();
             add(round(info.radius, info.length), pivot).position.z = -info.length / 2;
             group.add(pivot);
+            shade(0, -info.length, info.radius, pivot);
             return pivot;
         };
         jaws = [jaw(), jaw()];
         add(new THREE.SphereGeometry(info.radius * 1.35, 24, 18));
         add(rod(info.radius * 1.1, 0, info.length * 7));
+        shade(0, info.length * 7, info.radius * 1.1);
         reach = info.length * 2;
     }
-    return { info, group, jaws, material, reach };
+    return { info, group, jaws, material, rods, reach };
 }
 
 const round = (radius: number, length: number): THREE.BufferGeometry =>

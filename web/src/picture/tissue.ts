@@ -1,6 +1,6 @@
 /* How wet tissue looks in the light of an endoscope (T 1.5.2): the light sits at the camera and does
- * not fall off with distance, so there are no shadows, and everything follows from one angle, that
- * between the surface and the line of sight:
+ * not fall off with distance, so almost everything follows from one angle, that between the surface
+ * and the line of sight (shadows of instruments: shadows.ts):
  *
  *     cosine = normal . view    (light = view = half vector)
  *
@@ -9,6 +9,7 @@
  * vessels are noise over the REST position, so they move and stretch with the tissue.
  */
 import * as THREE from 'three';
+import { SHADOWS, Shadows } from './shadows';
 import { STEPS, colourMap, type MapName } from './palette';
 
 const VERTEX = /* glsl */ `
@@ -65,6 +66,7 @@ uniform vec2 range;     // least value, 1 / span
 uniform float mapped;   // 0: tissue, 1: values by the map, 2: tints as they are
 uniform vec4 cut;       // what lies beyond this plane is not drawn: inspect/cut.ts
 ${NOISE}
+${SHADOWS}
 void main() {
     float inside = cut.w - dot(cut.xyz, vPlace);
     if (inside < 0.0) discard;
@@ -126,6 +128,8 @@ void main() {
     shine *= mix(1.0, 0.16, plain);
 
     vec3 light = colour * lit * mix(1.36, 1.08, plain) + shine;
+    // Colours that stand for values stay as they are.
+    if (mapped < 0.5 && rodCount > 0) light *= mix(vec3(0.30, 0.24, 0.25), vec3(1.0), lampReaches(vPlace));
     // Bright places roll off instead of burning out.
     light = min(light, 0.62) + 0.38 * (1.0 - exp(-max(light - 0.62, 0.0) / 0.38));
     // What a cut lays open is the back of the surface: matt, and with a bright rim.
@@ -141,6 +145,7 @@ void main() {
 
 export class Tissue {
     readonly material: THREE.ShaderMaterial;
+    readonly shadows = new Shadows();
     readonly faded: THREE.ShaderMaterial; // the same, seen through
     private readonly maps: Record<MapName, THREE.DataTexture>;
 
@@ -157,6 +162,7 @@ export class Tissue {
                 mapped: { value: 0 },
                 turn: { value: new THREE.Matrix3() },
                 cut: { value: cut },
+                ...this.shadows.uniforms,
             },
             side: THREE.DoubleSide,
             polygonOffset: true,

@@ -54,6 +54,7 @@ export class View {
         this.fine = asked ? asked === 'fine' : drawnInHardware();
         this.adapts = !asked;
         this.tissue = new Tissue(this.fine, this.cut.plane);
+        this.tissue.shadows.on = this.fine;
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
         this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group, this.marks.group);
@@ -145,6 +146,15 @@ export class View {
     showProcessors(yes: boolean): void {
         this.processorsShown = yes;
         this.shown?.showProcessors(yes);
+        this.stale = true;
+    }
+
+    get shadows(): boolean {
+        return this.tissue.shadows.on;
+    }
+
+    showShadows(yes: boolean): void {
+        this.tissue.shadows.on = yes;
         this.stale = true;
     }
 
@@ -268,6 +278,7 @@ export class View {
         if (!this.stale) return false;
         this.stale = false;
         this.tissue.follow(this.endoscope.camera);
+        this.tissue.shadows.update(this.instruments.rods, this.endoscope.camera, this.mesh?.size ?? 1);
         this.cavity.follow(this.endoscope.camera);
         this.renderer.render(this.scene, this.endoscope.camera);
         this.drawn++;
