@@ -92,6 +92,31 @@ static void check_run(const lar_model *model, double seconds, double *moved) {
     lar_simulation_destroy(simulation);
 }
 
+/* Instruments wait where they touch nothing: outside of the ball around the mesh, jaws and all. */
+static void check_tools(const lar_model *model) {
+    lar_simulation *simulation = NULL;
+    lar_model_info info;
+    if (lar_model_inspect(model, &info, &error) ||
+        lar_simulation_create(model, NULL, &simulation, &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(lar_simulation_tool_count(simulation), 2);
+    double diagonal[3], radius = 0;
+    for (int i = 0; i < 3; i++) diagonal[i] = info.upper[i] - info.lower[i];
+    radius = 0.5 * hypot(hypot(diagonal[0], diagonal[1]), diagonal[2]);
+    for (int32_t t = 0; t < 2; t++) {
+        lar_tool_info tool;
+        lar_simulation_tool(simulation, t, &tool, NULL);
+        assert_string_equal(tool.name, t ? "grasper" : "probe");
+        double far[3];
+        for (int i = 0; i < 3; i++)
+            far[i] = tool.rest.position[i] - 0.5 * (info.upper[i] + info.lower[i]);
+        double room = hypot(hypot(far[0], far[1]), far[2]) - radius - tool.length - tool.radius;
+        if (room < 0.02 * radius || room > 0.5 * radius)
+            fail_msg("%s is %g m beside a body of %g m", tool.name, room, radius);
+    }
+    lar_simulation_destroy(simulation);
+}
+
 static void a_scene_of_two_regions_runs(void **state) {
     (void)state;
     lar_meshing_info info;
@@ -107,6 +132,7 @@ static void a_scene_of_two_regions_runs(void **state) {
     assert_int_equal(lar_model_material(model, 0, &material, &error), LAR_OK);
     assert_string_equal(material.name, "li\"v\\er: # {x}");
     assert_true(material.elements > 100);
+    check_tools(model);
     assert_int_equal(lar_model_material(model, 1, &material, &error), LAR_OK);
     assert_string_equal(material.name, "bone ?  \xc3\xa9");
     assert_true(lar_model_embedded(model, &fine));
@@ -125,6 +151,7 @@ static void a_pull_grows_and_lets_go(void **state) {
     lar_meshing_info info;
     double pulled, after;
     lar_model *model = model_of(TORUS, (lar_meshing_options){.fix = "left"}, &info);
+    check_tools(model);
     assert_true(lar_model_duration(model) >= 2);
     check_run(model, 0.7, &pulled);
     check_run(model, lar_model_duration(model), &after);
