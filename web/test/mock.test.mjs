@@ -438,6 +438,21 @@ test('a distance is measured between two places, now and at rest, and follows th
     assert.match(await v.page.locator('#distance').innerText(), /^\d\d\.\d mm now, \d\d\.\d mm at rest \([+−]0\.0 %\)$/);
     await v.page.waitForTimeout(300);
     await v.shot('distance');
+    // Marks that rest cost no pictures.
+    own.state.mute = true;
+    await v.page.waitForTimeout(400);
+    const pictures = await v.get('pictures');
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.get('pictures'), pictures);
+    own.state.mute = false;
+    await v.page.reload();
+    await v.until(() => window.lariat?.frames > 1);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('d');
+    await v.page.mouse.click(500, 160);
+    await v.page.mouse.click(500, 480);
+    await v.until(() => window.lariat.measured > 0);
+    await v.page.waitForTimeout(300);
     const [line] = await colours(v.page, [[500, 320]]);
     assert.ok(line[1] > line[0] + 30, `the line is green: ${line}`);
     await v.page.keyboard.press('d');

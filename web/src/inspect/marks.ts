@@ -29,8 +29,15 @@ export class Marks {
         this.size = size;
     }
 
-    /* At most two points; two are joined by a line. */
-    show(points: THREE.Vector3[]): void {
+    /* At most two points; two are joined by a line. False: nothing has moved. */
+    show(points: THREE.Vector3[]): boolean {
+        const still = this.dots.every((dot, i) => (points[i] ? dot.visible && dot.position.equals(points[i]!) : !dot.visible));
+        if (still) return false;
+        this.place(points);
+        return true;
+    }
+
+    private place(points: THREE.Vector3[]): void {
         this.dots.forEach((dot, i) => {
             dot.visible = i < points.length;
             if (points[i]) dot.position.copy(points[i]);

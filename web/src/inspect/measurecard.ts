@@ -48,7 +48,7 @@ export class MeasureCard {
     private readonly list = element('press');
     private readonly rows = element('reading');
     private readonly points = [new THREE.Vector3(), new THREE.Vector3()];
-    private readonly rest = new THREE.Vector3();
+    private readonly nodePlace = new THREE.Vector3();
     private nextText = 0;
 
     constructor(
@@ -144,11 +144,12 @@ export class MeasureCard {
             follow(surface, end, this.points[i]!);
             return this.points[i]!;
         });
+        let marks = shown;
         if (this.marked === 'read' && this.asked) {
-            this.view.placeOf(this.asked.node, this.rest);
-            this.view.marks.show([this.rest]);
-        } else this.view.marks.show(shown);
-        this.view.changed();
+            this.view.placeOf(this.asked.node, this.nodePlace);
+            marks = [this.nodePlace];
+        }
+        if (this.view.marks.show(marks)) this.view.changed();
         if (now < this.nextText) return;
         this.nextText = now + 100;
         this.distance = shown.length === 2 ? shown[0]!.distanceTo(shown[1]!) : 0;
