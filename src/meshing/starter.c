@@ -244,6 +244,19 @@ static double ball_around(const lar_mesh *mesh, double middle[3]) {
     return 0.5 * lar_length(upper);
 }
 
+static double longest_edge(const lar_mesh *mesh) {
+    double most = 0, x[8][3], edge[3];
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        lar_mesh_corners(mesh, e, x);
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++) {
+                lar_minus(x[lar_fit_edge[a][k]], x[a], edge);
+                most = fmax(most, lar_length(edge));
+            }
+    }
+    return most;
+}
+
 /* Outside of that ball, so that they touch nothing, on the side from where the viewer looks: one to
  * the left of the picture's middle, one to the right. */
 static void put_tools(const lar_meshing *m, FILE *f) {
@@ -252,22 +265,27 @@ static void put_tools(const lar_meshing *m, FILE *f) {
     const double *eye = m->image ? from_image : from_other;
     double middle[3], right[3], place[2][3];
     double radius = ball_around(&m->mesh, middle), length = lar_length(eye);
+    /* Thinner ones would be felt by some points of large faces only (model/contact_check.h). */
+    double least = 0.13 * longest_edge(&m->mesh);
+    double probe = fmax(least, 0.035 * radius), jaw = fmax(least, 0.012 * radius);
+    double jaws = fmax(5 * jaw, 0.12 * radius);
+    double away = fmax(1.28 * radius, 1.05 * radius + jaws + jaw);
     lar_cross(up, eye, right);
     double wide = lar_length(right);
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3; i++)
-            place[side][i] = middle[i] + radius * (1.1 * eye[i] / length +
-                                                   (side ? 0.65 : -0.65) * right[i] / wide);
+            place[side][i] = middle[i] + away * (0.86 * eye[i] / length +
+                                                 (side ? 0.51 : -0.51) * right[i] / wide);
     fprintf(f,
             "# Instruments for the viewer and for devices (lariat view --device). They wait beside "
             "the\n"
             "# body and touch nothing until they are moved: a run is the same without them.\n"
             "tools:\n"
-            "  - { name: probe, shape: sphere, radius: %.2g, at: [%.6g, %.6g, %.6g] }\n"
-            "  - { name: grasper, shape: grasper, radius: %.2g, length: %.2g, spread: 50,\n"
+            "  - { name: probe, shape: sphere, radius: %.3g, at: [%.6g, %.6g, %.6g] }\n"
+            "  - { name: grasper, shape: grasper, radius: %.3g, length: %.3g, spread: 50,\n"
             "      at: [%.6g, %.6g, %.6g], towards: [%.4g, %.4g, %.4g] }\n\n",
-            0.035 * radius, place[0][0], place[0][1], place[0][2], 0.012 * radius, 0.12 * radius,
-            place[1][0], place[1][1], place[1][2], -eye[0], -eye[1], -eye[2]);
+            probe, place[0][0], place[0][1], place[0][2], jaw, jaws, place[1][0], place[1][1],
+            place[1][2], -eye[0], -eye[1], -eye[2]);
 }
 
 static void put_end(const lar_meshing *m, FILE *f) {

@@ -124,7 +124,7 @@ says 'grasper: grasper, radius'
 expect 0 "$LARIAT" run Two_organs/Two_organs.yaml --time 1 --json
 hash=$(value_of state_hash)
 sed '/^tools:/,/towards/d' Two_organs/Two_organs.yaml >Two_organs/bare.yaml
-grep -q probe Two_organs/bare.yaml && fail "the instruments are still in the scene"
+grep -q 'name: probe' Two_organs/bare.yaml && fail "the instruments are still in the scene"
 expect 0 "$LARIAT" run Two_organs/bare.yaml --time 1 --json
 [ "$(value_of state_hash)" = "$hash" ] || fail "with instruments $hash, without $(value_of state_hash)"
 
