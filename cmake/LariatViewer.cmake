@@ -19,6 +19,7 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
     session/server_reading.c
     session/server_riding.c
     session/server_saved.c
+    session/server_scan.c
     session/server_send.c
     session/server_socket.c
     session/server_work.c)

@@ -825,6 +825,8 @@ typedef struct lar_server_options {
     const char *watch_token; /* who shows this one instead may watch and do nothing else; needs a
                                 token beside it; NULL: none */
     const char *folder;      /* of the viewer's files; NULL: those installed with the library */
+    const char *scan;        /* a segmented image (lariat mesh) whose slices viewers may see;
+                                NULL: none */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
 } lar_server_options;

@@ -16,7 +16,8 @@
 #include "cli/view_report.h"
 
 typedef struct view_settings {
-    const char *scene, *resume, *listen, *token, *watch_token, *record, *save_folder, *viewer;
+    const char *scene, *resume, *listen, *token, *watch_token, *record, *save_folder, *viewer,
+        *scan;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
     double pace, seconds, time_step;
@@ -133,6 +134,7 @@ static int open_server(view *v) {
                                   .port = (int)s->port,
                                   .token = s->token,
                                   .watch_token = s->watch_token,
+                                  .scan = s->scan,
                                   .folder = s->viewer,
                                   .save_folder = s->save_folder};
     lar_error error, first;
@@ -417,6 +419,11 @@ static int view_main(int argc, char **argv) {
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",
                  &s.save_folder),
+        CLI_TEXT(
+            "--scan", "IMAGE",
+            "the segmented image that the scene was meshed from: its\nslices can be seen beside "
+            "the organ",
+            &s.scan),
         CLI_REAL("--pace", "F",
                  "simulated seconds per second of the clock (1); 0: as fast as it goes", &s.pace, 0,
                  100),

@@ -336,6 +336,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->listener = server->spare = -1;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
+    if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
     if (!status && asked.save_folder) status = lar_folder_make(asked.save_folder, error);
     if (!status) status = listen_there(server, asked.port, error);
     if (!status) status = copy_texts(server, &asked, error);
@@ -386,6 +387,7 @@ void lar_server_close(lar_server *server) {
     if (server->spare >= 0) close(server->spare);
     lar_picture_destroy(&server->picture);
     lar_files_clear(&server->files);
+    lar_scan_clear(&server->scan);
     lar_json_clear(&server->hello);
     lar_json_clear(&server->json);
     free(server->surface.memory);

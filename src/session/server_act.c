@@ -131,6 +131,27 @@ static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
     viewer->asks = true;
 }
 
+static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    const int32_t *size = server->scan.image.size;
+    char sentence[160];
+    if (!lar_scan_is_there(&server->scan)) {
+        lar_viewer_note(server, viewer,
+                        "there is no scan here; start the engine with --scan and the image that "
+                        "the scene was meshed from");
+        return;
+    }
+    if (wish->index >= size[wish->axis]) {
+        snprintf(sentence, sizeof sentence,
+                 "the scan has %d x %d x %d voxels, counted from 0; ask for a slice of these",
+                 (int)size[0], (int)size[1], (int)size[2]);
+        lar_viewer_note(server, viewer, sentence);
+        return;
+    }
+    viewer->slice_axis = wish->axis;
+    viewer->slice_index = wish->index;
+    lar_viewer_wants(viewer, LAR_DUE_SLICE);
+}
+
 /* What is played moves its tools itself. */
 static bool is_played(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
     if (!server->status.replaying) return false;
@@ -152,7 +173,7 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wi
  * grab that was refused: they need no sentence of their own. */
 static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
     bool looks = wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES ||
-                 wish->kind == LAR_WISH_INSPECT;
+                 wish->kind == LAR_WISH_INSPECT || wish->kind == LAR_WISH_SLICE;
     if (!viewer->watches || looks) return false;
     if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
     lar_viewer_note(server, viewer,
@@ -200,6 +221,9 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         break;
     case LAR_WISH_SEEK:
         lar_session_seek(server->session, wish->time);
+        break;
+    case LAR_WISH_SLICE:
+        ask_slice(server, viewer, wish);
         break;
     case LAR_WISH_INSPECT:
         lar_server_inspect(server, viewer, wish);

@@ -85,6 +85,22 @@ static lar_status write_riding(lar_json *json, const lar_model *model, lar_error
     return LAR_OK;
 }
 
+static void write_scan(lar_json *json, const lar_image *image) {
+    lar_json_open(json, "scan", '{');
+    lar_json_open(json, "size", '[');
+    for (int i = 0; i < 3; i++) lar_json_integer(json, NULL, image->size[i]);
+    lar_json_close(json, ']');
+    lar_json_open(json, "labels", '[');
+    for (int32_t i = 0; i < image->name_count; i++) {
+        lar_json_open(json, NULL, '{');
+        lar_json_integer(json, "label", image->name[i].label);
+        lar_json_text(json, "name", image->name[i].name);
+        lar_json_close(json, '}');
+    }
+    lar_json_close(json, ']');
+    lar_json_close(json, '}');
+}
+
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     const lar_session *session = server->session;
     const lar_simulation *simulation = session->simulation;
@@ -117,6 +133,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_integer(json, "processors", lar_simulation_processors(simulation));
     lar_json_integer(json, "threads", lar_simulation_threads(simulation));
     write_materials(json, server->model, info.materials);
+    if (lar_scan_is_there(&server->scan)) write_scan(json, &server->scan.image);
     write_tools(json, session);
     write_fields(json);
     lar_json_boolean(json, "saves", server->save_folder != NULL);
@@ -384,6 +401,11 @@ int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
     case LAR_DUE_STATUS:
         write_status(server, viewer, &server->json);
         failed = send_json(viewer, &server->json);
+        break;
+    case LAR_DUE_SLICE:
+        lar_scan_slice(&server->scan, viewer->slice_axis, viewer->slice_index);
+        failed = send_bytes(viewer, lar_blob_data(&server->scan.slice), server->scan.slice.length,
+                            LWS_WRITE_BINARY);
         break;
     default:
         break;

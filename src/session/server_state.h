@@ -20,6 +20,7 @@
 #include "session/server_files.h"
 #include "session/server_hands.h"
 #include "session/server_json.h"
+#include "session/server_scan.h"
 #include "session/server_work.h"
 
 _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
@@ -51,7 +52,8 @@ enum {
     LAR_DUE_NOTES = 8,
     LAR_DUE_FORCES = 16,
     LAR_DUE_PICTURE = 32, /* the server's picture has what it asked for */
-    LAR_DUE_STATUS = 64
+    LAR_DUE_STATUS = 64,
+    LAR_DUE_SLICE = 128
 };
 
 typedef struct lar_viewer {
@@ -71,7 +73,8 @@ typedef struct lar_viewer {
     uint64_t painted_step; /* of the last frame; UINT64_MAX: none */
     int painted_field;
 
-    bool inspects; /* `question` waits for its turn */
+    int32_t slice_axis, slice_index; /* of the scan, as asked for last */
+    bool inspects;                   /* `question` waits for its turn */
     int64_t inspects_since;
     lar_question question;
 
@@ -120,6 +123,7 @@ struct lar_server {
     bool working;
     lar_hands hands;
     lar_blob surface, riding;
+    lar_scan scan;
     lar_picture picture;
     lar_json hello; /* all but its beginning */
     lar_json json;  /* what is being sent */

@@ -7,6 +7,7 @@ import { InsideCard } from './inspect/insidecard';
 import { Capture } from './inspect/capture';
 import { MeasureCard } from './inspect/measurecard';
 import { Plots } from './inspect/plots';
+import { Scan } from './inspect/scan';
 import { Instrument } from './hands/instrument';
 import { listenToKeys } from './hands/keys';
 import { Hints, Trouble, note } from './cards/notices';
@@ -51,6 +52,7 @@ function start(): void {
             inside.setHello(hello);
             measure.setHello(hello);
             plots.setHello(hello);
+            scan.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
@@ -104,6 +106,9 @@ function start(): void {
             measure.values(values);
             plots.values(values);
         },
+        slice(slice) {
+            scan.take(slice);
+        },
         note,
         lost(loss) {
             pointer.end();
@@ -142,11 +147,12 @@ function start(): void {
     const measure = new MeasureCard(session, view, note);
     const capture = new Capture(session, view, note);
     const plots = new Plots(session);
+    const scan = new Scan(session, view, note);
     const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, measure, used);
     listenToKeys({
-        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, plots, used, help, say: note,
+        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
     });
 
     const edges = element<HTMLInputElement>('edges');
@@ -229,7 +235,7 @@ function start(): void {
             counted = now;
         }
     }
-    publish(session, view, hand, force, measure);
+    publish(session, view, hand, force, measure, scan);
     requestAnimationFrame(loop);
     session.connect();
 }

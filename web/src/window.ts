@@ -2,10 +2,11 @@
 import type { ForceCard } from './cards/forcecard';
 import type { Hand } from './hands/hand';
 import type { Session } from './link/session';
+import type { Scan } from './inspect/scan';
 import type { MeasureCard } from './inspect/measurecard';
 import type { View } from './picture/view';
 
-export function publish(session: Session, view: View, hand: Hand, force: ForceCard, measure: MeasureCard): void {
+export function publish(session: Session, view: View, hand: Hand, force: ForceCard, measure: MeasureCard, scan: Scan): void {
     const state = {
         get connected() { return session.connected; },
         get connections() { return session.connections; },
@@ -27,6 +28,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get press() { return measure.press; },
         get reading() { return { node: measure.node, element: measure.elementNumber }; },
         get measured() { return measure.distance; },
+        get scan() { return scan.shown; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
         get others() { return view.others.shown; },

@@ -4,7 +4,7 @@ import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
-import { demo, endAll, rider, tornDemo, view } from './engine.mjs';
+import { demo, endAll, rider, scanned, tornDemo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
 const model = demo();
@@ -302,6 +302,22 @@ test('values of a node and an element are those of the engine', async () => {
     await v.shot('13-reading');
     await v.page.mouse.up();
     await v.page.getByRole('button', { name: 'Clear' }).click();
+});
+
+test('a scene from a scan: its slices, and the instruments beside it', async () => {
+    const { image, scene } = scanned();
+    const own = await view(scene, '--port', '0', '--scan', image);
+    const s = await openPage(browser, own.url);
+    await s.page.locator('#picture').focus();
+    await s.page.keyboard.press('q');
+    await s.until(() => window.lariat.scan);
+    await s.page.keyboard.press('a');
+    await s.page.getByText('i 12 of 24').waitFor({ timeout: 3000 });
+    assert.deepEqual(await s.page.locator('#tool-list button').evaluateAll((all) => all.map((one) => one.getAttribute('aria-label') ?? one.textContent)), ['hand', 'probe', 'grasper']);
+    await s.page.waitForTimeout(400);
+    await s.shot('14-scan');
+    await s.close();
+    await own.end();
 });
 
 test('who opens the second address can only watch', async () => {

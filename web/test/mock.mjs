@@ -14,6 +14,8 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/cs
 const POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; " +
     "font-src 'self'; connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+const SCAN = [29, 17, 25]; // voxels
+
 /* A pear of quads: a cube blown up to a sphere, narrower below. */
 function pear(n = 14) {
     const x = [];
@@ -75,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, scan = false, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -95,6 +97,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
+        slices: 0, // that were asked for
         late: 0, energies: 0, // answers that were; questions for energies
         refused: [], // what those who may only watch have asked for
     };
@@ -168,6 +171,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
+        ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
         lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
@@ -286,6 +290,29 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         };
     }
 
+    /* Voxels of 5 mm around the pear: itself, and a post of bone to its right. */
+    function sliceMessage({ axis, index }) {
+        const [u, v] = [[1, 2], [0, 2], [0, 1]][axis];
+        const [width, height] = [SCAN[u], SCAN[v]];
+        const out = new ArrayBuffer(72 + 4 * Math.ceil((width * height) / 2));
+        const origin = [-0.07, -0.04, -0.015];
+        const unit = (k, size) => [0, 1, 2].map((i) => (i === k ? size : 0));
+        new Uint32Array(out, 0, 6).set([5, axis, index, SCAN[axis], width, height]);
+        new Float32Array(out, 32, 3).set(origin.map((x, i) => x + (i === axis ? 0.005 * index : 0)));
+        new Float32Array(out, 44, 3).set(unit(u, 0.005));
+        new Float32Array(out, 56, 3).set(unit(v, 0.005));
+        const labels = new Uint16Array(out, 72, width * height);
+        for (let y = 0; y < height; y++)
+            for (let x = 0; x < width; x++) {
+                const at = [0, 0, 0];
+                [at[axis], at[u], at[v]] = [index, x, y];
+                const [px, py, pz] = at.map((n, i) => origin[i] + 0.005 * n);
+                labels[y * width + x] = px > 0.044 ? 2 : (px / 0.035) ** 2 + (py / 0.026) ** 2 + ((pz - 0.045) / 0.045) ** 2 < 1 ? 1 : 0;
+            }
+        state.slices++;
+        return out;
+    }
+
     function forcesMessage(index, after) {
         const all = forces[index];
         const count = Math.min(all.length, Math.max(0, state.tick - after));
@@ -346,6 +373,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
             const acts = {
                 frame: () => !state.mute && socket.send(frameMessage(m.field)),
                 forces: () => socket.send(forcesMessage(m.tool, m.after)),
+                slice: () => socket.send(sliceMessage(m)),
                 inspect: () => say(valuesMessage(m)),
                 grab() {
                     state.grabbed = m.point;
@@ -394,8 +422,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 },
                 seek: () => (state.replay.time = m.time),
             };
-            if (watches && !['frame', 'forces', 'inspect'].includes(m.do)) state.refused.push(m.do);
-            if (watches && !['frame', 'forces', 'inspect'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
+            if (watches && !['frame', 'forces', 'inspect', 'slice'].includes(m.do)) state.refused.push(m.do);
+            if (watches && !['frame', 'forces', 'inspect', 'slice'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();
         });

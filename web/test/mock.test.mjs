@@ -537,6 +537,52 @@ test('instruments throw shadows on tissue, not on colours that stand for values'
     await v.close();
 });
 
+test('slices of the scan are shown where they lie, and are asked for one at a time', async (t) => {
+    const own = await mock({ scan: true });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    const BONE = [685, 320]; // beside the organ
+    await v.page.waitForTimeout(300);
+    const [before, organ] = await colours(v.page, [BONE, [500, 320]]);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('q');
+    await v.until(() => window.lariat.scan);
+    await v.page.keyboard.press('a');
+    await v.page.keyboard.press('a'); // k, i, j: across the line of sight
+    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(400);
+    await v.shot('scan');
+    const [bone, still] = await colours(v.page, [BONE, [500, 320]]);
+    assert.ok(difference(before, bone) > 80, `bone ${bone} where there was ${before}`);
+    assert.ok(difference(organ, still) < 25, 'the organ stands before it');
+    // Cut open along it, one sees the slice within the organ.
+    await v.page.keyboard.press('k');
+    await v.page.keyboard.press('b');
+    await v.page.getByLabel('the other side').check();
+    await v.page.waitForTimeout(400);
+    await v.shot('scan-cut');
+    // As fast as the slider goes, one is under way at a time.
+    await v.page.getByLabel('Which slice').fill('3');
+    await v.page.getByText('j 3 of 17').waitFor({ timeout: 3000 });
+    await v.page.locator('#picture').focus();
+    const asked = own.state.slices;
+    for (let i = 0; i < 5; i++) await v.page.keyboard.press('}');
+    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    assert.ok(own.state.slices <= asked + 5, `${own.state.slices - asked} slices`);
+    await v.page.keyboard.press('q');
+    assert.equal(await v.get('scan'), false);
+    await v.page.waitForTimeout(300);
+    const [gone] = await colours(v.page, [BONE]);
+    assert.ok(difference(before, gone) < 25);
+    await v.close();
+    const w = await openPage(browser, server.url);
+    await w.page.locator('#picture').focus();
+    await w.page.keyboard.press('q');
+    await w.page.getByText('There is no scan').waitFor({ timeout: 3000 });
+    assert.equal(await w.page.getByLabel('scan slice').isVisible(), false);
+    await w.close();
+});
+
 /* What the browser saves when something is done, and its name. */
 async function saved(page, act) {
     const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);
@@ -602,7 +648,7 @@ test('a video is filmed and saved', async () => {
 });
 
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
-    const own = await mock();
+    const own = await mock({ scan: true });
     t.after(() => own.close());
     const always = ['header', '#slow', '#force', '#looks', '#transport'];
     const v = await openPage(browser, own.url);
@@ -624,6 +670,8 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     await v.page.keyboard.press('Enter');
     await v.until(() => window.lariat.reading.node > 0);
     await v.page.keyboard.press('w');
+    await v.page.keyboard.press('q');
+    await v.until(() => window.lariat.scan);
     await laidOut(v, always, 'unfolded');
     for (const width of [390, 800, 1024, 1600]) {
         await v.page.setViewportSize({ width, height: 780 });

@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -347,6 +347,12 @@ test('bins of times begin where the engine says, and decades hold what is plotte
     assert.deepEqual(decades([2e-3, 5e-5, 0]), [-5, -2]);
     assert.deepEqual(decades([1e-3, 1e-15]), [-9, -3]);
     assert.deepEqual(decades([]), [-6, -3]);
+});
+
+test('a slice reaches half a pixel beyond the centres of its outer pixels', () => {
+    const corners = parts.scan.cornersOf({ corner: [1, 2, 3], across: [0.5, 0, 0], down: [0, 0, 2], width: 4, height: 3 });
+    assert.deepEqual([...corners], [0.75, 2, 2, 2.75, 2, 2, 2.75, 2, 8, 0.75, 2, 8]);
+    assert.throws(() => parts.protocol.readSlice(new Uint32Array(20).fill(5).buffer), /wrong length/);
 });
 
 test('a picture is named after the scene and its step', () => {

@@ -6,6 +6,7 @@ import type { Instrument } from './instrument';
 import type { ReplayBar } from '../cards/replaybar';
 import type { InsideCard } from '../inspect/insidecard';
 import type { Capture } from '../inspect/capture';
+import type { Scan } from '../inspect/scan';
 import type { Plots } from '../inspect/plots';
 import type { MeasureCard } from '../inspect/measurecard';
 import type { SavedCard } from '../cards/savedcard';
@@ -27,6 +28,7 @@ export interface Served {
     measure: MeasureCard;
     capture: Capture;
     plots: Plots;
+    scan: Scan;
     say(text: string): void;
     used(what: 'pull' | 'look' | 'move'): void;
     help(): void;
@@ -56,7 +58,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
     }
     const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[key];
     if (arrow) return go(s, arrow[0]!, arrow[1]!, event.shiftKey);
-    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.', ',', ';', '<', '>'].includes(key)) return false;
+    if (event.repeat && !['+', '-', '=', 'PageUp', 'PageDown', '[', ']', '.', ',', ';', '<', '>', '{', '}'].includes(key)) return false;
     const acts: Record<string, () => void> = {
         ' ': () => s.transport.playOrPause(),
         '.': () => s.transport.step(),
@@ -75,6 +77,10 @@ function press(s: Served, event: KeyboardEvent): boolean {
         m: () => (element('fine-row').hidden ? s.say('This scene has no fine surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),
+        q: () => s.scan.toggle(),
+        a: () => s.scan.nextAxis(),
+        '{': () => s.scan.move(-1),
+        '}': () => s.scan.move(1),
         y: () => s.plots.toggle(),
         n: () => s.capture.takePicture(),
         w: () => s.capture.filmOrEnd(),

@@ -29,6 +29,7 @@ export interface Hello {
     title: string;
     nodes: number;
     elements: number;
+    scan?: { size: [number, number, number]; labels: { label: number; name: string }[] };
     riding?: { vertices: number; triangles: number; nodes: number };
     view?: [number, number, number];
     time_step: number;
@@ -177,6 +178,7 @@ export const KIND_SURFACE = 1;
 export const KIND_FRAME = 2;
 export const KIND_FORCES = 3;
 export const KIND_RIDING = 4;
+export const KIND_SLICE = 5;
 
 export const kindOf = (data: ArrayBuffer): number =>
     data.byteLength >= 4 ? new DataView(data).getUint32(0, true) : 0;
@@ -261,6 +263,32 @@ export function readFrame(data: ArrayBuffer, into: Frame): void {
     into.whole = a >>> 0 === view.getUint32(32, true) && b >>> 0 === view.getUint32(36, true);
 }
 
+/* A slice of the scan: labels, and where they lie [m]. */
+export interface Slice {
+    axis: number;
+    index: number;
+    count: number; // of slices along the axis
+    width: number;
+    height: number;
+    corner: Float32Array; // centre of the first pixel
+    across: Float32Array; // from one pixel to the next
+    down: Float32Array;
+    labels: Uint16Array;
+}
+
+export function readSlice(data: ArrayBuffer): Slice {
+    const [, axis, index, count, width, height] = new Uint32Array(data, 0, 6) as unknown as number[];
+    const pixels = width! * height!;
+    if (data.byteLength !== 72 + 4 * Math.ceil(pixels / 2)) throw new Error('a slice of wrong length');
+    return {
+        axis: axis!, index: index!, count: count!, width: width!, height: height!,
+        corner: new Float32Array(data, 32, 3),
+        across: new Float32Array(data, 44, 3),
+        down: new Float32Array(data, 56, 3),
+        labels: new Uint16Array(data, 72, pixels),
+    };
+}
+
 export interface Forces {
     tool: number;
     last: number;
@@ -289,6 +317,7 @@ export type Request =
     | { do: 'frame'; field: string }
     | { do: 'forces'; tool: number; after: number }
     | { do: 'inspect'; node?: number; face?: number; energy?: boolean }
+    | { do: 'slice'; axis: number; index: number }
     | { do: 'grab'; hand: number; point: Point }
     | { do: 'pull'; hand: number; to: Point }
     | { do: 'release'; hand: number }

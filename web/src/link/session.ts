@@ -2,9 +2,9 @@
  * last has arrived (T 6.5.1), so a slow display slows nothing but itself. */
 import { Connection, type Loss } from './connection';
 import {
-    KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
-    readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
-    type Status, type SurfaceMessage, type Text, type Values,
+    KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SLICE, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
+    readSlice, readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
+    type Slice, type Status, type SurfaceMessage, type Text, type Values,
 } from './protocol';
 
 const FRAME_MS = 1000 / 100; // displays faster than that get by with this
@@ -12,7 +12,7 @@ const FORCES_MS = 1000 / 30;
 const VALUES_MS = 1000 / 5;
 const AFTER_NONE_MS = 200;
 
-const LOOKING: Request['do'][] = ['frame', 'forces', 'inspect'];
+const LOOKING: Request['do'][] = ['frame', 'forces', 'inspect', 'slice'];
 export const ONLY_WATCHES = 'This page may only watch. Ask for the other address to act on the run.';
 
 export interface Events {
@@ -24,6 +24,7 @@ export interface Events {
     status(status: Status): void;
     hand(news: HandNews): void;
     values(values: Values): void;
+    slice(slice: Slice): void;
     note(text: string): void;
     lost(loss: Loss): void;
 }
@@ -158,6 +159,8 @@ export class Session {
             this.events.surface(readSurface(data));
         } else if (kind === KIND_RIDING) {
             this.events.riding(readRiding(data));
+        } else if (kind === KIND_SLICE) {
+            this.events.slice(readSlice(data));
         }
     }
 }

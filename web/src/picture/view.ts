@@ -66,6 +66,11 @@ export class View {
         this.resize();
     }
 
+    /* Something else that is drawn. */
+    add(object: THREE.Object3D): void {
+        this.scene.add(object);
+    }
+
     /* What is drawn, and can be taken hold of. */
     get surface(): Drawn | null {
         return this.shown?.drawn ?? null;
