@@ -257,13 +257,13 @@ static double longest_edge(const lar_mesh *mesh) {
     return most;
 }
 
-/* Outside of that ball, so that they touch nothing, on the side from where the viewer looks: one to
- * the left of the picture's middle, one to the right. */
+/* Outside of that ball, so that they touch nothing, above the body as the viewer sees it at first:
+ * one to the left of the picture's middle, one to the right. */
 static void put_tools(const lar_meshing *m, FILE *f) {
     static const double from_image[3] = {0.15, 1, 0.35}, from_other[3] = {-0.14, -0.925, 0.352};
     static const double up[3] = {0, 0, 1};
     const double *eye = m->image ? from_image : from_other;
-    double middle[3], right[3], place[2][3];
+    double middle[3], right[3], way[2][3], place[2][3];
     double radius = ball_around(&m->mesh, middle), length = lar_length(eye);
     /* Thinner ones would be felt by some points of large faces only (model/contact_check.h). */
     double least = 0.13 * longest_edge(&m->mesh);
@@ -272,10 +272,13 @@ static void put_tools(const lar_meshing *m, FILE *f) {
     double away = fmax(1.28 * radius, 1.05 * radius + jaws + jaw);
     lar_cross(up, eye, right);
     double wide = lar_length(right);
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < 2; side++) {
         for (int i = 0; i < 3; i++)
-            place[side][i] = middle[i] + away * (0.86 * eye[i] / length +
-                                                 (side ? 0.51 : -0.51) * right[i] / wide);
+            way[side][i] =
+                0.8 * eye[i] / length + (side ? 0.38 : -0.38) * right[i] / wide + 0.46 * up[i];
+        double whole = lar_length(way[side]);
+        for (int i = 0; i < 3; i++) place[side][i] = middle[i] + away * way[side][i] / whole;
+    }
     fprintf(f,
             "# Instruments for the viewer and for devices (lariat view --device). They wait beside "
             "the\n"
@@ -285,7 +288,7 @@ static void put_tools(const lar_meshing *m, FILE *f) {
             "  - { name: grasper, shape: grasper, radius: %.3g, length: %.3g, spread: 50,\n"
             "      at: [%.6g, %.6g, %.6g], towards: [%.4g, %.4g, %.4g] }\n\n",
             probe, place[0][0], place[0][1], place[0][2], jaw, jaws, place[1][0], place[1][1],
-            place[1][2], -eye[0], -eye[1], -eye[2]);
+            place[1][2], -way[1][0], -way[1][1], -way[1][2]);
 }
 
 static void put_end(const lar_meshing *m, FILE *f) {
