@@ -56,7 +56,7 @@ export class Shadows {
     /* Once a picture. `size` of the body: the lamp stands aside of the eye by some of it. */
     update(rods: Rod[], camera: THREE.Camera, size: number): void {
         const { uniforms, point } = this;
-        const count = this.on ? Math.min(rods.length, RODS) : 0;
+        const count = Math.min(rods.length, RODS);
         uniforms.rodCount.value = count;
         uniforms.lamp.value.set(-0.55 * size, 0.75 * size, 0).applyMatrix4(camera.matrixWorld);
         for (let i = 0; i < count; i++) {

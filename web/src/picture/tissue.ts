@@ -17,11 +17,16 @@ attribute vec3 rest;
 attribute vec3 tint;
 attribute float value;
 attribute vec4 grain;
-varying vec3 vView, vNormal, vRest, vTint, vPlace;
+varying vec3 vView, vNormal, vRest, vTint;
 varying vec4 vGrain;
 varying float vValue;
+#if defined(CUT) || defined(SHADOWS)
+varying vec3 vPlace;
+#endif
 void main() {
+#if defined(CUT) || defined(SHADOWS)
     vPlace = position;
+#endif
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     vView = p.xyz;
     vNormal = normalMatrix * normal;
@@ -57,19 +62,28 @@ vec4 noise(vec3 x) {
 }`;
 
 const FRAGMENT = /* glsl */ `
-varying vec3 vView, vNormal, vRest, vTint, vPlace;
+varying vec3 vView, vNormal, vRest, vTint;
 varying vec4 vGrain;    // mottling, distances from two nets of vessels, openness: grain.ts
 varying float vValue;
 uniform mat3 turn;      // world to view
 uniform sampler2D map;
 uniform vec2 range;     // least value, 1 / span
 uniform float mapped;   // 0: tissue, 1: values by the map, 2: tints as they are
+#if defined(CUT) || defined(SHADOWS)
+varying vec3 vPlace;
+#endif
+#ifdef CUT
 uniform vec4 cut;       // what lies beyond this plane is not drawn: inspect/cut.ts
+#endif
 ${NOISE}
+#ifdef SHADOWS
 ${SHADOWS}
+#endif
 void main() {
+#ifdef CUT
     float inside = cut.w - dot(cut.xyz, vPlace);
     if (inside < 0.0) discard;
+#endif
     vec3 view = normalize(-vView);
     vec3 normal = normalize(vNormal);
     if (!gl_FrontFacing) normal = -normal;
@@ -128,13 +142,17 @@ void main() {
     shine *= mix(1.0, 0.16, plain);
 
     vec3 light = colour * lit * mix(1.36, 1.08, plain) + shine;
+#ifdef SHADOWS
     // Colours that stand for values stay as they are.
-    if (mapped < 0.5 && rodCount > 0) light *= mix(vec3(0.30, 0.24, 0.25), vec3(1.0), lampReaches(vPlace));
+    if (mapped < 0.5) light *= mix(vec3(0.30, 0.24, 0.25), vec3(1.0), lampReaches(vPlace));
+#endif
     // Bright places roll off instead of burning out.
     light = min(light, 0.62) + 0.38 * (1.0 - exp(-max(light - 0.62, 0.0) / 0.38));
+#ifdef CUT
     // What a cut lays open is the back of the surface: matt, and with a bright rim.
     if (!gl_FrontFacing) light = colour * lit * 0.55;
     if (inside < 1.5 * fwidth(inside)) light = vec3(0.85, 0.72, 0.55);
+#endif
 #ifdef FADED
     gl_FragColor = vec4(light, 0.14 + 0.5 * grazing);
 #else
@@ -190,6 +208,18 @@ export class Tissue {
         uniforms.mapped!.value = 1;
         uniforms.map!.value = this.maps[map];
         uniforms.range!.value.set(least, most > least ? 1 / (most - least) : 0);
+    }
+
+    /* What is not needed is not in the shader: where the main processor draws it would cost a third. */
+    use(cut: boolean, shadows: boolean): void {
+        for (const material of [this.material, this.faded]) {
+            const { defines } = material;
+            if (('CUT' in defines) === cut && ('SHADOWS' in defines) === shadows) continue;
+            for (const [name, wanted] of [['CUT', cut], ['SHADOWS', shadows]] as const)
+                if (wanted) defines[name] = 1;
+                else delete defines[name];
+            material.needsUpdate = true;
+        }
     }
 
     /* The bumps turn with the body: once a frame. */

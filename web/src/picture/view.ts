@@ -283,7 +283,9 @@ export class View {
         if (!this.stale) return false;
         this.stale = false;
         this.tissue.follow(this.endoscope.camera);
-        this.tissue.shadows.update(this.instruments.rods, this.endoscope.camera, this.mesh?.size ?? 1);
+        const rods = this.tissue.shadows.on ? this.instruments.rods : [];
+        this.tissue.use(this.cut.on, rods.length > 0);
+        this.tissue.shadows.update(rods, this.endoscope.camera, this.mesh?.size ?? 1);
         this.cavity.follow(this.endoscope.camera);
         this.renderer.render(this.scene, this.endoscope.camera);
         this.drawn++;
