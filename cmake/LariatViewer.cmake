@@ -14,9 +14,12 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
     session/server_files.c
     session/server_hands.c
     session/server_http.c
+    session/server_inspect.c
     session/server_picture.c
+    session/server_reading.c
     session/server_riding.c
     session/server_saved.c
+    session/server_scan.c
     session/server_send.c
     session/server_socket.c
     session/server_work.c)

@@ -697,6 +697,12 @@ typedef enum lar_slow_cause {
     LAR_SLOW_MACHINE   /* a step does not, but other programs take the processor away */
 } lar_slow_cause;
 
+/* Counts of how long things took: bin i of lar_session_status.step_bins holds what took from
+ * lar_time_bin(i) to lar_time_bin(i + 1), two bins to every doubling; the first and the last one
+ * hold what is beyond, too. */
+enum { LAR_TIME_BINS = 40 };
+LAR_API double lar_time_bin(int bin); /* 1.024 us for bin 0 [s] */
+
 /* How it goes. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
@@ -704,6 +710,8 @@ typedef struct lar_session_status {
     double time;                                    /* simulated [s] */
     double step_p50, step_p99, step_p999, step_max; /* of a step, engine alone: tick / steps */
     double tick_p50, tick_p99, tick_p999, tick_max; /* from a tick's due time to its forces */
+    uint32_t step_bins[LAR_TIME_BINS]; /* steps and ticks by their time, since the start */
+    uint32_t tick_bins[LAR_TIME_BINS];
     uint64_t ticks, misses;      /* ticks whose forces came after the next was due, those of slow
                                     motion left out */
     uint64_t slow_ticks;         /* these: late because the session is in slow motion; their times
@@ -748,6 +756,7 @@ typedef struct lar_snapshot {
     uint64_t hash;  /* lar_simulation_hash of that step */
     int32_t nodes;  /* of the model */
     double (*u)[3]; /* [nodes] displacements [m] */
+    double kinetic; /* energy of its velocities, which are those of half a step before [J] */
 } lar_snapshot;
 
 /* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */
@@ -819,7 +828,11 @@ typedef struct lar_server_options {
     const char *address; /* NULL: 127.0.0.1. Any other one needs a token */
     int port;            /* 0: a free one */
     const char *token;   /* what viewers must show: 8 to 128 letters, digits, - and _; NULL: none */
-    const char *folder;  /* of the viewer's files; NULL: those installed with the library */
+    const char *watch_token; /* who shows this one instead may watch and do nothing else; needs a
+                                token beside it; NULL: none */
+    const char *folder;      /* of the viewer's files; NULL: those installed with the library */
+    const char *scan;        /* a segmented image (lariat mesh) whose slices viewers may see;
+                                NULL: none */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
 } lar_server_options;
@@ -833,6 +846,8 @@ LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
 /* "http://127.0.0.1:8000/", with "#token=..." behind when there is one; lives as long as the
  * server. */
 LAR_API const char *lar_server_url(const lar_server *server);
+/* The address for those who may only watch, likewise; "" without a watch_token. */
+LAR_API const char *lar_server_watch_url(const lar_server *server);
 LAR_API int32_t lar_server_viewers(const lar_server *server); /* connected now */
 LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
 /* 1 when the page that is served without a `folder` is there; 0 when a page stands in for it that

@@ -36,6 +36,17 @@ void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other) {
     for (int i = 0; i < BINS; i++) histogram->bin[i] += other->bin[i];
 }
 
+void lar_histogram_halves(const lar_histogram *histogram, int octave, int count, uint32_t *out) {
+    for (int i = 0; i < count; i++) out[i] = 0;
+    for (int bin = 0; bin < BINS; bin++) {
+        if (histogram->bin[bin] == 0) continue;
+        int power = bin < SPLIT ? 0 : bin / SPLIT + 5, upper = bin % SPLIT >= SPLIT / 2;
+        int at = bin < SPLIT ? -1 : 2 * (power - octave) + upper;
+        at = at < 0 ? 0 : at < count ? at : count - 1;
+        out[at] += (uint32_t)histogram->bin[bin];
+    }
+}
+
 double lar_histogram_quantile(const lar_histogram *histogram, double share) {
     if (histogram->count == 0) return 0;
     double wanted = share * (double)histogram->count;

@@ -26,6 +26,10 @@ void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds);
 /* Adds all values of another one. */
 void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other);
 
+/* Counts in two bins per octave, `count` of them from 2^octave ns on: [1, 1.5) and [1.5, 2) times
+ * its beginning. What lies below or above is in the first or the last one. */
+void lar_histogram_halves(const lar_histogram *histogram, int octave, int count, uint32_t *out);
+
 /* The value below or at which `share` (0..1) of all values lie [ns]: as if those of its bin were
  * spread over the bin evenly, never outside least..most. 0 when empty. */
 double lar_histogram_quantile(const lar_histogram *histogram, double share);

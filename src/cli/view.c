@@ -16,7 +16,8 @@
 #include "cli/view_report.h"
 
 typedef struct view_settings {
-    const char *scene, *resume, *listen, *token, *record, *save_folder, *viewer;
+    const char *scene, *resume, *listen, *token, *watch_token, *record, *save_folder, *viewer,
+        *scan;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
     double pace, seconds, time_step;
@@ -132,6 +133,8 @@ static int open_server(view *v) {
     lar_server_options options = {.address = s->listen,
                                   .port = (int)s->port,
                                   .token = s->token,
+                                  .watch_token = s->watch_token,
+                                  .scan = s->scan,
                                   .folder = s->viewer,
                                   .save_folder = s->save_folder};
     lar_error error, first;
@@ -329,8 +332,10 @@ static void look_after(view *v) {
 
 static void greet(view *v) {
     FILE *out = v->settings.json ? stderr : stdout;
+    const char *watch = lar_server_watch_url(v->server);
     fprintf(out, "%s\n", v->url ? v->url : "");
     fprintf(out, "Open this address in a browser; Ctrl-C ends.\n");
+    if (*watch) fprintf(out, "%s\nWho opens that one can only watch.\n", watch);
     fflush(out);
     if (v->settings.open && v->url) open_browser(v);
 }
@@ -399,6 +404,11 @@ static int view_main(int argc, char **argv) {
                  "what viewers must show: 8 to 128 letters, digits, - and _;\nit is part of the "
                  "address that is printed",
                  &s.token),
+        CLI_TEXT(
+            "--watch-token", "TOKEN",
+            "who shows this one instead may watch and do nothing else;\nits address is printed "
+            "too; needs --token",
+            &s.watch_token),
         CLI_TEXTS("--device", "TOOL=DEVICE",
                   "a tool's device: script:FILE.csv, udp:HOST:PORT, gamepad:N;\nmay be given for "
                   "several tools",
@@ -409,6 +419,11 @@ static int view_main(int argc, char **argv) {
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",
                  &s.save_folder),
+        CLI_TEXT(
+            "--scan", "IMAGE",
+            "the segmented image that the scene was meshed from: its\nslices can be seen beside "
+            "the organ",
+            &s.scan),
         CLI_REAL("--pace", "F",
                  "simulated seconds per second of the clock (1); 0: as fast as it goes", &s.pace, 0,
                  100),

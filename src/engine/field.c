@@ -65,6 +65,10 @@ typedef struct node_mean {
     double count;
 } node_mean;
 
+static void corners_of(const lar_mesh *mesh, lar_gid e, const double (*u)[3], double corner[8][3]) {
+    for (int a = 0; a < 8; a++) memcpy(corner[a], u[mesh->element[e][a]], sizeof corner[a]);
+}
+
 lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *whole,
                                  lar_field field, const double (*u)[3], float *out,
                                  lar_error *error) {
@@ -74,7 +78,7 @@ lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *w
     if (!mean) return lar_fail_memory(error, nodes * sizeof *mean, "a field");
     for (lar_gid e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
-        for (int a = 0; a < 8; a++) memcpy(corner[a], u[mesh->element[e][a]], sizeof corner[a]);
+        corners_of(mesh, e, u, corner);
         double value = element_value(plan, whole, field, e, (const double(*)[3])corner);
         for (int a = 0; a < 8 && fabs(value) <= (double)FLT_MAX; a++) {
             node_mean *node = &mean[mesh->element[e][a]];
@@ -116,6 +120,38 @@ static void tell_processors(const lar_simulation *simulation, size_t nodes, floa
     const lar_computer *computer = simulation->computer;
     for (size_t n = 0; n < nodes; n++)
         out[n] = computer ? (float)computer->division.reporter[n] : 0;
+}
+
+lar_status lar_field_of_element(const lar_simulation *simulation, lar_field field, lar_gid e,
+                                const double (*u)[3], double *value, lar_error *error) {
+    lar_field_plan *plan;
+    double corner[8][3];
+    lar_status status = find_plan(simulation, &plan, error);
+    if (status) return status;
+    corners_of(&simulation->domain.model->mesh, e, u, corner);
+    *value = element_value(plan, &simulation->domain, field, e, (const double(*)[3])corner);
+    return LAR_OK;
+}
+
+lar_status lar_field_stored_energy(const lar_simulation *simulation, const double (*u)[3],
+                                   double *strain, double *hourglass, lar_error *error) {
+    const lar_model *model = simulation->domain.model;
+    lar_field_plan *plan;
+    lar_status status = find_plan(simulation, &plan, error);
+    if (status) return status;
+    *strain = *hourglass = 0;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3], place[8][3], other = 0;
+        corners_of(&model->mesh, e, u, corner);
+        lar_mesh_corners(&model->mesh, e, place);
+        const lar_material *material = lar_model_material_of(model, e);
+        *strain += plan->element ? lar_hex8_energy(&plan->element[e], material,
+                                                   (const double(*)[3])corner, &other)
+                                 : lar_hex8_full_energy((const double(*)[3])place, material,
+                                                        (const double(*)[3])corner);
+        *hourglass += other;
+    }
+    return LAR_OK;
 }
 
 lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,

@@ -231,6 +231,66 @@ static void put_load(const lar_meshing *m, FILE *f) {
     fputc('\n', f);
 }
 
+/* A ball around the mesh: the middle of its box and half of its diagonal. */
+static double ball_around(const lar_mesh *mesh, double middle[3]) {
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (lar_gid n = 0; n < mesh->node_count; n++)
+        for (int i = 0; i < 3; i++) {
+            lower[i] = fmin(lower[i], mesh->position[n][i]);
+            upper[i] = fmax(upper[i], mesh->position[n][i]);
+        }
+    for (int i = 0; i < 3; i++) middle[i] = 0.5 * (lower[i] + upper[i]);
+    lar_minus(upper, lower, upper);
+    return 0.5 * lar_length(upper);
+}
+
+static double longest_edge(const lar_mesh *mesh) {
+    double most = 0, x[8][3], edge[3];
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        lar_mesh_corners(mesh, e, x);
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++) {
+                lar_minus(x[lar_fit_edge[a][k]], x[a], edge);
+                most = fmax(most, lar_length(edge));
+            }
+    }
+    return most;
+}
+
+/* Outside of that ball, so that they touch nothing, above the body as the viewer sees it at first:
+ * one to the left of the picture's middle, one to the right. */
+static void put_tools(const lar_meshing *m, FILE *f) {
+    static const double from_image[3] = {0.15, 1, 0.35}, from_other[3] = {-0.14, -0.925, 0.352};
+    static const double up[3] = {0, 0, 1};
+    const double *eye = m->image ? from_image : from_other;
+    double middle[3], right[3], way[2][3], place[2][3];
+    double radius = ball_around(&m->mesh, middle), length = lar_length(eye);
+    /* Thinner ones would be felt by some points of large faces only (model/contact_check.h). */
+    double least = 0.13 * longest_edge(&m->mesh);
+    double probe = fmax(least, 0.035 * radius), jaw = fmax(least, 0.012 * radius);
+    double jaws = fmax(5 * jaw, 0.12 * radius);
+    double away = fmax(1.28 * radius, 1.05 * radius + jaws + jaw);
+    lar_cross(up, eye, right);
+    double wide = lar_length(right);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < 3; i++)
+            way[side][i] =
+                0.8 * eye[i] / length + (side ? 0.38 : -0.38) * right[i] / wide + 0.46 * up[i];
+        double whole = lar_length(way[side]);
+        for (int i = 0; i < 3; i++) place[side][i] = middle[i] + away * way[side][i] / whole;
+    }
+    fprintf(f,
+            "# Instruments for the viewer and for devices (lariat view --device). They wait beside "
+            "the\n"
+            "# body and touch nothing until they are moved: a run is the same without them.\n"
+            "tools:\n"
+            "  - { name: probe, shape: sphere, radius: %.3g, at: [%.6g, %.6g, %.6g] }\n"
+            "  - { name: grasper, shape: grasper, radius: %.3g, length: %.3g, spread: 50,\n"
+            "      at: [%.6g, %.6g, %.6g], towards: [%.4g, %.4g, %.4g] }\n\n",
+            probe, place[0][0], place[0][1], place[0][2], jaw, jaws, place[1][0], place[1][1],
+            place[1][2], -way[1][0], -way[1][1], -way[1][2]);
+}
+
 static void put_end(const lar_meshing *m, FILE *f) {
     fputs(
         "# It does not pass through itself: takes some of each step.\n"
@@ -252,6 +312,7 @@ static void put_scene(const lar_meshing *m, FILE *f) {
     put_materials(m, f);
     put_fix(m, f);
     put_load(m, f);
+    put_tools(m, f);
     put_end(m, f);
 }
 

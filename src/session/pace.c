@@ -5,6 +5,9 @@
 
 static const int64_t WINDOW_STEP = 100000000, SECOND = 1000000000; /* [ns] */
 
+/* Bins of times begin at 2^10 ns. */
+enum { FIRST_OCTAVE = 10 };
+
 /* A tick: three years, which a number of nanoseconds holds [ns]. */
 static const double LONGEST = 1e17;
 
@@ -151,7 +154,13 @@ static void report_rates(const lar_pace *pace, lar_session_status *status) {
     if (time > 0) status->real_time_factor_now = (last->simulated - first->simulated) / time;
 }
 
+double lar_time_bin(int bin) {
+    return 1e-9 * ldexp(bin % 2 ? 1.5 : 1, FIRST_OCTAVE + bin / 2);
+}
+
 static void report_quantiles(const lar_pace *pace, lar_session_status *status) {
+    lar_histogram_halves(&pace->steps, FIRST_OCTAVE, LAR_TIME_BINS, status->step_bins);
+    lar_histogram_halves(&pace->ticks, FIRST_OCTAVE, LAR_TIME_BINS, status->tick_bins);
     status->step_p50 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.5);
     status->step_p99 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.99);
     status->step_p999 = 1e-9 * lar_histogram_quantile(&pace->steps, 0.999);

@@ -125,6 +125,7 @@ static void beat(lws_sorted_usec_list_t *sul) {
     }
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
+    lar_server_ask_readings(server);
     lws_usec_t pause = !server->first                   ? IDLE_BEAT
                        : lar_hands_busy(&server->hands) ? QUICK_BEAT
                                                         : BEAT;
@@ -232,6 +233,16 @@ static lar_status choose_address(lar_server *server, const lar_server_options *o
     if (options->token && !is_token(options->token))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "the token must be 8 to 128 letters, digits, - and _");
+    if (options->watch_token && !is_token(options->watch_token))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the watch token must be 8 to 128 letters, digits, - and _");
+    if (options->watch_token && !options->token)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a watch token needs a token beside it: without one everybody may do "
+                        "everything");
+    if (options->watch_token && strcmp(options->watch_token, options->token) == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the token and the watch token are the same; take two different ones");
     if (!server->loopback && !options->token)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "others can reach %s: whoever listens there must give a token (8 to 128 "
@@ -267,18 +278,25 @@ static char *make_stem(const lar_model *model) {
     return stem;
 }
 
-static lar_status copy_texts(lar_server *server, const lar_server_options *options,
-                             lar_error *error) {
+static char *make_url(const lar_server *server, const char *token) {
     char url[LAR_HOST_BYTES + 176];
     snprintf(url, sizeof url, "http://%s:%d/%s%s", server->any ? "127.0.0.1" : server->host,
-             server->port, options->token ? "#token=" : "", options->token ? options->token : "");
-    server->url = lar_strdup(url);
+             server->port, token ? "#token=" : "", token ? token : "");
+    return lar_strdup(url);
+}
+
+static lar_status copy_texts(lar_server *server, const lar_server_options *options,
+                             lar_error *error) {
+    const char *watch = options->watch_token;
+    server->url = make_url(server, options->token);
+    server->watch_url = watch ? make_url(server, watch) : lar_strdup("");
     server->stem = make_stem(server->model);
     if (options->token) server->token = lar_strdup(options->token);
+    if (watch) server->watch_token = lar_strdup(watch);
     if (options->save_folder) server->save_folder = lar_strdup(options->save_folder);
-    if (!server->url || !server->stem || (options->token && !server->token) ||
-        (options->save_folder && !server->save_folder))
-        return lar_fail_memory(error, sizeof url, "the viewers' server");
+    if (!server->url || !server->watch_url || !server->stem || (options->token && !server->token) ||
+        (watch && !server->watch_token) || (options->save_folder && !server->save_folder))
+        return lar_fail_memory(error, LAR_HOST_BYTES, "the viewers' server");
     return LAR_OK;
 }
 
@@ -318,6 +336,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->listener = server->spare = -1;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
+    if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
     if (!status && asked.save_folder) status = lar_folder_make(asked.save_folder, error);
     if (!status) status = listen_there(server, asked.port, error);
     if (!status) status = copy_texts(server, &asked, error);
@@ -345,6 +364,10 @@ const char *lar_server_url(const lar_server *server) {
     return server ? server->url : "";
 }
 
+const char *lar_server_watch_url(const lar_server *server) {
+    return server ? server->watch_url : "";
+}
+
 int32_t lar_server_viewers(const lar_server *server) {
     return server ? __atomic_load_n(&server->viewers, __ATOMIC_RELAXED) : 0;
 }
@@ -364,14 +387,17 @@ void lar_server_close(lar_server *server) {
     if (server->spare >= 0) close(server->spare);
     lar_picture_destroy(&server->picture);
     lar_files_clear(&server->files);
+    lar_scan_clear(&server->scan);
     lar_json_clear(&server->hello);
     lar_json_clear(&server->json);
     free(server->surface.memory);
     free(server->riding.memory);
     free(server->forces.memory);
     free(server->token);
+    free(server->watch_token);
     free(server->save_folder);
     free(server->url);
+    free(server->watch_url);
     free(server->stem);
     free(server);
 }

@@ -15,6 +15,11 @@ const char *lar_server_url(const lar_server *server) {
     return "";
 }
 
+const char *lar_server_watch_url(const lar_server *server) {
+    (void)server;
+    return "";
+}
+
 int32_t lar_server_viewers(const lar_server *server) {
     (void)server;
     return 0;

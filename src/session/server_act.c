@@ -101,6 +101,7 @@ static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what,
 }
 
 void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
+    if (end->job.kind == LAR_WISH_INSPECT) return lar_server_tell_reading(server, end);
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
     bool done = end->error.status == LAR_OK;
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
@@ -130,6 +131,27 @@ static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
     viewer->asks = true;
 }
 
+static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    const int32_t *size = server->scan.image.size;
+    char sentence[160];
+    if (!lar_scan_is_there(&server->scan)) {
+        lar_viewer_note(server, viewer,
+                        "there is no scan here; start the engine with --scan and the image that "
+                        "the scene was meshed from");
+        return;
+    }
+    if (wish->index >= size[wish->axis]) {
+        snprintf(sentence, sizeof sentence,
+                 "the scan has %d x %d x %d voxels, counted from 0; ask for a slice of these",
+                 (int)size[0], (int)size[1], (int)size[2]);
+        lar_viewer_note(server, viewer, sentence);
+        return;
+    }
+    viewer->slice_axis = wish->axis;
+    viewer->slice_index = wish->index;
+    lar_viewer_wants(viewer, LAR_DUE_SLICE);
+}
+
 /* What is played moves its tools itself. */
 static bool is_played(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
     if (!server->status.replaying) return false;
@@ -147,7 +169,23 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wi
         lar_viewer_note(server, viewer, error.message);
 }
 
+/* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
+ * grab that was refused: they need no sentence of their own. */
+static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    bool looks = wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES ||
+                 wish->kind == LAR_WISH_INSPECT || wish->kind == LAR_WISH_SLICE;
+    if (!viewer->watches || looks) return false;
+    if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
+    lar_viewer_note(server, viewer,
+                    "this viewer may only watch; to act on the run, open the address that has the "
+                    "other token");
+    if (wish->kind == LAR_WISH_GRAB)
+        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    return true;
+}
+
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (is_refused(server, viewer, wish)) return;
     switch (wish->kind) {
     case LAR_WISH_FRAME:
         ask_frame(viewer, wish);
@@ -183,6 +221,12 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         break;
     case LAR_WISH_SEEK:
         lar_session_seek(server->session, wish->time);
+        break;
+    case LAR_WISH_SLICE:
+        ask_slice(server, viewer, wish);
+        break;
+    case LAR_WISH_INSPECT:
+        lar_server_inspect(server, viewer, wish);
         break;
     case LAR_WISH_RESET:
     case LAR_WISH_SAVE:

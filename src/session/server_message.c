@@ -40,6 +40,11 @@ typedef enum key_id {
     KEY_TO,
     KEY_POSITION,
     KEY_ORIENTATION,
+    KEY_NODE,
+    KEY_FACE,
+    KEY_ENERGY,
+    KEY_AXIS,
+    KEY_INDEX,
     KEYS
 } key_id;
 
@@ -67,7 +72,12 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_POINT] = {"point", IS_VECTOR, -1000, 1000, 3},
                                         [KEY_TO] = {"to", IS_VECTOR, -1000, 1000, 3},
                                         [KEY_POSITION] = {"position", IS_VECTOR, -1000, 1000, 3},
-                                        [KEY_ORIENTATION] = {"orientation", IS_VECTOR, -2, 2, 4}};
+                                        [KEY_ORIENTATION] = {"orientation", IS_VECTOR, -2, 2, 4},
+                                        [KEY_NODE] = {"node", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_FACE] = {"face", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_ENERGY] = {"energy", IS_BOOLEAN, 0, 0, 0},
+                                        [KEY_AXIS] = {"axis", IS_WHOLE, 0, 2, 0},
+                                        [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0}};
 
 #define BIT(key) (1u << KEY_##key)
 
@@ -91,7 +101,9 @@ static const struct {
     [LAR_WISH_SAVE] = {"save", 0, 0},
     [LAR_WISH_LOAD] = {"load", 0, BIT(NAME)},
     [LAR_WISH_REPLAY] = {"replay", 0, BIT(NAME)},
-    [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0}};
+    [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0},
+    [LAR_WISH_INSPECT] = {"inspect", 0, BIT(NODE) | BIT(FACE) | BIT(ENERGY)},
+    [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0}};
 enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
 
 /* ---- reading ---------------------------------------------------------------------------- */
@@ -341,6 +353,11 @@ static bool set_rest(reader *r, lar_wish *wish) {
     wish->steps = (uint64_t)r->number[KEY_STEPS][0];
     wish->on = r->number[KEY_ON][0] != 0;
     wish->time = r->number[KEY_TIME][0];
+    wish->node = r->seen & BIT(NODE) ? (int32_t)r->number[KEY_NODE][0] : -1;
+    wish->face = r->seen & BIT(FACE) ? (int32_t)r->number[KEY_FACE][0] : -1;
+    wish->axis = (int32_t)r->number[KEY_AXIS][0];
+    wish->index = (int32_t)r->number[KEY_INDEX][0];
+    wish->energy = r->number[KEY_ENERGY][0] != 0;
     memcpy(wish->name, r->text[KEY_NAME], sizeof wish->name);
     return true;
 }

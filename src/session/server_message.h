@@ -49,7 +49,9 @@ typedef enum lar_wish_kind {
     LAR_WISH_SAVE,
     LAR_WISH_LOAD,
     LAR_WISH_REPLAY,
-    LAR_WISH_SEEK
+    LAR_WISH_SEEK,
+    LAR_WISH_INSPECT,
+    LAR_WISH_SLICE
 } lar_wish_kind;
 
 /* One message. What its kind does not have is zero. */
@@ -67,6 +69,9 @@ typedef struct lar_wish {
     double opening;
     bool turns, opens;            /* tool: orientation, opening were given */
     bool on;                      /* record */
+    int32_t axis, index;          /* slice */
+    int32_t node, face;           /* inspect: of the surface; -1: none */
+    bool energy;                  /* inspect */
     char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
 } lar_wish;
 

@@ -85,6 +85,22 @@ static lar_status write_riding(lar_json *json, const lar_model *model, lar_error
     return LAR_OK;
 }
 
+static void write_scan(lar_json *json, const lar_image *image) {
+    lar_json_open(json, "scan", '{');
+    lar_json_open(json, "size", '[');
+    for (int i = 0; i < 3; i++) lar_json_integer(json, NULL, image->size[i]);
+    lar_json_close(json, ']');
+    lar_json_open(json, "labels", '[');
+    for (int32_t i = 0; i < image->name_count; i++) {
+        lar_json_open(json, NULL, '{');
+        lar_json_integer(json, "label", image->name[i].label);
+        lar_json_text(json, "name", image->name[i].name);
+        lar_json_close(json, '}');
+    }
+    lar_json_close(json, ']');
+    lar_json_close(json, '}');
+}
+
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     const lar_session *session = server->session;
     const lar_simulation *simulation = session->simulation;
@@ -117,6 +133,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_integer(json, "processors", lar_simulation_processors(simulation));
     lar_json_integer(json, "threads", lar_simulation_threads(simulation));
     write_materials(json, server->model, info.materials);
+    if (lar_scan_is_there(&server->scan)) write_scan(json, &server->scan.image);
     write_tools(json, session);
     write_fields(json);
     lar_json_boolean(json, "saves", server->save_folder != NULL);
@@ -138,6 +155,12 @@ static void write_times(lar_json *json, const char *name, double p50, double p99
     lar_json_close(json, '}');
 }
 
+static void write_bins(lar_json *json, const char *name, const uint32_t bin[LAR_TIME_BINS]) {
+    lar_json_open(json, name, '[');
+    for (int i = 0; i < LAR_TIME_BINS; i++) lar_json_integer(json, NULL, bin[i]);
+    lar_json_close(json, ']');
+}
+
 static void write_progress(lar_json *json, const lar_session_status *s) {
     static const char *const state[] = {"idle", "playing", "paused", "stopped"};
     static const char *const cause[] = {"", "step", "division", "machine"};
@@ -146,6 +169,8 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_number(json, "time", s->time);
     write_times(json, "step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
     write_times(json, "tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
+    write_bins(json, "step_bins", s->step_bins);
+    write_bins(json, "tick_bins", s->tick_bins);
     lar_json_integer(json, "ticks", (int64_t)s->ticks);
     lar_json_integer(json, "misses", (int64_t)s->misses);
     lar_json_integer(json, "slow_ticks", (int64_t)s->slow_ticks);
@@ -278,6 +303,7 @@ static int send_hello(lar_server *server, lar_viewer *viewer) {
     json->empty = true;
     lar_json_raw(json, lar_json_data(&server->hello), server->hello.length);
     lar_json_integer(json, "viewer", (int64_t)viewer->number);
+    lar_json_boolean(json, "watches", viewer->watches);
     lar_json_end(json);
     return send_json(viewer, json);
 }
@@ -376,6 +402,11 @@ int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
     case LAR_DUE_STATUS:
         write_status(server, viewer, &server->json);
         failed = send_json(viewer, &server->json);
+        break;
+    case LAR_DUE_SLICE:
+        lar_scan_slice(&server->scan, viewer->slice_axis, viewer->slice_index);
+        failed = send_bytes(viewer, lar_blob_data(&server->scan.slice), server->scan.slice.length,
+                            LWS_WRITE_BINARY);
         break;
     default:
         break;

@@ -37,11 +37,16 @@ static bool same_secret(const char *given, const char *secret) {
     return difference == 0;
 }
 
-static bool has_token(const lar_server *server, struct lws *wsi) {
-    char given[160];
-    if (!server->token) return true;
-    const char *found = lws_get_urlarg_by_name(wsi, "token=", given, sizeof given);
-    return found && same_secret(found, server->token);
+/* Whether it may look, and whether it may do more: who shows the watch token, or asks for no more,
+ * may not. */
+static void read_rights(const lar_server *server, lar_viewer *viewer, struct lws *wsi) {
+    char given[160], asked[32];
+    const char *token = lws_get_urlarg_by_name(wsi, "token=", given, sizeof given);
+    const char *watch = lws_get_urlarg_by_name(wsi, "watch=", asked, sizeof asked);
+    bool full = !server->token || (token && same_secret(token, server->token));
+    bool part = token && server->watch_token && same_secret(token, server->watch_token);
+    viewer->token_is_right = full || part;
+    viewer->watches = !full || watch;
 }
 
 static void welcome(lar_server *server, lar_viewer *viewer) {
@@ -62,6 +67,7 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
                            .next = server->first,
                            .number = ++server->last_number,
                            .token_is_right = viewer->token_is_right,
+                           .watches = viewer->watches,
                            .painted_step = UINT64_MAX,
                            .allowance = LAR_MESSAGES_A_SECOND,
                            .allowed_at = now};
@@ -143,7 +149,7 @@ int lar_server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *u
     switch (reason) {
     /* The only moment at which the address is still known. */
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-        viewer->token_is_right = has_token(server, wsi);
+        read_rights(server, viewer, wsi);
         return 0;
     case LWS_CALLBACK_ESTABLISHED:
         begin(server, viewer, wsi);

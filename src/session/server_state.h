@@ -20,6 +20,7 @@
 #include "session/server_files.h"
 #include "session/server_hands.h"
 #include "session/server_json.h"
+#include "session/server_scan.h"
 #include "session/server_work.h"
 
 _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
@@ -51,7 +52,8 @@ enum {
     LAR_DUE_NOTES = 8,
     LAR_DUE_FORCES = 16,
     LAR_DUE_PICTURE = 32, /* the server's picture has what it asked for */
-    LAR_DUE_STATUS = 64
+    LAR_DUE_STATUS = 64,
+    LAR_DUE_SLICE = 128
 };
 
 typedef struct lar_viewer {
@@ -60,6 +62,7 @@ typedef struct lar_viewer {
     uint64_t number;
     unsigned due;
     bool token_is_right;
+    bool watches; /* and may do nothing else */
     lar_close closing;
     bool told; /* why */
     char reason[LAR_REASON_BYTES];
@@ -69,6 +72,11 @@ typedef struct lar_viewer {
     int64_t asked_at, painted_at;
     uint64_t painted_step; /* of the last frame; UINT64_MAX: none */
     int painted_field;
+
+    int32_t slice_axis, slice_index; /* of the scan, as asked for last */
+    bool inspects;                   /* `question` waits for its turn */
+    int64_t inspects_since;
+    lar_question question;
 
     int32_t forces_tool;
     uint64_t forces_after;
@@ -90,7 +98,7 @@ struct lar_server {
     char host[LAR_HOST_BYTES]; /* as in addresses: "[::1]" */
     int port;
     bool loopback, any;
-    char *token, *save_folder, *url;
+    char *token, *watch_token, *save_folder, *url, *watch_url;
     char *stem; /* of names of files that are saved */
     lar_files files;
 
@@ -115,6 +123,7 @@ struct lar_server {
     bool working;
     lar_hands hands;
     lar_blob surface, riding;
+    lar_scan scan;
     lar_picture picture;
     lar_json hello; /* all but its beginning */
     lar_json json;  /* what is being sent */
@@ -131,6 +140,7 @@ struct lar_server {
     char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
     char played[LAR_NAME_MOST + 1];
     lws_sorted_usec_list_t beat;
+    bool reading; /* a viewer's values are being read */
     int64_t status_at, watched_at, paint_begun, paint_cost;
 };
 
@@ -191,5 +201,12 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name);
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
+
+/* ---- server_inspect.c ---- */
+
+/* A viewer's question for values, answered when its turn comes; it replaces one that waits. */
+void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_ask_readings(lar_server *server);
+void lar_server_tell_reading(lar_server *server, const lar_job_end *end);
 
 #endif

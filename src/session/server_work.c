@@ -9,7 +9,17 @@
 /* A tick that takes longer than this is no real time at all [s]. */
 static const double SNAPSHOT_SECONDS = 2;
 
-static void do_job(lar_work *work, const lar_job *job, lar_error *error) {
+/* With the painter's snapshot: both are this thread's. */
+static void inspect(lar_work *work, lar_job_end *end) {
+    lar_snapshot *snapshot = work->painter.snapshot;
+    if (!lar_session_snapshot(work->session, snapshot, SNAPSHOT_SECONDS, &end->error))
+        lar_reading_take(work->session->simulation, work->model, &end->job.question, snapshot,
+                         &end->reading, &end->error);
+}
+
+static void do_job(lar_work *work, lar_job_end *end) {
+    const lar_job *job = &end->job;
+    lar_error *error = &end->error;
     error->status = LAR_OK;
     switch (job->kind) {
     case LAR_WISH_RESET:
@@ -27,6 +37,9 @@ static void do_job(lar_work *work, const lar_job *job, lar_error *error) {
     case LAR_WISH_REPLAY:
         lar_session_replay(work->session, job->name[0] ? job->path : NULL, error);
         break;
+    case LAR_WISH_INSPECT:
+        inspect(work, end);
+        break;
     default:
         break;
     }
@@ -38,7 +51,7 @@ static void next_job(lar_work *work) {
     work->jobs--;
     memmove(work->job, work->job + 1, (size_t)work->jobs * sizeof *work->job);
     pthread_mutex_unlock(&work->lock);
-    do_job(work, &end.job, &end.error);
+    do_job(work, &end);
     pthread_mutex_lock(&work->lock);
     if (work->ends == LAR_JOBS_MOST) { /* nobody collects them: the oldest goes */
         work->ends--;
@@ -87,7 +100,7 @@ static void *run(void *argument) {
 
 lar_status lar_work_start(lar_work *work, lar_session *session, const lar_model *model,
                           void (*wake)(void *context), void *context, lar_error *error) {
-    *work = (lar_work){.session = session, .wake = wake, .context = context};
+    *work = (lar_work){.session = session, .model = model, .wake = wake, .context = context};
     lar_status status = lar_painter_create(session, model, &work->painter, error);
     if (!status) status = lar_picture_create(&work->painter, &work->picture, error);
     if (!status) status = lar_picture_create(&work->painter, &work->canvas, error);

@@ -13,13 +13,15 @@
 #include <pthread.h>
 
 #include "session/server_picture.h"
+#include "session/server_reading.h"
 
 enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
 
 typedef struct lar_job {
-    lar_wish_kind kind; /* reset, save, load, record, replay */
+    lar_wish_kind kind; /* reset, save, load, record, replay, inspect */
     uint64_t viewer;
     bool on;                      /* record */
+    lar_question question;        /* inspect */
     char name[LAR_NAME_MOST + 1]; /* of the file, without its folder */
     char path[LAR_PATH_MOST];
 } lar_job;
@@ -28,10 +30,12 @@ typedef struct lar_job {
 typedef struct lar_job_end {
     lar_job job;
     lar_error error; /* status LAR_OK: done */
+    lar_reading reading;
 } lar_job_end;
 
 typedef struct lar_work {
     lar_session *session;
+    const lar_model *model;
     lar_painter painter;
     void (*wake)(void *context); /* the server's thread; may be called from any */
     void *context;

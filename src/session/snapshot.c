@@ -69,6 +69,7 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
                               lar_snapshot *snapshot, lar_error *error) {
     const lar_domain *domain = &simulation->domain;
     bool finite = true;
+    snapshot->kinetic = 0;
     lar_mailbox_lock(&snapshots->frames);
     frame *f = lar_mailbox_newest(&snapshots->frames, NULL);
     const lar_state state = state_of(f, simulation);
@@ -79,7 +80,10 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
     snapshot->hash = f->hash;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         const double *u = state.u + 4 * (size_t)domain->layout.local[g];
+        const double *v = state.v + (u - state.u);
         memcpy(snapshot->u[g], u, sizeof snapshot->u[g]);
+        snapshot->kinetic +=
+            0.5 * domain->mass[domain->layout.local[g]] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         finite = finite && isfinite(u[0] + u[1] + u[2]);
     }
     lar_mailbox_unlock(&snapshots->frames);

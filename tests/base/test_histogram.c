@@ -36,6 +36,22 @@ static void small_values_are_exact(void **state) {
     free(h);
 }
 
+/* Two bins per octave from 2^10 on: [1, 1.5) and [1.5, 2) times its beginning. */
+static void halves_of_octaves_are_counted(void **state) {
+    (void)state;
+    static const uint64_t value[] = {3, 1000, 1024, 1535, 1536, 2047, 2048, 5000, 1u << 20};
+    static const int at[] = {0, 0, 0, 0, 1, 1, 2, 4, 9};
+    uint32_t out[10], wanted[10] = {0};
+    lar_histogram *h = empty();
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        lar_histogram_add(h, value[i]);
+        wanted[at[i]]++;
+    }
+    lar_histogram_halves(h, 10, 10, out);
+    assert_memory_equal(out, wanted, sizeof out);
+    free(h);
+}
+
 static void two_become_one(void **state) {
     (void)state;
     lar_histogram *a = empty(), *b = empty(), *both = empty(), *nothing = empty();
@@ -95,6 +111,7 @@ static void values_beyond_the_last_bin_are_counted(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_added_is_zero),
                                        cmocka_unit_test(small_values_are_exact),
+                                       cmocka_unit_test(halves_of_octaves_are_counted),
                                        cmocka_unit_test(two_become_one),
                                        cmocka_unit_test(every_size_is_known_to_a_bin),
                                        cmocka_unit_test(tails_are_found),

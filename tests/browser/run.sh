@@ -33,12 +33,12 @@ cd "$web" || exit 1
 # A browser that draws in software on two busy cores misses a moment now and then: what fails is tried
 # once more, and said. What fails twice has failed.
 try_part() {
-    timeout 240 node --test --test-concurrency=1 "test/$1.test.mjs" >"$2" 2>&1
+    timeout 400 node --test --test-concurrency=1 "test/$1.test.mjs" >"$2" 2>&1
     local status=$?
     grep -E '^(not )?ok |^# (pass|fail) ' "$2"
     return $status
 }
-for part in ${PARTS:-units mock engine jaws}; do
+for part in ${PARTS:-units mock look engine jaws}; do
     try_part "$part" "$out/$part.txt" && continue
     echo "$part failed, see $out/$part.txt; once more:"
     try_part "$part" "$out/$part-again.txt" && continue

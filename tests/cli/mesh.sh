@@ -119,6 +119,17 @@ expect 0 "$LARIAT" run Two_organs/Two_organs.yaml --out results --json
 awk -F, '$1 > 0.6 && $1 < 0.7 { moved = $3 > 1e-4 } END { exit !moved }' results/probes.csv ||
     fail "the handle did not move to the front: $(head -n 40 results/probes.csv | tail -n 2)"
 
+# Two instruments wait beside it, and the run is the same without them.
+expect 0 "$LARIAT" info Two_organs/Two_organs.yaml --no-speed
+says 'probe: sphere, radius'
+says 'grasper: grasper, radius'
+expect 0 "$LARIAT" run Two_organs/Two_organs.yaml --time 1 --json
+hash=$(value_of state_hash)
+sed '/^tools:/,/towards/d' Two_organs/Two_organs.yaml >Two_organs/bare.yaml
+grep -q 'name: probe' Two_organs/bare.yaml && fail "the instruments are still in the scene"
+expect 0 "$LARIAT" run Two_organs/bare.yaml --time 1 --json
+[ "$(value_of state_hash)" = "$hash" ] || fail "with instruments $hash, without $(value_of state_hash)"
+
 # With its whole weight for two seconds.
 sed 's/^gravity: .*/gravity: [0, -9.81, 0]/' Two_organs/Two_organs.yaml >Two_organs/heavy.yaml
 expect 0 "$LARIAT" run Two_organs/heavy.yaml --time 2

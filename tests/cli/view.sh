@@ -31,6 +31,14 @@ says '^tool  *probe: largest force 0 N, limit [0-9.]* N$'
 says '^state hash  *[0-9a-f]\{16\}$'
 [ -d "saved here/below" ] || fail "the folder for saved states was not made"
 
+# Two addresses: one for who acts, one for who may only watch.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --token for-the-surgeon --watch-token for-the-class
+says '^http://127.0.0.1:[0-9]*/#token=for-the-surgeon$'
+says '^http://127.0.0.1:[0-9]*/#token=for-the-class$'
+says '^Who opens that one can only watch.$'
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.3 --watch-token for-the-class
+complains 'a watch token needs a token beside it'
+
 # For machines.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --json --grid 2x1x1 --pace 0
 complains '^http://127.0.0.1:[0-9]*/$'

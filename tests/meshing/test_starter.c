@@ -62,7 +62,7 @@ static lar_model *model_of(const char *path, lar_meshing_options options, lar_me
     lar_meshing *meshing = NULL;
     lar_model *model = NULL;
     const char *scene;
-    options.elements = 400;
+    if (!options.elements) options.elements = 400;
     if (lar_meshing_create(&path, 1, &options, &meshing, &error) ||
         lar_meshing_write(meshing, FOLDER, &scene, &error) || lar_model_open(scene, &model, &error))
         fail_msg("%s", error.message);
@@ -94,6 +94,43 @@ static void check_run(const lar_model *model, double seconds, double *moved) {
     lar_simulation_destroy(simulation);
 }
 
+/* Instruments wait where they touch nothing: outside of the ball around the mesh, jaws and all. */
+static void check_tools(const lar_model *model) {
+    lar_simulation *simulation = NULL;
+    lar_model_info info;
+    if (lar_model_inspect(model, &info, &error) ||
+        lar_simulation_create(model, NULL, &simulation, &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(lar_simulation_tool_count(simulation), 2);
+    double diagonal[3], radius = 0;
+    for (int i = 0; i < 3; i++) diagonal[i] = info.upper[i] - info.lower[i];
+    radius = 0.5 * hypot(hypot(diagonal[0], diagonal[1]), diagonal[2]);
+    for (int32_t t = 0; t < 2; t++) {
+        lar_tool_info tool;
+        lar_simulation_tool(simulation, t, &tool, NULL);
+        assert_string_equal(tool.name, t ? "grasper" : "probe");
+        double far[3];
+        for (int i = 0; i < 3; i++)
+            far[i] = tool.rest.position[i] - 0.5 * (info.upper[i] + info.lower[i]);
+        double room = hypot(hypot(far[0], far[1]), far[2]) - radius - tool.length - tool.radius;
+        if (room < 0.02 * radius || room > radius)
+            fail_msg("%s is %g m beside a body of %g m", tool.name, room, radius);
+    }
+    lar_simulation_destroy(simulation);
+}
+
+/* Coarse meshes have large faces, which feel only thick instruments: they wait farther away. */
+static void instruments_wait_beside_coarse_meshes_too(void **state) {
+    (void)state;
+    static const int32_t elements[] = {30, 100, 2000};
+    for (size_t i = 0; i < sizeof elements / sizeof elements[0]; i++) {
+        lar_meshing_info info;
+        lar_model *model = model_of(BALLS, (lar_meshing_options){.elements = elements[i]}, &info);
+        check_tools(model);
+        lar_model_destroy(model);
+    }
+}
+
 static void a_scene_of_two_regions_runs(void **state) {
     (void)state;
     lar_meshing_info info;
@@ -109,6 +146,7 @@ static void a_scene_of_two_regions_runs(void **state) {
     assert_int_equal(lar_model_material(model, 0, &material, &error), LAR_OK);
     assert_string_equal(material.name, "li\"v\\er: # {x}");
     assert_true(material.elements > 100);
+    check_tools(model);
     assert_int_equal(lar_model_material(model, 1, &material, &error), LAR_OK);
     assert_string_equal(material.name, "bone ?  \xc3\xa9");
     assert_true(lar_model_embedded(model, &fine));
@@ -127,6 +165,7 @@ static void a_pull_grows_and_lets_go(void **state) {
     lar_meshing_info info;
     double pulled, after;
     lar_model *model = model_of(TORUS, (lar_meshing_options){.fix = "left"}, &info);
+    check_tools(model);
     assert_true(lar_model_duration(model) >= 2);
     check_run(model, 0.7, &pulled);
     check_run(model, lar_model_duration(model), &after);
@@ -391,6 +430,7 @@ static void numbers_have_a_point_everywhere(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
+                                       cmocka_unit_test(instruments_wait_beside_coarse_meshes_too),
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
                                        cmocka_unit_test(a_pull_is_alike_on_every_mesh),
                                        cmocka_unit_test(a_thin_body_is_at_rest_at_the_end),

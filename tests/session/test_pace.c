@@ -50,6 +50,13 @@ static void ticks_come_when_they_are_due(void **unused) {
     near(status.step_p50, 2e-5, 0.02);
     near(status.tick_p99, 2e-4, 0.02);
     assert_true(status.tick_max == 2e-4);
+    /* All of them in the bin that they lie in, by its edges. */
+    for (int i = 0; i < LAR_TIME_BINS; i++) {
+        assert_int_equal(status.step_bins[i],
+                         lar_time_bin(i) <= 2e-5 && 2e-5 < lar_time_bin(i + 1) ? 200 : 0);
+        assert_int_equal(status.tick_bins[i],
+                         lar_time_bin(i) <= 2e-4 && 2e-4 < lar_time_bin(i + 1) ? 200 : 0);
+    }
 }
 
 static void waiting_ends_when_a_tick_is_due(void **unused) {

@@ -51,6 +51,11 @@ static void examples_of_the_page_are_understood(void **unused) {
     assert_string_equal(good("{\"do\":\"load\"}").name, "");
     assert_string_equal(good("{\"do\":\"replay\",\"name\":\"a.recording\"}").name, "a.recording");
     assert_true(good("{\"do\":\"seek\",\"time\":1.5}").time == 1.5);
+    wish = good("{\"do\":\"inspect\",\"node\":7,\"energy\":true}");
+    assert_true(wish.node == 7 && wish.face == -1 && wish.energy);
+    assert_int_equal(good("{\"do\":\"inspect\",\"face\":0}").face, 0);
+    wish = good("{\"do\":\"slice\",\"axis\":2,\"index\":40}");
+    assert_true(wish.axis == 2 && wish.index == 40);
     assert_string_equal(good("{\"do\":\"load\",\"name\":\"uterus-1.checkpoint\"}").name,
                         "uterus-1.checkpoint");
     /* Escapes are characters like others. */

@@ -75,6 +75,56 @@ static void tokens_are_asked_for(void **unused) {
     end_serving(&s);
 }
 
+static void say_and_expect_note(client *c, const char *wish) {
+    say(c, wish);
+    assert_non_null(strstr(await_text(c, "note"), "may only watch"));
+}
+
+/* Everything that acts on the run, by the watch token and by one's own wish. */
+static void who_may_only_watch_does_nothing_else(void **unused) {
+    (void)unused;
+    static const char *const acts[] = {"{\"do\":\"pause\"}",
+                                       "{\"do\":\"play\"}",
+                                       "{\"do\":\"step\",\"steps\":5}",
+                                       "{\"do\":\"reset\"}",
+                                       "{\"do\":\"pace\",\"value\":0.1}",
+                                       "{\"do\":\"record\",\"on\":true}",
+                                       "{\"do\":\"save\"}",
+                                       "{\"do\":\"load\"}",
+                                       "{\"do\":\"replay\"}",
+                                       "{\"do\":\"seek\",\"time\":0}",
+                                       "{\"do\":\"tool\",\"tool\":0,\"position\":[5,5,5]}",
+                                       "{\"do\":\"grab\",\"hand\":0,\"point\":[0,0,0]}"};
+    static const char *const paths[] = {"/socket?token=for-the-public",
+                                        "/socket?token=a-secret_of_ours&watch=1"};
+    served s = serve_with(
+        NULL, &(lar_server_options){.token = "a-secret_of_ours", .watch_token = "for-the-public"});
+    assert_non_null(strstr(lar_server_url(s.server), "/#token=a-secret_of_ours"));
+    assert_non_null(strstr(lar_server_watch_url(s.server), "/#token=for-the-public"));
+    for (size_t p = 0; p < sizeof paths / sizeof paths[0]; p++) {
+        client c = open_client_at(s.port, paths[p]);
+        assert_non_null(strstr(await_text(&c, "hello"), "\"watches\":true"));
+        for (size_t i = 0; i < sizeof acts / sizeof acts[0]; i++) say_and_expect_note(&c, acts[i]);
+        assert_non_null(strstr(await_text(&c, "hand"), "missed"));
+        say(&c, "{\"do\":\"pull\",\"hand\":0,\"to\":[5,5,5]}");
+        ask_frame(&c, "von_mises");
+        say(&c, "{\"do\":\"forces\",\"tool\":0,\"after\":0}");
+        await_binary(&c, 3);
+        close_client(&c);
+    }
+    client c = open_client_at(s.port, "/socket?token=a-secret_of_ours");
+    assert_non_null(strstr(await_text(&c, "hello"), "\"watches\":false"));
+    await_status(&c, "\"state\":\"playing\"");
+    assert_true(number_of((char *)c.data, "pace") == 1);
+    say(&c, "{\"do\":\"pause\"}");
+    await_status(&c, "\"state\":\"paused\"");
+    close_client(&c);
+    c = open_client_at(s.port, "/socket?token=for-the-publik");
+    assert_int_equal(await_close(&c), 4001);
+    close_client(&c);
+    end_serving(&s);
+}
+
 /* ---- files ------------------------------------------------------------------------------------
  */
 
@@ -200,6 +250,12 @@ static void what_makes_no_sense_is_refused(void **unused) {
     expect_refusal(&(lar_server_options){.address = ""}, LAR_ERROR_ARGUMENT, "token");
     expect_refusal(&(lar_server_options){.token = "short"}, LAR_ERROR_ARGUMENT, "8 to 128");
     expect_refusal(&(lar_server_options){.token = "with a space"}, LAR_ERROR_ARGUMENT, "8 to 128");
+    expect_refusal(&(lar_server_options){.watch_token = "for-the-public"}, LAR_ERROR_ARGUMENT,
+                   "needs a token");
+    expect_refusal(&(lar_server_options){.token = "a-long-token", .watch_token = "a-long-token"},
+                   LAR_ERROR_ARGUMENT, "two different");
+    expect_refusal(&(lar_server_options){.token = "a-long-token", .watch_token = "short"},
+                   LAR_ERROR_ARGUMENT, "8 to 128");
     expect_refusal(&(lar_server_options){.port = 65536}, LAR_ERROR_ARGUMENT, "65535");
     expect_refusal(&(lar_server_options){.folder = "/nonexistent"}, LAR_ERROR_IO, "/nonexistent");
     expect_refusal(&(lar_server_options){.folder = LAR_TEST_BUILD "/session"}, LAR_ERROR_IO, "");
@@ -238,6 +294,7 @@ static void there_are_sixty_four_viewers(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(only_our_own_page_may_connect),
                                        cmocka_unit_test(tokens_are_asked_for),
+                                       cmocka_unit_test(who_may_only_watch_does_nothing_else),
                                        cmocka_unit_test(files_and_nothing_else_are_served),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
                                        cmocka_unit_test(there_are_sixty_four_viewers)};

@@ -1,20 +1,25 @@
 /* The viewer: puts the parts together and runs the loop of animation frames. */
-import { Colours } from './colours';
+import { Colours } from './cards/colours';
 import { element } from './dom';
-import { ForceCard } from './forcecard';
-import { Hand } from './hand';
-import { Instrument } from './instrument';
-import { listenToKeys } from './keys';
-import { Hints, Trouble, note } from './notices';
-import { Panel, StateLine } from './panel';
-import { Pointer } from './pointer';
-import type { Status } from './protocol';
-import { ReplayBar } from './replaybar';
-import { SavedCard } from './savedcard';
-import { Session } from './session';
-import { ToolCard } from './toolcard';
-import { Transport } from './transport';
-import { View } from './view';
+import { ForceCard } from './cards/forcecard';
+import { Hand } from './hands/hand';
+import { InsideCard } from './inspect/insidecard';
+import { Capture } from './inspect/capture';
+import { MeasureCard } from './inspect/measurecard';
+import { Plots } from './inspect/plots';
+import { Scan } from './inspect/scan';
+import { Instrument } from './hands/instrument';
+import { listenToKeys } from './hands/keys';
+import { Hints, Trouble, note } from './cards/notices';
+import { Panel, StateLine } from './cards/panel';
+import { Pointer } from './hands/pointer';
+import type { Status } from './link/protocol';
+import { ReplayBar } from './cards/replaybar';
+import { SavedCard } from './cards/savedcard';
+import { Session } from './link/session';
+import { ToolCard } from './cards/toolcard';
+import { Transport } from './cards/transport';
+import { View } from './picture/view';
 import { publish } from './window';
 
 const trouble = new Trouble();
@@ -44,9 +49,14 @@ function start(): void {
             panel.setHello(hello);
             transport.setHello(hello);
             saved.setHello(hello);
+            inside.setHello(hello);
+            measure.setHello(hello);
+            plots.setHello(hello);
+            scan.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
             hand.forget();
+            element('watching').hidden = !hello.watches;
             force.clear();
             instrument.choose(-1);
             stopped = '';
@@ -58,7 +68,7 @@ function start(): void {
             view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
-            hints.start();
+            hints.start(session.watches);
         },
         riding(riding) {
             view.setRiding(riding);
@@ -79,8 +89,9 @@ function start(): void {
             transport.update(status);
             saved.update(status);
             replay.update(status);
-            hints.silence(replay.shown || trouble.shown);
+            hints.silence(replay.shown || trouble.shown || measure.press !== 'pull');
             panel.update(status);
+            plots.update(status);
             line.update(status);
             toolCard.update(status);
             showStop(status);
@@ -90,6 +101,13 @@ function start(): void {
         hand(news) {
             hand.news(news);
             chooseForce();
+        },
+        values(values) {
+            measure.values(values);
+            plots.values(values);
+        },
+        slice(slice) {
+            scan.take(slice);
         },
         note,
         lost(loss) {
@@ -126,16 +144,27 @@ function start(): void {
     const saved = new SavedCard(session);
     const replay = new ReplayBar(session);
     const transport = new Transport(session, help, replay);
+    const measure = new MeasureCard(session, view, note);
+    const capture = new Capture(session, view, note);
+    const plots = new Plots(session);
+    const scan = new Scan(session, view, note);
+    const inside = new InsideCard(view, note);
     const colours = new Colours(view, (field) => (session.field = field));
-    const pointer = new Pointer(view, hand, instrument, used);
-    listenToKeys({ view, hand, instrument, transport, replay, saved, colours, panel, say: note, used, help });
+    const pointer = new Pointer(view, hand, instrument, measure, used);
+    listenToKeys({
+        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
+    });
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
+    const shadows = element<HTMLInputElement>('shadows');
+    shadows.checked = view.shadows;
+    shadows.addEventListener('change', () => view.showShadows(shadows.checked));
     const fine = element<HTMLInputElement>('fine');
     fine.addEventListener('change', () => {
         view.showFine(fine.checked);
         hand.surfaceChanged();
+        measure.surfaceChanged();
     });
 
     /* Bar and graph show the chosen instrument, or the hand. */
@@ -195,6 +224,7 @@ function start(): void {
         session.ask(now);
         hand.update(now, force.range);
         instrument.update(now);
+        measure.update(now);
         pointer.update();
         replay.look(now);
         if (view.draw(Math.min(0.1, (now - before) / 1000))) pictures++;
@@ -205,7 +235,7 @@ function start(): void {
             counted = now;
         }
     }
-    publish(session, view, hand, force);
+    publish(session, view, hand, force, measure, scan);
     requestAnimationFrame(loop);
     session.connect();
 }

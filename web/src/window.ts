@@ -1,10 +1,12 @@
 /* window.lariat: what tests and curious people may read (docs/viewer.md). It changes nothing. */
-import type { ForceCard } from './forcecard';
-import type { Hand } from './hand';
-import type { Session } from './session';
-import type { View } from './view';
+import type { ForceCard } from './cards/forcecard';
+import type { Hand } from './hands/hand';
+import type { Session } from './link/session';
+import type { Scan } from './inspect/scan';
+import type { MeasureCard } from './inspect/measurecard';
+import type { View } from './picture/view';
 
-export function publish(session: Session, view: View, hand: Hand, force: ForceCard): void {
+export function publish(session: Session, view: View, hand: Hand, force: ForceCard, measure: MeasureCard, scan: Scan): void {
     const state = {
         get connected() { return session.connected; },
         get connections() { return session.connections; },
@@ -16,12 +18,17 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get torn() { return session.torn; },
         get pictures() { return view.drawn; },
         get field() { return session.frame.field; },
+        get watches() { return session.watches; },
         get hand() { return hand.state; },
         get force() { return force.history.ago(0); },
         get forces() { return force.history.count; },
         get peak() { return force.history.peak(); },
         get displacement() { return view.displacement(); },
         get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
+        get press() { return measure.press; },
+        get reading() { return { node: measure.node, element: measure.elementNumber }; },
+        get measured() { return measure.distance; },
+        get scan() { return scan.shown; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
         get others() { return view.others.shown; },

@@ -70,6 +70,22 @@ export function rider(n = 40) {
     return scene;
 }
 
+/* A scan of an ellipsoid in voxels of 2 mm, and the scene that `lariat mesh` makes of it. */
+export function scanned() {
+    const folder = mkdtempSync(join(OUT, 'scan-'));
+    const image = join(folder, 'liver.nrrd');
+    const lines = ['NRRD0004', 'type: uchar', 'dimension: 3', 'space: right-anterior-superior', 'sizes: 24 20 16', 'encoding: text',
+        'space directions: (2,0,0) (0,2,0) (0,0,2)', 'space origin: (-23,-19,-15)', 'Segment0_LabelValue:=1', 'Segment0_Name:=liver', ''];
+    for (let k = 0; k < 16; k++)
+        for (let j = 0; j < 20; j++)
+            for (let i = 0; i < 24; i++)
+                lines.push(((i - 11.5) / 10) ** 2 + ((j - 9.5) / 8) ** 2 + ((k - 7.5) / 6) ** 2 < 1 ? 1 : 0);
+    writeFileSync(image, `${lines.join('\n')}\n`);
+    const made = spawnSync(LARIAT, ['mesh', image, '--elements', '300', '--out', join(folder, 'mesh'), '--title', 'liver'], { encoding: 'utf8' });
+    if (made.status !== 0) throw new Error(made.stderr);
+    return { image, scene: join(folder, 'mesh', 'liver.yaml') };
+}
+
 /* Starts the engine and waits until it serves. */
 export function view(scene, ...options) {
     const child = spawn(LARIAT, ['view', scene, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });

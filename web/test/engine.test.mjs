@@ -4,7 +4,7 @@ import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
-import { demo, endAll, rider, tornDemo, view } from './engine.mjs';
+import { demo, endAll, rider, scanned, tornDemo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
 const model = demo();
@@ -283,6 +283,58 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await other.close();
     await v.page.bringToFront();
     await v.until(() => window.lariat.others === 0, undefined, 20000);
+});
+
+test('values of a node and an element are those of the engine', async () => {
+    await fresh();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('i');
+    await v.page.mouse.click(...FUNDUS);
+    await v.until(() => window.lariat.reading.node > 0 && window.lariat.reading.element > 0);
+    await v.page.keyboard.press('i');
+    await drag(v.page, ...FUNDUS, 40, -60);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
+    await v.until(() => /von Mises\s+[1-9][\d.]* k?Pa/.test(document.getElementById('reading').innerText));
+    // As colours have it: the node that is read is below the greatest of all.
+    const text = await v.page.locator('#reading').innerText();
+    assert.match(text, /displacement\s+[1-9][\d.]* mm/);
+    assert.match(text, /organ\s+uterus/i);
+    await v.shot('13-reading');
+    await v.page.mouse.up();
+    await v.page.getByRole('button', { name: 'Clear' }).click();
+});
+
+test('a scene from a scan: its slices, and the instruments beside it', async () => {
+    const { image, scene } = scanned();
+    const own = await view(scene, '--port', '0', '--scan', image);
+    const s = await openPage(browser, own.url);
+    await s.page.locator('#picture').focus();
+    await s.page.keyboard.press('q');
+    await s.until(() => window.lariat.scan);
+    await s.page.keyboard.press('a');
+    await s.page.getByText('i 12 of 24').waitFor({ timeout: 3000 });
+    assert.deepEqual(await s.page.locator('#tool-list button').evaluateAll((all) => all.map((one) => one.getAttribute('aria-label') ?? one.textContent)), ['hand', 'probe', 'grasper']);
+    await s.page.waitForTimeout(400);
+    await s.shot('14-scan');
+    await s.close();
+    await own.end();
+});
+
+test('who opens the second address can only watch', async () => {
+    const own = await view(model.scene, '--port', '0', '--token', 'for-the-surgeon', '--watch-token', 'for-the-class');
+    const w = await openPage(browser, own.url.replace('for-the-surgeon', 'for-the-class'));
+    assert.match(own.said(), /#token=for-the-class\nWho opens that one can only watch/);
+    assert.equal(await w.get('watches'), true);
+    // Past its own page: the engine itself refuses.
+    const answer = await w.page.evaluate(() => new Promise((done) => {
+        const socket = new WebSocket(`ws://${location.host}/socket?token=for-the-class`, 'lariat.1');
+        socket.onopen = () => socket.send('{"do":"pause"}');
+        socket.onmessage = ({ data }) => typeof data === 'string' && /"note"/.test(data) && done(data);
+    }));
+    assert.match(answer, /may only watch/);
+    assert.equal(await w.get('state'), 'playing');
+    await w.close();
+    await own.end();
 });
 
 test('instruments are chosen, moved and closed', async () => {

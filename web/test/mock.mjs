@@ -14,6 +14,8 @@ const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/cs
 const POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; " +
     "font-src 'self'; connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+const SCAN = [29, 17, 25]; // voxels
+
 /* A pear of quads: a cube blown up to a sphere, narrower below. */
 function pear(n = 14) {
     const x = [];
@@ -75,8 +77,11 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, scan = false, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
+    // Two organs, one above the other.
+    if (organs === 'halves')
+        mesh.m = mesh.m.map((_, q) => ([0, 1, 2, 3].reduce((z, c) => z + mesh.x[3 * mesh.f[4 * q + c] + 2], 0) > 4 * 0.045 ? 1 : 0));
     const n = mesh.x.length / 3;
     const faces = mesh.f.length / 4;
     const fine = riding ? fineSurface(mesh) : null;
@@ -92,6 +97,9 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         state: 'playing', step: 0, tick: 0, pace: 1, recording: false, lost: false, message: '', saved: [], recordings: [], replay: null,
         recoveries: 0, recovery: '', slow: false, refuse: false, mute: false, connections: 0, grabbed: null,
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
+        slices: 0, // that were asked for
+        late: 0, energies: 0, // answers that were; questions for energies
+        refused: [], // what those who may only watch have asked for
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
@@ -163,6 +171,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
+        ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
         lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
@@ -175,13 +184,15 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
             { name: 'energy', number: 16, title: 'strain energy density', unit: 'J/m³' },
             { name: 'processor', number: 32, title: 'processor', unit: '' },
         ],
-        saves: true, hand_force: 5, tool_speed: 1,
+        saves: true, hand_force: 5, tool_speed: 1, watches: false,
     });
+    const bins = (...held) => Array.from({ length: 40 }, (_, i) => held.find(([bin]) => bin === i)?.[1] ?? 0);
     const status = () => ({
         kind: 'status', state: state.state, step: state.step, time: state.step * 1e-4, pace: state.pace,
         step_us: { p50: 21.0, p99: 30.1, p999: 44.0, max: 120.0 },
         tick_us: { p50: 231.0, p99: 320.0, p999: 450.0, max: 1520.0 },
-        ticks: state.tick, misses: 0, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
+        step_bins: bins([8, state.tick]), tick_bins: bins([15, state.tick], [24, state.late]),
+        ticks: state.tick, misses: state.late, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
         recording: state.recording, lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
@@ -265,6 +276,43 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
         return out;
     }
 
+    /* The numbers of the mesh's file begin at 1000 and 5000. */
+    function valuesMessage({ node, face, energy }) {
+        if (energy) state.energies++;
+        const moved = (i) => [0, 1, 2].map((k) => now[3 * i + k] - rest[3 * i + k]);
+        const size = node === undefined ? 0 : Math.hypot(...moved(node));
+        const read = { von_mises: size * 40000, pressure: -1250, energy: size * 900 };
+        return {
+            kind: 'values', step: state.step, time: state.step * 1e-4,
+            ...(node === undefined ? {} : { node: { index: node, number: 1000 + node, rest: [0, 1, 2].map((k) => rest[3 * node + k]), displacement: moved(node), ...read } }),
+            ...(face === undefined ? {} : { element: { index: face, number: 5000 + face, material: mesh.m[face], ...read, pressure: null } }),
+            ...(energy ? { energy: { kinetic: speed.reduce((s, v) => s + v * v, 0), strain: size || 1e-3, hourglass: 1e-5 } } : {}),
+        };
+    }
+
+    /* Voxels of 5 mm around the pear: itself, and a post of bone to its right. */
+    function sliceMessage({ axis, index }) {
+        const [u, v] = [[1, 2], [0, 2], [0, 1]][axis];
+        const [width, height] = [SCAN[u], SCAN[v]];
+        const out = new ArrayBuffer(72 + 4 * Math.ceil((width * height) / 2));
+        const origin = [-0.07, -0.04, -0.015];
+        const unit = (k, size) => [0, 1, 2].map((i) => (i === k ? size : 0));
+        new Uint32Array(out, 0, 6).set([5, axis, index, SCAN[axis], width, height]);
+        new Float32Array(out, 32, 3).set(origin.map((x, i) => x + (i === axis ? 0.005 * index : 0)));
+        new Float32Array(out, 44, 3).set(unit(u, 0.005));
+        new Float32Array(out, 56, 3).set(unit(v, 0.005));
+        const labels = new Uint16Array(out, 72, width * height);
+        for (let y = 0; y < height; y++)
+            for (let x = 0; x < width; x++) {
+                const at = [0, 0, 0];
+                [at[axis], at[u], at[v]] = [index, x, y];
+                const [px, py, pz] = at.map((n, i) => origin[i] + 0.005 * n);
+                labels[y * width + x] = px > 0.044 ? 2 : (px / 0.035) ** 2 + (py / 0.026) ** 2 + ((pz - 0.045) / 0.045) ** 2 < 1 ? 1 : 0;
+            }
+        state.slices++;
+        return out;
+    }
+
     function forcesMessage(index, after) {
         const all = forces[index];
         const count = Math.min(all.length, Math.max(0, state.tick - after));
@@ -298,11 +346,13 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
     const sockets = new WebSocketServer({ server, path: '/socket', handleProtocols: (p) => (p.has('lariat.1') ? 'lariat.1' : false) });
     const faults = []; // what a real server would have cut the viewer off for
     sockets.on('connection', (socket, request) => {
-        if (token && new URL(request.url, 'http://x').searchParams.get('token') !== token)
+        const asked = new URL(request.url, 'http://x').searchParams;
+        if (token && ![token, watchToken].includes(asked.get('token')))
             return socket.close(4001, 'The token is missing or wrong.');
+        const watches = asked.has('watch') || (watchToken !== null && asked.get('token') === watchToken);
         state.connections++;
         const say = (message) => socket.send(JSON.stringify(message));
-        say(hello());
+        say({ ...hello(), watches });
         socket.send(surfaceMessage());
         if (fine) socket.send(ridingMessage());
         say(status());
@@ -323,6 +373,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
             const acts = {
                 frame: () => !state.mute && socket.send(frameMessage(m.field)),
                 forces: () => socket.send(forcesMessage(m.tool, m.after)),
+                slice: () => socket.send(sliceMessage(m)),
+                inspect: () => say(valuesMessage(m)),
                 grab() {
                     state.grabbed = m.point;
                     const node = nearest(m.point);
@@ -370,6 +422,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 },
                 seek: () => (state.replay.time = m.time),
             };
+            if (watches && !['frame', 'forces', 'inspect', 'slice'].includes(m.do)) state.refused.push(m.do);
+            if (watches && !['frame', 'forces', 'inspect', 'slice'].includes(m.do)) return say({ kind: 'note', text: 'this viewer may only watch' });
             if (!acts[m.do]) return faults.push(`unknown: ${data}`);
             acts[m.do]();
         });
@@ -382,6 +436,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, d
                 state,
                 faults,
                 mesh,
+                poses,
                 close() {
                     clearInterval(engine);
                     for (const socket of sockets.clients) socket.terminate();

@@ -131,6 +131,42 @@ test('a wrong token is answered with what to do, and not tried again', async () 
     await locked.close();
 });
 
+test('who may only watch sees everything and is offered nothing that the engine would refuse', async (t) => {
+    const own = await mock({ token: 'right-token', watchToken: 'watch-token' });
+    t.after(() => own.close());
+    own.state.saved = ['pear-1.checkpoint'];
+    own.state.recordings = ['pear-1.recording'];
+    for (const address of ['#token=watch-token', '#token=right-token&watch=1']) {
+        const v = await openPage(browser, own.url + address);
+        assert.ok(await v.get('watches'));
+        await v.page.getByText('only watching').waitFor({ timeout: 3000 });
+        for (const id of ['play', 'step', 'reset', 'record', 'save', 'load', 'pace'])
+            assert.equal(await v.page.locator(`#${id}`).isDisabled(), true, id);
+        assert.equal(await v.page.locator('#ask').isDisabled(), false);
+        assert.equal(await v.page.locator('#hint').innerText(), 'Drag to look around, wheel to zoom');
+        // A drag on the organ turns the picture; keys that act on the run say why they do not.
+        const pictures = await v.get('pictures');
+        await drag(v.page, 500, 320, 60, -40);
+        await v.page.mouse.up();
+        await v.until((n) => window.lariat.pictures > n + 2, pictures);
+        assert.equal(await v.get('hand'), 'free');
+        await v.page.locator('#picture').focus();
+        for (const key of ['Space', '.', 'r', 'j', 'c', 's', 'v', 'p', '[', 'x', ',']) await v.page.keyboard.press(key);
+        await v.page.getByText('This page may only watch').first().waitFor({ timeout: 3000 });
+        await v.page.locator('#saved').evaluate((card) => (card.open = true));
+        assert.equal(await v.page.locator('#saved-states button').first().isDisabled(), true);
+        await v.page.keyboard.press('3');
+        await v.until(() => window.lariat.field === 4);
+        await v.shot('only-watching');
+        await v.close();
+    }
+    assert.deepEqual(own.state.refused, [], 'nothing was sent that is refused');
+    const w = await openPage(browser, `${own.url}#token=right-token`);
+    assert.equal(await w.get('watches'), false);
+    assert.equal(await w.page.locator('#play').isDisabled(), false);
+    await w.close();
+});
+
 test('when the engine ends the page says so within 3 s, greys, and finds a new one by itself', async () => {
     const first = await mock();
     const v = await openPage(browser, first.url, { expected: [...REFUSED, /failed: /] });
@@ -257,7 +293,7 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
 });
 
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
-    const own = await mock();
+    const own = await mock({ scan: true });
     t.after(() => own.close());
     const always = ['header', '#slow', '#force', '#looks', '#transport'];
     const v = await openPage(browser, own.url);
@@ -267,6 +303,36 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     own.state.replay = { name: 'pear-1.recording', time: 0.4, length: 2 };
     await v.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
     await laidOut(v, [...always, '#replay'], 'replay');
+    own.state.replay = null;
+    await v.page.locator('#replay').waitFor({ state: 'hidden', timeout: 3000 });
+    // Every panel unfolded and full: it scrolls, and is nowhere wider than its column.
+    await v.page.evaluate(() => document.querySelectorAll('#looks details').forEach((card) => (card.open = true)));
+    await v.page.getByLabel('cut open').check();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('i');
+    await v.page.keyboard.press('Enter');
+    await v.page.keyboard.press('d');
+    await v.page.keyboard.press('Enter');
+    await v.until(() => window.lariat.reading.node > 0);
+    await v.page.keyboard.press('w');
+    await v.page.keyboard.press('q');
+    await v.until(() => window.lariat.scan);
+    await laidOut(v, always, 'unfolded');
+    for (const width of [390, 800, 1024, 1600]) {
+        await v.page.setViewportSize({ width, height: 780 });
+        await v.page.waitForTimeout(150);
+        const wide = await v.page.evaluate(() => {
+            const looks = document.getElementById('looks');
+            const { right } = looks.getBoundingClientRect();
+            return [...looks.querySelectorAll('*')].filter((part) => part.getBoundingClientRect().right > right + 1).map((part) => part.id || part.outerHTML.slice(0, 80));
+        });
+        assert.deepEqual(wide, [], `wider than the column at ${width}`);
+        await v.page.locator('#cut-across').scrollIntoViewIfNeeded();
+        await v.shot(`layout-inside-${width}`);
+        await v.page.locator('#steps').scrollIntoViewIfNeeded();
+        await v.shot(`layout-plots-${width}`);
+    }
+    await Promise.all([v.page.waitForEvent('download'), v.page.keyboard.press('w')]);
     await v.close();
 });
 

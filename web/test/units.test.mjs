@@ -12,12 +12,15 @@ const folder = mkdtempSync(join(tmpdir(), 'lariat-units-'));
 const parts = {};
 
 before(async () => {
-    const names = ['surface', 'riding', 'pick', 'graph', 'palette', 'protocol', 'dom', 'grain', 'panel', 'toolcard', 'camera', 'range'];
+    const files = [
+        'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
+        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+    ];
     await build({
-        entryPoints: names.map((name) => join(source, `${name}.ts`)),
+        entryPoints: files.map((file) => join(source, `${file}.ts`)),
         bundle: true, format: 'esm', outdir: folder, outExtension: { '.js': '.mjs' }, logLevel: 'error',
     });
-    for (const name of names) parts[name] = await import(join(folder, `${name}.mjs`));
+    for (const file of files) parts[file.split('/').pop()] = await import(join(folder, `${file}.mjs`));
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
 
@@ -182,7 +185,7 @@ test('a riding surface is picked, followed, and held at the mesh', () => {
     parts.pick.follow(riding, near, now);
     assert.ok(Math.hypot(now.x - 0.1, now.y + 1.3, now.z - 0.2) < 0.15);
     const { x, quads } = cube(3, false);
-    const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] });
+    const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] }).point;
     assert.deepEqual(at([0.25, -1.5, 0.5]).map((v) => Math.round(v * 1e6) / 1e6), [0.25, -1, 0.5]);
     assert.deepEqual(at([3, 3, 3]), [1, 1, 1]);
     assert.deepEqual(at([2, 0.125, -4]).map((v) => Math.round(v * 1e6) / 1e6), [1, 0.125, -1]);
@@ -331,6 +334,40 @@ test('a tool says its force, its limit, and when that is reached', () => {
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
     assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
     assert.equal(load({ ...rest, grasp: 0.126, depth: 0.0004 }), '0.00 of 4.39 N, grasp 0.13 N, 400 µm deep');
+});
+
+test('bins of times begin where the engine says, and decades hold what is plotted', () => {
+    const { binStart, binAt, shownBins, decades } = parts.plots;
+    for (let bin = 0; bin < 40; bin++) {
+        assert.ok(Math.abs(binStart(bin) - 1.024e-6 * 2 ** (bin >> 1) * (bin & 1 ? 1.5 : 1)) < 1e-18);
+        assert.ok(Math.abs(binAt(binStart(bin)) - bin) < 1e-9);
+    }
+    assert.ok(binAt(1e-3) > 19 && binAt(1e-3) < 20);
+    const bins = Array.from({ length: 40 }, (_, i) => (i === 15 ? 10 : 0));
+    assert.deepEqual(shownBins(bins, binAt(1e-3)), [14, 22]);
+    assert.deepEqual(decades([2e-3, 5e-5, 0]), [-5, -2]);
+    assert.deepEqual(decades([1e-3, 1e-15]), [-9, -3]);
+    assert.deepEqual(decades([]), [-6, -3]);
+});
+
+test('a slice reaches half a pixel beyond the centres of its outer pixels', () => {
+    const corners = parts.scan.cornersOf({ corner: [1, 2, 3], across: [0.5, 0, 0], down: [0, 0, 2], width: 4, height: 3 });
+    assert.deepEqual([...corners], [0.75, 2, 2, 2.75, 2, 2, 2.75, 2, 8, 0.75, 2, 8]);
+    assert.throws(() => parts.protocol.readSlice(new Uint32Array(20).fill(5).buffer), /wrong length/);
+});
+
+test('a picture is named after the scene and its step', () => {
+    const { fileName } = parts.capture;
+    assert.equal(fileName('Uterus', 12000, 'png'), 'uterus-12000.png');
+    assert.equal(fileName(' Left kidney (CT) ', 0, 'webm'), 'left-kidney-ct-0.webm');
+    assert.equal(fileName('', 7, 'png'), 'lariat-7.png');
+});
+
+test('a distance is told with what it was at rest', () => {
+    const { distanceText } = parts.measurecard;
+    assert.equal(distanceText(0.0312, 0.03), '31.2 mm now, 30.0 mm at rest (+4.0 %)');
+    assert.equal(distanceText(0.027, 0.03), '27.0 mm now, 30.0 mm at rest (−10.0 %)');
+    assert.equal(distanceText(0.01, 0), '10.0 mm now, 0 m at rest (+0.0 %)');
 });
 
 test('the panel says into how many parts steps are divided', () => {

@@ -1,0 +1,134 @@
+/* The scene's tools as they are drawn, at the poses that the last frame told. A tool's own axes: the tip
+ * is the origin, the shaft lies along +z, jaws open in the plane y = 0 towards -z. */
+import * as THREE from 'three';
+import type { Rod } from './shadows';
+import { steel } from './steel';
+import { TOOL_WORDS, type Frame, type ToolInfo } from '../link/protocol';
+
+const STEEL = [0.62, 0.65, 0.68] as const;
+const CHOSEN = [0.45, 0.75, 0.95] as const;
+
+interface Drawn {
+    info: ToolInfo;
+    group: THREE.Group;
+    jaws: [THREE.Object3D, THREE.Object3D] | null;
+    material: THREE.ShaderMaterial;
+    rods: Rod[]; // what throws its shadow
+    reach: number; // radius of a ball about the tip that takes the pointer
+}
+
+export class Instruments {
+    readonly group = new THREE.Group();
+    private readonly drawn: (Drawn | null)[] = [];
+    private readonly center = new THREE.Vector3();
+
+    set(tools: ToolInfo[], hands: number[]): void {
+        this.group.clear();
+        this.drawn.length = 0;
+        tools.forEach((info, i) => {
+            const hand = hands.includes(i) || info.shape === 'hand';
+            const one = hand ? null : draw(info);
+            this.drawn.push(one);
+            if (one) this.group.add(one.group);
+        });
+    }
+
+    update(frame: Frame): void {
+        for (let i = 0; i < this.drawn.length; i++) {
+            const one = this.drawn[i];
+            const at = i * TOOL_WORDS;
+            if (!one || at + TOOL_WORDS > frame.tools.length) continue;
+            const t = frame.tools;
+            one.group.position.set(t[at]!, t[at + 1]!, t[at + 2]!);
+            one.group.quaternion.set(t[at + 4]!, t[at + 5]!, t[at + 6]!, t[at + 3]!);
+            if (one.jaws) {
+                const angle = (t[at + 7]! * one.info.spread) / 2;
+                one.jaws[0].rotation.y = angle;
+                one.jaws[1].rotation.y = -angle;
+            }
+        }
+    }
+
+    choose(tool: number): void {
+        this.drawn.forEach((one, i) => {
+            one?.material.uniforms.colour!.value.set(...(i === tool ? CHOSEN : STEEL));
+        });
+    }
+
+    /* The tool under a ray, within a margin that grows with distance; -1: none. */
+    under(ray: THREE.Ray, margin: number): number {
+        let best = Infinity;
+        let found = -1;
+        const end = new THREE.Vector3();
+        this.drawn.forEach((one, i) => {
+            if (!one) return;
+            const near = margin * ray.origin.distanceTo(one.group.position);
+            end.set(0, 0, Math.max(one.info.length, one.reach)).applyQuaternion(one.group.quaternion);
+            end.add(one.group.position);
+            const gap = Math.sqrt(ray.distanceSqToSegment(one.group.position, end, undefined, this.center));
+            if (gap < one.info.radius + near && gap < best) {
+                best = gap;
+                found = i;
+            }
+        });
+        return found;
+    }
+
+    /* What throws shadows, in the order of the tools. */
+    get rods(): Rod[] {
+        return this.drawn.flatMap((one) => one?.rods ?? []);
+    }
+
+    position(tool: number): THREE.Vector3 | null {
+        return this.drawn[tool]?.group.position ?? null;
+    }
+}
+
+function draw(info: ToolInfo): Drawn {
+    const group = new THREE.Group();
+    const material = steel({ colour: STEEL, polish: 1 });
+    const add = (geometry: THREE.BufferGeometry, to: THREE.Object3D = group): THREE.Mesh => {
+        const mesh = new THREE.Mesh(geometry, material);
+        to.add(mesh);
+        return mesh;
+    };
+    const rods: Rod[] = [];
+    const shade = (from: number, to: number, radius: number, of: THREE.Object3D = group): void => {
+        rods.push({ from: new THREE.Vector3(0, 0, from), to: new THREE.Vector3(0, 0, to), radius, of });
+    };
+    let jaws: [THREE.Object3D, THREE.Object3D] | null = null;
+    let reach = info.radius;
+    if (info.shape === 'sphere') {
+        add(new THREE.SphereGeometry(info.radius, 40, 28));
+        // What holds the ball; it touches nothing.
+        add(rod(info.radius * 0.28, info.radius * 0.9, info.radius * 14));
+        shade(0, 0, info.radius);
+        shade(info.radius * 0.9, info.radius * 14, info.radius * 0.28);
+        reach = info.radius * 6;
+    } else if (info.shape === 'capsule') {
+        add(round(info.radius, info.length)).position.z = info.length / 2;
+        shade(0, info.length, info.radius);
+    } else {
+        const jaw = (): THREE.Object3D => {
+            const pivot = new THREE.Group();
+            add(round(info.radius, info.length), pivot).position.z = -info.length / 2;
+            group.add(pivot);
+            shade(0, -info.length, info.radius, pivot);
+            return pivot;
+        };
+        jaws = [jaw(), jaw()];
+        add(new THREE.SphereGeometry(info.radius * 1.35, 24, 18));
+        add(rod(info.radius * 1.1, 0, info.length * 7));
+        shade(0, info.length * 7, info.radius * 1.1);
+        reach = info.length * 2;
+    }
+    return { info, group, jaws, material, rods, reach };
+}
+
+const round = (radius: number, length: number): THREE.BufferGeometry =>
+    new THREE.CapsuleGeometry(radius, length, 12, 28).rotateX(Math.PI / 2);
+
+function rod(radius: number, from: number, to: number): THREE.BufferGeometry {
+    const geometry = new THREE.CylinderGeometry(radius, radius, to - from, 24, 1);
+    return geometry.rotateX(Math.PI / 2).translate(0, 0, (from + to) / 2);
+}

@@ -1,0 +1,373 @@
+// Looking closer, against the stand-in for the server: what changes a page's own picture, what is read and
+// measured, plotted and saved.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { mock } from './mock.mjs';
+
+let browser;
+let server;
+
+before(async () => {
+    browser = await openBrowser();
+    server = await mock();
+});
+after(async () => {
+    await browser?.close();
+    await server?.close();
+});
+
+test('the picture is cut open, by mouse and by keys, and what is cut away cannot be pulled', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(300);
+    const LEFT = [430, 260];
+    const RIGHT = [570, 260];
+    const [left, right] = await colours(v.page, [LEFT, RIGHT]);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('k');
+    assert.ok(await v.page.getByLabel('cut open').isChecked());
+    assert.equal(await v.page.locator('#cut-text').innerText(), 'x below 0 m');
+    await v.page.waitForTimeout(400);
+    await v.shot('cut-x');
+    const [leftCut, rightCut] = await colours(v.page, [LEFT, RIGHT]);
+    assert.ok(difference(left, leftCut) < 25, `${left} stays, ${leftCut}`);
+    assert.ok(difference(right, rightCut) > 40, `${right} is cut away, ${rightCut}`);
+    // A press there looks around: nothing is held.
+    await drag(v.page, ...RIGHT, 2, 2, 2);
+    await v.page.waitForTimeout(200);
+    assert.equal(await v.get('hand'), 'free');
+    await v.page.mouse.up();
+    await drag(v.page, ...LEFT, 2, 2, 2);
+    await v.until(() => window.lariat.hand === 'holding');
+    await v.page.mouse.up();
+    // The other side, another direction, another place, and none.
+    await v.page.getByLabel('the other side').check();
+    await v.page.waitForTimeout(400);
+    const [leftOther] = await colours(v.page, [LEFT]);
+    assert.ok(difference(left, leftOther) > 40, `${leftOther}`);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('b');
+    await v.page.keyboard.press('b');
+    assert.match(await v.page.locator('#cut-text').innerText(), /^z above 45\.0 mm$/);
+    await v.page.getByLabel('Place of the cut').fill('0.9');
+    await v.page.locator('#picture').focus();
+    const before = await v.page.locator('#cut-text').innerText();
+    await v.page.keyboard.press('<');
+    assert.notEqual(await v.page.locator('#cut-text').innerText(), before);
+    await v.page.keyboard.press('b');
+    assert.match(await v.page.locator('#cut-text').innerText(), /^towards the eye above/);
+    await v.page.keyboard.press('k');
+    assert.equal(await v.page.locator('#cut-part').isVisible(), false);
+    await v.page.waitForTimeout(400);
+    const [again] = await colours(v.page, [RIGHT]);
+    assert.ok(difference(right, again) < 25, `${right} is back, ${again}`);
+    await v.close();
+});
+
+for (const riding of [false, true])
+    test(`organs are faded and hidden${riding ? ', also of a fine surface' : ''}, and let the pointer through`, async (t) => {
+        const own = await mock({ riding, organs: 'halves' });
+        t.after(() => own.close());
+        const v = await openPage(browser, own.url);
+        await v.page.waitForTimeout(300);
+        const UPPER = [500, 200]; // the second organ
+        const LOWER = [500, 450];
+        const [upper, lower, beside] = await colours(v.page, [UPPER, LOWER, [300, 560]]);
+        await v.page.locator('#inside').evaluate((card) => (card.open = true));
+        const entry = v.page.locator('#organs button').nth(1);
+        assert.equal(await entry.getAttribute('aria-label'), 'tubes: shown');
+        await entry.click();
+        assert.equal(await entry.getAttribute('aria-label'), 'tubes: faded');
+        await v.page.waitForTimeout(400);
+        await v.shot(`organ-faded-${riding ? 'fine' : 'mesh'}`);
+        const [faded, still] = await colours(v.page, [UPPER, LOWER]);
+        assert.ok(difference(upper, faded) > 30, `${upper}, faded ${faded}`);
+        assert.ok(difference(lower, still) < 25, `${lower} stays, ${still}`);
+        await drag(v.page, ...UPPER, 2, 2, 2);
+        await v.page.waitForTimeout(200);
+        assert.equal(await v.get('hand'), 'free', 'what is faded is not pulled');
+        await v.page.mouse.up();
+        await entry.click();
+        await v.page.waitForTimeout(400);
+        const [hidden] = await colours(v.page, [UPPER]);
+        assert.ok(difference(hidden, beside) < 40, `${hidden} is background, ${beside}`);
+        await v.page.getByRole('button', { name: 'Show all' }).click();
+        // By keyboard: the one in the middle, twice, and all again.
+        await v.page.locator('#picture').focus();
+        await v.page.keyboard.press('h');
+        await v.page.keyboard.press('h');
+        await v.page.getByText(/(uterus|tubes): hidden/).first().waitFor({ timeout: 3000 });
+        await v.page.keyboard.press('u');
+        await v.page.waitForTimeout(400);
+        const [back] = await colours(v.page, [UPPER]);
+        assert.ok(difference(upper, back) < 25, `${upper} is back, ${back}`);
+        assert.equal(await v.page.getByRole('button', { name: 'Show all' }).isDisabled(), true);
+        await v.close();
+    });
+
+test('values of a node and its element are read where one presses, also by keyboard', async (t) => {
+    const own = await mock({ riding: true });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.locator('#measure').evaluate((card) => (card.open = true));
+    await v.page.getByRole('radio', { name: 'read values' }).click();
+    await v.page.mouse.click(500, 250);
+    await v.until(() => window.lariat.reading.node >= 1000);
+    assert.equal(await v.get('hand'), 'free', 'a press reads and does not pull');
+    const first = await v.get('reading');
+    // The node is the mesh's nearest to where it was pressed: high up, in front.
+    const at = [0, 1, 2].map((k) => own.mesh.x[3 * (first.node - 1000) + k]);
+    assert.ok(Math.abs(at[0]) < 0.008 && at[1] < 0 && at[2] > 0.05, `${at}`);
+    const text = await v.page.locator('#reading').innerText();
+    assert.match(text, /node 1\d\d\d[^]*von Mises[^]*pressure\s+−1\.25 kPa[^]*at rest[^]*mm[^]*element 5\d\d\d[^]*pressure\s+–[^]*(uterus|tubes)[^]*shear modulus\s+1\.50 kPa/);
+    await v.page.waitForTimeout(300);
+    const [mark] = await colours(v.page, [[500, 250]]);
+    await v.shot('reading');
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('Escape');
+    assert.equal(await v.get('press'), 'pull');
+    await v.page.keyboard.press('i');
+    assert.equal(await v.get('press'), 'read');
+    await v.page.keyboard.press('Enter');
+    await v.until((n) => window.lariat.reading.node !== n, first.node);
+    // Values follow the tissue.
+    await v.page.keyboard.press('i');
+    await v.page.keyboard.press('p');
+    await v.until(() => window.lariat.hand === 'holding');
+    for (let i = 0; i < 8; i++) await v.page.keyboard.press('ArrowUp');
+    await v.until(() => /displacement\s+[1-9][\d.]* mm/.test(document.getElementById('reading').innerText));
+    await v.page.keyboard.press('p');
+    await v.page.getByRole('button', { name: 'Clear' }).click();
+    assert.equal((await v.get('reading')).node, -1);
+    assert.equal(await v.page.locator('#reading').innerText(), '');
+    assert.ok(mark.length === 3);
+    await v.close();
+});
+
+test('a distance is measured between two places, now and at rest, and follows the tissue', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('d');
+    await v.page.mouse.click(500, 160);
+    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    await v.page.mouse.click(500, 480);
+    await v.until(() => window.lariat.measured > 0);
+    const still = await v.get('measured');
+    // The pear is 90 mm high.
+    assert.ok(still > 0.05 && still < 0.09, `${still} m`);
+    assert.match(await v.page.locator('#distance').innerText(), /^\d\d\.\d mm now, \d\d\.\d mm at rest \([+−]0\.0 %\)$/);
+    await v.page.waitForTimeout(300);
+    await v.shot('distance');
+    // Marks that rest cost no pictures.
+    own.state.mute = true;
+    await v.page.waitForTimeout(400);
+    const pictures = await v.get('pictures');
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.get('pictures'), pictures);
+    own.state.mute = false;
+    await v.page.reload();
+    await v.until(() => window.lariat?.frames > 1);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('d');
+    await v.page.mouse.click(500, 160);
+    await v.page.mouse.click(500, 480);
+    await v.until(() => window.lariat.measured > 0);
+    await v.page.waitForTimeout(300);
+    const [line] = await colours(v.page, [[500, 320]]);
+    assert.ok(line[1] > line[0] + 30, `the line is green: ${line}`);
+    await v.page.keyboard.press('d');
+    await drag(v.page, 500, 180, 0, -60);
+    await v.until((d) => window.lariat.measured > d + 0.002, still);
+    assert.match(await v.page.locator('#distance').innerText(), /\(\+[1-9][\d.]* %\)$/);
+    await v.page.mouse.up();
+    // By keyboard alone, and from anew with the third end.
+    await v.page.keyboard.press('d');
+    await v.page.keyboard.press('Enter');
+    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    for (let i = 0; i < 4; i++) await v.page.keyboard.press('ArrowUp');
+    await v.page.waitForTimeout(600);
+    await v.page.keyboard.press('Enter');
+    await v.until(() => window.lariat.measured > 0);
+    await v.close();
+});
+
+test('energies and times are plotted, and asked for only while they are seen', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(500);
+    assert.equal(own.state.energies, 0);
+    own.state.late = 3;
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('y');
+    await v.page.getByText('strain 1.01 mJ, kinetic').waitFor({ timeout: 3000 });
+    await v.page.getByText(/Answers to tools, due within 1\.00 ms: 3 of \d+ missed/).waitFor({ timeout: 3000 });
+    await v.page.getByText('A step, of the 100 µs that it stands for').waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(1500);
+    const drawn = (id) => v.page.evaluate((name) => {
+        const canvas = document.getElementById(name);
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        const count = (match) => data.reduce((sum, _, i) => sum + (i % 4 === 0 && data[i + 3] > 100 && match(data[i], data[i + 1], data[i + 2]) ? 1 : 0), 0);
+        return { red: count((r, g, b) => r > 200 && g < 150 && b < 150), blue: count((r, g, b) => b > 200 && r < 150), amber: count((r, g, b) => r > 200 && g > 150 && b < 100) };
+    }, id);
+    const [energies, answers, steps] = [await drawn('energies'), await drawn('answers'), await drawn('steps')];
+    assert.ok(energies.amber > 5, JSON.stringify(energies));
+    assert.ok(answers.blue > 20 && answers.red > 5, `late ones are red: ${JSON.stringify(answers)}`);
+    assert.ok(steps.blue > 20 && steps.red === 0, JSON.stringify(steps));
+    await v.page.setViewportSize({ width: 1000, height: 900 });
+    await v.page.waitForTimeout(700);
+    await v.shot('plots');
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('y');
+    await v.page.waitForTimeout(300);
+    const asked = own.state.energies;
+    await v.page.waitForTimeout(700);
+    assert.equal(own.state.energies, asked);
+    await v.close();
+});
+
+test('instruments throw shadows on tissue, not on colours that stand for values', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    // The jaws point at the organ from the front, a little above its middle.
+    own.poses[0].position = [0, -0.05, 0.055];
+    own.poses[0].orientation = [Math.SQRT1_2, Math.SQRT1_2, 0, 0];
+    const v = await openPage(browser, own.url);
+    assert.equal(await v.page.getByLabel('shadows').isChecked(), false, 'not where the main processor draws');
+    const places = Array.from({ length: 400 }, (_, i) => [390 + (i % 20) * 12, 180 + Math.floor(i / 20) * 16]);
+    const dark = async () => {
+        await v.page.waitForTimeout(500);
+        return colours(v.page, places);
+    };
+    const plain = await dark();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('z');
+    const shaded = await dark();
+    await v.shot('shadows');
+    const darker = plain.filter((colour, i) => colour[0] - shaded[i][0] > 30).length;
+    const brighter = plain.filter((colour, i) => shaded[i][0] - colour[0] > 30).length;
+    assert.ok(darker > 8 && darker < 200, `${darker} of 400 places are in the shadow`);
+    assert.ok(brighter < 5, `${brighter} are brighter`);
+    await v.page.keyboard.press('3');
+    await v.until(() => window.lariat.field === 4);
+    const mapped = await dark();
+    await v.page.keyboard.press('z');
+    const without = await dark();
+    assert.ok(mapped.every((colour, i) => difference(colour, without[i]) < 20), 'values keep their colours');
+    await v.close();
+});
+
+test('slices of the scan are shown where they lie, and are asked for one at a time', async (t) => {
+    const own = await mock({ scan: true });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    const BONE = [685, 320]; // beside the organ
+    await v.page.waitForTimeout(300);
+    const [before, organ] = await colours(v.page, [BONE, [500, 320]]);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('q');
+    await v.until(() => window.lariat.scan);
+    await v.page.keyboard.press('a');
+    await v.page.keyboard.press('a'); // k, i, j: across the line of sight
+    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(400);
+    await v.shot('scan');
+    const [bone, still] = await colours(v.page, [BONE, [500, 320]]);
+    assert.ok(difference(before, bone) > 80, `bone ${bone} where there was ${before}`);
+    assert.ok(difference(organ, still) < 25, 'the organ stands before it');
+    // Cut open along it, one sees the slice within the organ.
+    await v.page.keyboard.press('k');
+    await v.page.keyboard.press('b');
+    await v.page.getByLabel('the other side').check();
+    await v.page.waitForTimeout(400);
+    await v.shot('scan-cut');
+    // As fast as the slider goes, one is under way at a time.
+    await v.page.getByLabel('Which slice').fill('3');
+    await v.page.getByText('j 3 of 17').waitFor({ timeout: 3000 });
+    await v.page.locator('#picture').focus();
+    const asked = own.state.slices;
+    for (let i = 0; i < 5; i++) await v.page.keyboard.press('}');
+    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    assert.ok(own.state.slices <= asked + 5, `${own.state.slices - asked} slices`);
+    await v.page.keyboard.press('q');
+    assert.equal(await v.get('scan'), false);
+    await v.page.waitForTimeout(300);
+    const [gone] = await colours(v.page, [BONE]);
+    assert.ok(difference(before, gone) < 25);
+    await v.close();
+    const w = await openPage(browser, server.url);
+    await w.page.locator('#picture').focus();
+    await w.page.keyboard.press('q');
+    await w.page.getByText('There is no scan').waitFor({ timeout: 3000 });
+    assert.equal(await w.page.getByLabel('scan slice').isVisible(), false);
+    await w.close();
+});
+
+/* What the browser saves when something is done, and its name. */
+async function saved(page, act) {
+    const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);
+    return { name: download.suggestedFilename(), data: readFileSync(await download.path()) };
+}
+
+test('a picture with its legend is saved, by button and by key', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.getByRole('radio', { name: 'von Mises stress' }).click();
+    await v.until(() => window.lariat.field === 4);
+    await v.page.locator('#picture').focus();
+    const { name, data } = await saved(v.page, () => v.page.keyboard.press('n'));
+    assert.match(name, /^pear-\d+\.png$/);
+    assert.equal(data.subarray(1, 4).toString(), 'PNG');
+    // As large as the picture, and a line of text below it; the organ is in its middle.
+    const seen = await v.page.evaluate(async (base64) => {
+        const image = new Image();
+        image.src = `data:image/png;base64,${base64}`;
+        await image.decode();
+        const canvas = document.createElement('canvas');
+        [canvas.width, canvas.height] = [image.width, image.height];
+        const pen = canvas.getContext('2d', { willReadFrequently: true });
+        pen.drawImage(image, 0, 0);
+        const row = (y) => {
+            const colours = new Set();
+            for (let x = 0; x < image.width; x++) colours.add(pen.getImageData(x, y, 1, 1).data.join());
+            return colours.size;
+        };
+        const picture = document.getElementById('picture');
+        return {
+            width: image.width, foot: image.height - picture.height, drawn: picture.width,
+            middle: [...pen.getImageData(image.width / 2, picture.height / 2, 1, 1).data],
+            legend: row(picture.height + (image.height - picture.height) / 2),
+        };
+    }, data.toString('base64'));
+    assert.equal(seen.width, seen.drawn);
+    assert.ok(seen.foot >= 30, `${seen.foot} pixels below`);
+    assert.ok(seen.middle[2] > seen.middle[1], `violet: ${seen.middle}`);
+    assert.ok(seen.legend > 60, `${seen.legend} colours in the line below`);
+    await v.page.locator('#keep').evaluate((card) => (card.open = true));
+    const second = await saved(v.page, () => v.page.getByRole('button', { name: 'Picture', exact: true }).click());
+    assert.match(second.name, /\.png$/);
+    await v.close();
+});
+
+test('a video is filmed and saved', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('w');
+    await v.page.locator('#filming').waitFor({ state: 'visible', timeout: 3000 });
+    for (let i = 0; i < 20; i++) {
+        await v.page.keyboard.press('ArrowLeft');
+        await v.page.waitForTimeout(60);
+    }
+    const { name, data } = await saved(v.page, () => v.page.keyboard.press('w'));
+    assert.match(name, /^pear-\d+\.webm$/);
+    assert.equal(data.readUInt32BE(0), 0x1a45dfa3, 'WebM');
+    assert.ok(data.length > 5000, `${data.length} bytes`);
+    await v.page.locator('#filming').waitFor({ state: 'hidden', timeout: 3000 });
+    // Clusters with blocks of pictures, one after the other.
+    assert.ok(data.includes(Buffer.from([0x1f, 0x43, 0xb6, 0x75])), 'pictures are in it');
+    await v.close();
+});
