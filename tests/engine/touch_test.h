@@ -69,7 +69,7 @@ TEST_UNUSED static double size_of(const double v[3]) {
 }
 
 /* The solid angle of a triangle, seen from the origin (Van Oosterom and Strackee 1983). */
-TEST_UNUSED static double solid_angle(const double a[3], const double b[3], const double c[3]) {
+TEST_UNUSED static double angle_seen(const double a[3], const double b[3], const double c[3]) {
     double la = size_of(a), lb = size_of(b), lc = size_of(c), ab = 0, bc = 0, ca = 0, volume = 0;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -92,7 +92,7 @@ TEST_UNUSED static double winding(const lar_simulation *simulation, const double
             const double *u = node_u(simulation, node);
             for (int i = 0; i < 3; i++) x[a][i] = model->mesh.position[node][i] + u[i] - point[i];
         }
-        sum += solid_angle(x[0], x[1], x[2]) + solid_angle(x[0], x[2], x[3]);
+        sum += angle_seen(x[0], x[1], x[2]) + angle_seen(x[0], x[2], x[3]);
     }
     return sum / (4 * 3.14159265358979);
 }
