@@ -89,10 +89,10 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
 }
 
 /* Between decisions about parts of steps a barrier that has just been met is no harder than the
- * step bears beside element and tool; after the next one the step is divided for all of it. */
+ * step bears; after the next one the step is divided for all of it. */
 static void soften(const lar_domain *domain, lar_gid e, double stiffness, double step, bool close,
                    double force[8][3]) {
-    static const double ROOM = 0.3; /* of (omega dt / 2)^2 */
+    static const double ROOM = 1; /* of (omega dt / 2)^2 */
     double takes = 0.25 * step * step * (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
     if (close || !(takes > ROOM)) return;
     for (int a = 0; a < 8; a++)
