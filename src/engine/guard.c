@@ -89,14 +89,15 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
 }
 
 /* Between decisions about parts of steps a barrier that has just been met is no harder than the
- * step bears; after the next one the step is divided for all of it. */
-static void soften(const lar_domain *domain, lar_gid e, double stiffness, double step, bool close,
-                   double force[8][3]) {
+ * step bears; after the next one the step is divided for all of it. Returns which part of it. */
+static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step, bool close,
+                     double force[8][3]) {
     static const double ROOM = 1; /* of (omega dt / 2)^2 */
     double takes = 0.25 * step * step * (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
-    if (close || !(takes > ROOM)) return;
+    if (close || !(takes > ROOM)) return 1;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) force[a][i] *= ROOM / takes;
+    return ROOM / takes;
 }
 
 static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *state) {
@@ -108,9 +109,9 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_model_material_of(domain->model, e), LEAD * step, force, &guard);
     if (!(guard.least < LAR_GUARD_START)) return;
-    soften(domain, e, guard.stiffness, step, state->close, force);
+    double part = soften(domain, e, guard.stiffness, step, state->close, force);
     add(domain, e, (const double(*)[3])force, state);
-    if (counts) state->contact -= step * guard.taken;
+    if (counts) state->contact -= step * part * guard.taken;
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {

@@ -49,8 +49,7 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
     return (step / whole->interval + 1) * whole->interval;
 }
 
-/* How much of the 4 that central differences bear elements may take, over 4: all that the step took
- * at rest, and more as long as no tool touches them, which takes its own part (theory.md 10). */
+/* At least what the step takes at rest; tools that touch take their own part (theory.md 10). */
 static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
     static const double MOST = 0.9, SPRINGS = 0.25;
     double share = whole->time_step / whole->stable_step, rest = 1.02 * share * share;

@@ -126,9 +126,15 @@ if there viewer; then
         fail "the device of README.md does not touch the organ as it is shown"
         sed 's/^/    /' felt >&2
     }
+    # Where the engine is slower than real time the hand is faster than it is shown: at a tenth of
+    # the pace ten times, and what it feels is a blow. Then the force must only be one.
     force='^force *largest \([0-9.]*\) N.*'
-    echo "$(figure shown "$force") $(figure felt "$force")" |
-        awk '{ exit !($1 > 0.05 && $2 > 0.05 && $1 < 20 * $2 && $2 < 20 * $1) }' || {
+    sent='.* packets in \([0-9.]*\) s.*'
+    steps='^engine *\([0-9]*\) steps.*'
+    echo "$(figure shown "$force") $(figure felt "$force")" \
+        "$(figure felt "$steps") $(figure felt "$sent")" |
+        awk '{ behind = $3 < 5000 * $4
+               exit !($1 > 0.05 && $2 > 0.05 && (behind || ($1 < 20 * $2 && $2 < 20 * $1))) }' || {
         fail "the device of README.md does not feel the organ as it is shown"
         sed 's/^/    /' felt >&2
     }
