@@ -727,6 +727,8 @@ typedef struct lar_session_status {
                                                        given up, and counted in `skipped` */
     double skipped;
     int recording;
+    char recording_lost[1016]; /* why a recording ended by itself, such as a full disk; "": none
+                                  did since the latest one was begun */
     lar_status error;    /* why it stopped: LAR_OK while it has not; LAR_ERROR_UNSTABLE: the run
                             broke and did not go back (stop_when_unstable, or nobody has moved a
                             tool since the start), reset or load takes it up again;

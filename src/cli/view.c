@@ -22,7 +22,7 @@ typedef struct view_settings {
     int64_t port, priority;
     double pace, seconds, time_step;
     int isa;
-    bool paused, open, json;
+    bool paused, open, json, force;
     cli_parallel parallel;
     int argc; /* what the command was given */
     char **argv;
@@ -38,9 +38,9 @@ typedef struct view {
     lar_server *server;
     view_report report;
     char *url;
-    pid_t browser;           /* its starter; 0: none */
-    lar_session_state state; /* as last told */
-    bool slow;
+    pid_t browser;                /* its starter; 0: none */
+    lar_session_state state;      /* as last told */
+    bool slow, recording_lost;    /* as last told */
     double slow_since, slow_told; /* when slow motion began, and was last announced [s] */
     uint64_t recoveries;          /* as last told */
     double recovered_told;        /* when that was [s] */
@@ -161,6 +161,10 @@ static int open_session(view *v) {
     options.paused = s->paused;
     options.priority = (int)s->priority;
     options.record = s->record;
+    if (s->record && !s->force && access(s->record, F_OK) == 0)
+        return cli_complain(&cli_view, CLI_FAILED,
+                            "%s is there already; --force replaces it, or take another name",
+                            s->record);
     if (s->resume && lar_simulation_load(v->simulation, s->resume, &error))
         return fail_by(v, &error);
     if (lar_session_open(v->simulation, &options, &v->session, &error)) return fail_by(v, &error);
@@ -231,6 +235,17 @@ static void announce_recovery(view *v, const lar_session_status *s, double at) {
     v->recovered_told = at;
 }
 
+/* A recording that ends by itself, as on a full disk, is told at once: what is done next is lost.
+ */
+static void announce_recording(view *v, const lar_session_status *s) {
+    bool lost = s->recording_lost[0] != '\0';
+    if (lost && !v->recording_lost) {
+        clear_progress(v);
+        cli_complain(&cli_view, CLI_DONE, "note: recording has ended: %s", s->recording_lost);
+    }
+    v->recording_lost = lost;
+}
+
 /* Slow motion is told half a second after it has begun: by then it is known why, and how slow the
  * last second was. One that is over by then was a moment's, and is only counted. */
 static void announce_slow(view *v, const lar_session_status *s, double at) {
@@ -255,6 +270,7 @@ static void announce_slow(view *v, const lar_session_status *s, double at) {
 static void announce(view *v, const lar_session_status *s, double at) {
     announce_slow(v, s, at);
     announce_recovery(v, s, at);
+    announce_recording(v, s);
     if (s->error == LAR_ERROR_PEER && v->failure != LAR_ERROR_PEER) {
         clear_progress(v);
         cli_complain(&cli_view, CLI_FAILED, "%s", s->message);
@@ -416,6 +432,7 @@ static int view_main(int argc, char **argv) {
         CLI_TEXT("--resume", "FILE", "go on from a saved state of this scene (.checkpoint)",
                  &s.resume),
         CLI_TEXT("--record", "FILE", "record all inputs, from the start", &s.record),
+        CLI_FLAG("--force", "--record replaces a recording that is there", &s.force),
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",
                  &s.save_folder),

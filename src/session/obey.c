@@ -1,5 +1,6 @@
 /* What is asked of a session, done by the engine's thread between two ticks. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -7,9 +8,18 @@
 
 /* ---- the recording ------------------------------------------------------------------------- */
 
+/* The file is at fault: everyone is told now, and whoever closes it once more. */
+static void lose_recording(lar_session *session) {
+    lar_error why;
+    lar_recorder_why(session->recorder, &why);
+    session->status.recording = 0;
+    snprintf(session->status.recording_lost, sizeof session->status.recording_lost, "%s",
+             why.message);
+}
+
 void lar_session_note(lar_session *session, const lar_record *record) {
     if (session->status.recording && !lar_recorder_put(session->recorder, record))
-        session->status.recording = 0; /* the file is at fault; whoever closes it is told */
+        lose_recording(session);
 }
 
 void lar_session_note_hash(lar_session *session) {
@@ -31,7 +41,7 @@ lar_status lar_session_note_state(lar_session *session, lar_error *error) {
     if (!session->status.recording ||
         !lar_recorder_put_state(session->recorder, session->simulation, error))
         return LAR_OK;
-    session->status.recording = 0;
+    lose_recording(session);
     return error->status == LAR_ERROR_PEER ? LAR_ERROR_PEER : LAR_OK;
 }
 
@@ -61,6 +71,7 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
     session->recorder = fresh;
     session->hashed = lar_simulation_steps(session->simulation);
     session->status.recording = fresh != NULL;
+    if (fresh) session->status.recording_lost[0] = '\0';
     return LAR_OK;
 }
 

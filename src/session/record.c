@@ -22,6 +22,7 @@ struct lar_recorder {
     char *path;
     lar_recording_writer writer; /* the thread's; of whoever holds the lock */
     uint64_t put, written;       /* atomic: records */
+    int cause;                   /* atomic: errno of what could not be written; 0: all was */
     lar_error over;              /* the engine's: why it breaks off; LAR_OK: it goes on */
     uint64_t step;               /* the engine's: of the latest record */
     bool finish;                 /* under the lock */
@@ -47,6 +48,7 @@ static void drain(lar_recorder *recorder) {
         __atomic_store_n(&recorder->written, at + 1, __ATOMIC_RELEASE);
     }
     lar_recording_flush(&recorder->writer);
+    __atomic_store_n(&recorder->cause, recorder->writer.cause, __ATOMIC_RELEASE);
 }
 
 static void *write_records(void *argument) {
@@ -125,7 +127,14 @@ lar_status lar_recorder_close(lar_recorder *recorder, lar_error *error) {
     return status;
 }
 
+void lar_recorder_why(const lar_recorder *recorder, lar_error *error) {
+    *error = recorder->over;
+}
+
 static bool put(lar_recorder *recorder, const place *p) {
+    int cause = __atomic_load_n(&recorder->cause, __ATOMIC_ACQUIRE);
+    if (!recorder->over.status && cause)
+        lar_recording_incomplete(recorder->path, cause, &recorder->over);
     uint64_t written = __atomic_load_n(&recorder->written, __ATOMIC_ACQUIRE);
     if (!recorder->over.status && recorder->put - written == RING)
         lar_fail(&recorder->over, LAR_ERROR_IO,

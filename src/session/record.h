@@ -25,8 +25,10 @@ lar_status lar_recorder_create(const char *path, const lar_recording_header *hea
 lar_status lar_recorder_close(lar_recorder *recorder, lar_error *error);
 
 /* The engine, between advances, without waiting. False when the recording is over: the ring was
- * full, or a state could not be recorded. */
+ * full, the disk was, or a state could not be recorded. */
 bool lar_recorder_put(lar_recorder *recorder, const lar_record *record);
+/* The engine, after that: why. */
+void lar_recorder_why(const lar_recorder *recorder, lar_error *error);
 /* The same with the simulation's present state. A failure ends the recording, and whoever closes it
  * is told. */
 lar_status lar_recorder_put_state(lar_recorder *recorder, const lar_simulation *simulation,

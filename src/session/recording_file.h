@@ -63,6 +63,8 @@ void lar_recording_put(lar_recording_writer *writer, const lar_record *record);
 void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, const lar_bytes *state);
 /* Hands over to the system what has been put so far: it outlives this process. */
 void lar_recording_flush(lar_recording_writer *writer);
+/* LAR_ERROR_IO, and what `cause` (an errno) means for the recording. */
+lar_status lar_recording_incomplete(const char *path, int cause, lar_error *error);
 /* Closes; LAR_ERROR_IO when something could not be written. Twice is fine. */
 lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error);
 

@@ -98,14 +98,17 @@ void lar_recording_flush(lar_recording_writer *writer) {
     if (writer->file && fflush(writer->file) && !writer->cause) writer->cause = errno;
 }
 
+lar_status lar_recording_incomplete(const char *path, int cause, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: the recording could not be written completely: %s; check the free space, "
+                    "and record again",
+                    path, strerror(cause));
+}
+
 lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error) {
     if (!writer->file) return LAR_OK;
     lar_recording_flush(writer);
     if (fclose(writer->file) && !writer->cause) writer->cause = errno;
     writer->file = NULL;
-    if (!writer->cause) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: the recording could not be written completely: %s; check the free space, "
-                    "and record again",
-                    writer->path, strerror(writer->cause));
+    return writer->cause ? lar_recording_incomplete(writer->path, writer->cause, error) : LAR_OK;
 }

@@ -185,6 +185,7 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_number(json, "lag", s->lag);
     lar_json_number(json, "skipped", s->skipped);
     lar_json_boolean(json, "recording", s->recording != 0);
+    lar_json_text(json, "recording_lost", s->recording_lost);
     lar_json_boolean(json, "lost", s->error == LAR_ERROR_PEER);
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);

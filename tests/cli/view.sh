@@ -196,5 +196,18 @@ complains 'half.checkpoint: is a saved state .* lariat run SCENE --resume half.c
 # What is recorded from the command line is there.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording
 [ -s way.recording ] || fail "nothing was recorded"
+expect 1 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording
+complains 'way.recording is there already; --force replaces it'
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording --force
+# On a disk that fills up recording ends, which is told while the session goes on; only root can
+# make one.
+mkdir small
+if mount -t tmpfs -o size=64k none small 2>/dev/null; then
+    expect 1 "$LARIAT" view $scene --port 0 --seconds 2 --record small/way.recording
+    umount small
+    complains '^lariat view: note: recording has ended: small/way.recording: .*No space left'
+else
+    echo "skipped: no small file system can be mounted here"
+fi
 
 finish "lariat view: address, report, ports, signals, refusals"

@@ -96,6 +96,7 @@ function start(): void {
             toolCard.update(status);
             showStop(status);
             showRecovery(status);
+        showRecordingLost(status);
             dropPlaced(status);
         },
         hand(news) {
@@ -205,6 +206,13 @@ function start(): void {
         if (recoveries >= 0 && status.recoveries > recoveries)
             note(`The tissue was strained too much, and the run ${status.recovery}`, 9000);
         recoveries = status.recoveries;
+    }
+
+    let recordingLost = '';
+    function showRecordingLost(status: Status): void {
+        const why = status.recording_lost ?? '';
+        if (why && why !== recordingLost) note(`Recording has ended: ${why}`, 30000);
+        recordingLost = why;
     }
 
     let placed = -1;

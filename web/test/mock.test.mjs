@@ -59,6 +59,17 @@ test('a stop of the engine is shown with its reason and a way out', async () => 
     await v.close();
 });
 
+test('a recording that ends by itself is told at once, once', async () => {
+    const v = await openPage(browser, server.url);
+    server.state.recordingLost = 'way.recording: the recording could not be written completely: No space left on device';
+    const line = v.page.locator('#notes').getByText('Recording has ended: way.recording');
+    await line.waitFor({ timeout: 3000 });
+    await v.page.waitForTimeout(500);
+    assert.equal(await v.page.locator('#notes p').count(), 1);
+    server.state.recordingLost = '';
+    await v.close();
+});
+
 test('a run that went back says so, once, and goes on', async () => {
     Object.assign(server.state, { recoveries: 2, recovery: 'went back 0.62 s to step 15800: element 7' });
     const v = await openPage(browser, server.url);

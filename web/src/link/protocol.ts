@@ -91,6 +91,7 @@ export interface Status {
     lag: number;
     skipped: number;
     recording: boolean;
+    recording_lost: string; // why a recording ended by itself; '': none did
     lost: boolean;
     message: string;
     recoveries: number; // times that the run became unstable and went back to a sound state
