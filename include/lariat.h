@@ -446,6 +446,28 @@ typedef enum lar_field {
 LAR_API lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
                                         const double (*u)[3], float *out, lar_error *error);
 
+/* ---- changing a body while it runs ----------------------------------------------------------
+ *
+ * From the present step on, in the same step on all processors; in checkpoints and recordings.
+ * Reset goes back to what the model says. Work that a change does counts as external (lar_energy).
+ */
+
+/* Gravity [m/s^2], at most 1000 long; NULL: as the model says, which may follow a curve. */
+LAR_API lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double gravity[3],
+                                              lar_error *error);
+/* Damping in proportion to mass [1/s], 0 or more, as lar_model_damping: the model's. */
+LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping,
+                                              lar_error *error);
+/* How many times as stiff a material is as the model says, 0.1 to 4; -1: all of them. The 64th
+ * material and all after it share a factor. While one is stiffer, steps may be divided
+ * (lar_simulation_step_parts). Takes as long as some ten steps. */
+LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
+                                                double factor, lar_error *error);
+/* As they are now. The stiffness of a material that does not exist is 0. */
+LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
+LAR_API double lar_simulation_damping(const lar_simulation *simulation);
+LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+
 /* ---- tools and contact of a simulation ---------------------------------------------------- */
 
 /* Those of the model, then options.hands hands. */

@@ -20,9 +20,10 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
                                     : lar_hex8_full_frequency(corner, material);
 }
 
-/* `rate` may be NULL. */
+/* `rate` may be NULL; else [elements], and `most`: lar_domain.fastest. */
 static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                              lar_gid *worst, lar_element_rate *rate, lar_error *error) {
+                              lar_gid *worst, lar_element_rate *rate, double *most,
+                              lar_error *error) {
     double fastest = 0;
     *worst = 0;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
@@ -31,6 +32,8 @@ static lar_status stable_step(const lar_model *model, lar_element_kind kind, dou
         if (rate) {
             double density = lar_model_material_of(model, e)->density;
             rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
+            double *among = &most[lar_factor_of(model->element_material[e])];
+            *among = fmax(*among, rate[e].square);
         }
         if (!(frequency <= fastest)) {
             fastest = frequency;
@@ -47,7 +50,7 @@ static lar_status stable_step(const lar_model *model, lar_element_kind kind, dou
 
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
                            lar_gid *worst, lar_error *error) {
-    return stable_step(model, kind, step, worst, NULL, error);
+    return stable_step(model, kind, step, worst, NULL, NULL, error);
 }
 
 double lar_auto_step(const lar_model *model, double stable_step) {
@@ -62,7 +65,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     if (!domain->rate)
         return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
     lar_status status = stable_step(model, domain->kind, &domain->stable_step,
-                                    &domain->stable_worst, domain->rate, error);
+                                    &domain->stable_worst, domain->rate, domain->fastest, error);
     if (status) return status;
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
@@ -93,17 +96,30 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+/* What an element's material says in its lane, and *limit of corner_limit. */
+static void fill_material(const lar_domain *domain, lar_block_head *head, int lane, lar_gid e,
+                          lar_hex8 *hex8, double *limit) {
+    const lar_material *material = lar_domain_material(domain, e);
+    const lar_gid *node = domain->layout.corner[e];
+    double corner[8][3];
+    for (int a = 0; a < 8; a++)
+        memcpy(corner[a], domain->model->mesh.position[node[a]], sizeof corner[a]);
+    lar_hex8_prepare((const double(*)[3])corner, material, hex8);
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        head->stiffness[m][lane] = hex8->stiffness[m] * domain->scale;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+        head->modulus[k][lane] = material->parameter[k] * hex8->volume * domain->scale;
+    *limit =
+        lar_hex8_corner_limit(hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
+}
+
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
                       lar_gid e, double *steepest, double *limit) {
     lar_block_shape shape = run->shape;
-    const lar_mesh *mesh = &domain->model->mesh;
-    const lar_material *material = lar_model_material_of(domain->model, e);
     const lar_gid *node = domain->layout.corner[e];
     lar_block_head *head = memory;
-    double corner[8][3];
     lar_hex8 hex8;
-    for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
-    lar_hex8_prepare((const double(*)[3])corner, material, &hex8);
+    fill_material(domain, head, lane, e, &hex8, limit);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) {
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
@@ -112,15 +128,9 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
             else if (m < 3 && i == (m + run->turn) % 3)
                 ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
         }
-    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
-        head->stiffness[m][lane] = hex8.stiffness[m] * domain->scale;
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
-    }
-    *limit =
-        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
-    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        head->modulus[k][lane] = material->parameter[k] * hex8.volume * domain->scale;
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
 }
 
@@ -206,6 +216,65 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+/* ---- materials ------------------------------------------------------------------------------ */
+
+static lar_status copy_materials(lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    size_t count = (size_t)model->material_count;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) domain->factor[i] = 1;
+    domain->material = lar_calloc(count, sizeof *domain->material);
+    if (!domain->material)
+        return lar_fail_memory(error, count * sizeof *domain->material, "the materials");
+    memcpy(domain->material, model->material, count * sizeof *domain->material);
+    return LAR_OK;
+}
+
+static lar_material times(const lar_material *material, double factor) {
+    lar_material made = *material;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++) made.parameter[k] *= factor;
+    return made;
+}
+
+lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor) {
+    int32_t material = domain->model->element_material[e];
+    double now;
+    __atomic_load(&domain->factor[lar_factor_of(material)], &now, __ATOMIC_RELAXED);
+    if (factor) *factor = now;
+    return times(&domain->model->material[material], now);
+}
+
+/* Elements whose material has changed. */
+static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST]) {
+    char *memory = domain->blocks;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++) {
+            size_t block = (size_t)(domain->run_first[r] + b);
+            double *limit = domain->corner_limit + LAR_BLOCK * block;
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                lar_gid e = domain->layout.block[block].element[lane];
+                lar_hex8 hex8;
+                if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
+                    fill_material(domain, (void *)memory, lane, e, &hex8, limit + lane);
+            }
+            memory += lar_block_size(domain->run[r].shape);
+        }
+}
+
+bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
+    const lar_model *model = domain->model;
+    bool changed[LAR_FACTORS_MOST], any = false;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+        changed[i] = settings->factor[i] != domain->factor[i];
+        any = any || changed[i];
+        __atomic_store(&domain->factor[i], &settings->factor[i], __ATOMIC_RELAXED);
+    }
+    if (!any) return false;
+    for (int i = 0; i < model->material_count; i++)
+        domain->material[i] = times(&model->material[i], domain->factor[lar_factor_of(i)]);
+    if (domain->blocks) fill_changed(domain, changed);
+    return true;
+}
+
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
  * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (DESIGN 5). */
 static void choose_scale(lar_domain *domain) {
@@ -248,7 +317,7 @@ static void prepare_motion(lar_domain *domain) {
     const lar_model *model = domain->model;
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
-    lar_gravity_at(model, 0, gravity);
+    lar_gravity_at(model, NULL, 0, gravity);
     domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
     for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
@@ -272,6 +341,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
                                     lar_layout_style style, lar_domain *domain, lar_error *error) {
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
+    if (!status) status = copy_materials(domain, error);
     if (!status) status = choose_step(domain, options, error);
     domain->interval = LAR_INTERVAL_MOST; /* those with tools decide more often: simulation.c */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
@@ -330,8 +400,9 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
                            .motion = whole->motion};
-    lar_status status =
-        lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
+    lar_status status = copy_materials(domain, error);
+    if (!status)
+        status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = copy_nodes(whole, counted, domain, error);
     if (!status) status = list_runs(domain, run_most, error);
@@ -347,6 +418,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run);
     free(domain->run_first);
     free(domain->blocks);
+    free(domain->material);
     free(domain->corner_limit);
     free(domain->strained);
     free(domain->strained_count);
