@@ -460,7 +460,7 @@ LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double
                                               lar_error *error);
 /* How many times as stiff a material is as the model says, 0.1 to 4; -1: all of them. The 64th
  * material and all after it share a factor. While one is stiffer, steps may be divided
- * (lar_simulation_step_parts). Takes as long as some ten steps. */
+ * (lar_simulation_step_parts). Takes as long as some forty steps. */
 LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
                                                 double factor, lar_error *error);
 /* As they are now. The stiffness of a material that does not exist is 0. */

@@ -97,29 +97,28 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
 }
 
 /* What an element's material says in its lane, and *limit of corner_limit. */
-static void fill_material(const lar_domain *domain, lar_block_head *head, int lane, lar_gid e,
-                          lar_hex8 *hex8, double *limit) {
-    const lar_material *material = lar_domain_material(domain, e);
-    const lar_gid *node = domain->layout.corner[e];
-    double corner[8][3];
-    for (int a = 0; a < 8; a++)
-        memcpy(corner[a], domain->model->mesh.position[node[a]], sizeof corner[a]);
-    lar_hex8_prepare((const double(*)[3])corner, material, hex8);
+static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
+                          int lane, lar_gid e, double *limit) {
+    int32_t material = domain->model->element_material[e];
+    double factor = domain->factor[lar_factor_of(material)];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
-        head->stiffness[m][lane] = hex8->stiffness[m] * domain->scale;
+        head->stiffness[m][lane] = base->stiffness[m] * factor * domain->scale;
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        head->modulus[k][lane] = material->parameter[k] * hex8->volume * domain->scale;
-    *limit =
-        lar_hex8_corner_limit(hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
+        head->modulus[k][lane] =
+            domain->material[material].parameter[k] * base->volume * domain->scale;
+    *limit = base->limit * factor * factor;
 }
 
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
-                      lar_gid e, double *steepest, double *limit) {
+                      lar_gid e, double *steepest, lar_lane_base *base) {
     lar_block_shape shape = run->shape;
+    const lar_mesh *mesh = &domain->model->mesh;
     const lar_gid *node = domain->layout.corner[e];
     lar_block_head *head = memory;
+    double corner[8][3];
     lar_hex8 hex8;
-    fill_material(domain, head, lane, e, &hex8, limit);
+    for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
+    lar_hex8_prepare((const double(*)[3])corner, lar_model_material_of(domain->model, e), &hex8);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) {
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
@@ -132,6 +131,10 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
+    base->volume = hex8.volume;
+    memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
+    base->limit =
+        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
 }
 
 /* More than this is read from memory in every step: beyond the second-level cache and a fair share
@@ -177,10 +180,11 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->strained = lar_calloc(elements, sizeof *domain->strained);
     domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
+    domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->strain = lar_calloc(elements, sizeof *domain->strain);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
-    if (!domain->blocks || !domain->corner_limit || !domain->strained || !domain->strained_count ||
-        !domain->strain || !domain->rest)
+    if (!domain->blocks || !domain->base || !domain->corner_limit || !domain->strained ||
+        !domain->strained_count || !domain->strain || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -197,10 +201,13 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
             double *limit = domain->corner_limit + LAR_BLOCK * (domain->run_first[r] + b);
             for (int lane = 0; lane < LAR_BLOCK; lane++) limit[lane] = INFINITY;
             for (int lane = 0; lane < LAR_BLOCK; lane++)
-                if (lanes->element[lane] >= 0)
-                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest,
-                              limit + lane);
-                else
+                if (lanes->element[lane] >= 0) {
+                    lar_lane_base *base =
+                        domain->base + LAR_BLOCK * (domain->run_first[r] + b) + lane;
+                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest, base);
+                    fill_material(domain, base, (void *)memory, lane, lanes->element[lane],
+                                  limit + lane);
+                } else
                     for (int a = 0; a < 8; a++)
                         ((lar_block_head *)(void *)memory)->node[a][lane] =
                             4 * (domain->layout.node_padded - 1);
@@ -252,9 +259,9 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST
             double *limit = domain->corner_limit + LAR_BLOCK * block;
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = domain->layout.block[block].element[lane];
-                lar_hex8 hex8;
                 if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
-                    fill_material(domain, (void *)memory, lane, e, &hex8, limit + lane);
+                    fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
+                                  lane, e, limit + lane);
             }
             memory += lar_block_size(domain->run[r].shape);
         }
@@ -273,6 +280,27 @@ bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
         domain->material[i] = times(&model->material[i], domain->factor[lar_factor_of(i)]);
     if (domain->blocks) fill_changed(domain, changed);
     return true;
+}
+
+void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
+    const lar_block_run *run = &domain->run[r];
+    const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
+    const void *block =
+        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_block_size(run->shape);
+    const lar_hex8_block *general = block;
+    const lar_box_block *box = block;
+    *hex8 = (lar_hex8){.volume = base->volume};
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        hex8->stiffness[m] = general->head.stiffness[m][lane] / domain->scale;
+    if (run->shape == LAR_SHAPE_BOX) {
+        for (int m = 0; m < 3; m++) hex8->gradient[m][(m + run->turn) % 3] = box->gradient[m][lane];
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+            hex8->gradient[m][i] = general->gradient[m][i][lane];
+        for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) hex8->shape[m][i] = general->shape[m][i][lane];
+    }
 }
 
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
@@ -419,6 +447,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run_first);
     free(domain->blocks);
     free(domain->material);
+    free(domain->base);
     free(domain->corner_limit);
     free(domain->strained);
     free(domain->strained_count);

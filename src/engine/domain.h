@@ -24,6 +24,13 @@ typedef struct lar_element_rate {
     double mass;   /* of a corner [kg] */
 } lar_element_rate;
 
+/* What a lane follows from besides gradients and shape, with the model's material. */
+typedef struct lar_lane_base {
+    double volume;                        /* [m^3] */
+    double stiffness[LAR_HEX8_HOURGLASS]; /* c_m [N/m] */
+    double limit;                         /* of corner_limit */
+} lar_lane_base;
+
 typedef struct lar_domain {
     const lar_model *model;
     const lar_kernels *kernels;
@@ -34,6 +41,7 @@ typedef struct lar_domain {
     lar_block_run *run;     /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
     int32_t *run_first;     /* [run_count] the run's first block in layout.block */
     void *blocks;           /* all blocks of all runs */
+    lar_lane_base *base;    /* [8 for each block] */
     lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
     double factor[LAR_FACTORS_MOST];  /* of their stiffness (model/settings.h); atomic */
     double fastest[LAR_FACTORS_MOST]; /* square of the highest frequency at rest among the
@@ -103,6 +111,9 @@ lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, doubl
  * numbers are made anew, so that it does not matter how stiff it was before. True when something
  * changed. */
 bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings);
+
+/* The element in a lane of block `b` (of layout.block), as stiff as it is now; hex8 only. */
+void lar_domain_element(const lar_domain *domain, int32_t run, int32_t b, int lane, lar_hex8 *hex8);
 
 /* Displacements of the corners of global element e, [8][3]. */
 void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]);

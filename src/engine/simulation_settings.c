@@ -105,24 +105,38 @@ double lar_simulation_damping(const lar_simulation *simulation) {
 
 /* ---- stiffness ------------------------------------------------------------------------------ */
 
+/* Element `e` of the whole model, ready, as stiff as it is now; NULL: not of kind hex8. */
+typedef struct body_element {
+    lar_gid e;
+    const lar_hex8 *hex8;
+} body_element;
+
 /* Energy of an element less dt f v-/2 with its material as it is [J]: linear in its stiffness. (Of
- * barriers the energy only: their force in half a step is nothing beside it.) */
-static double element_account(const lar_simulation *simulation, lar_gid e, double half) {
+ * barriers the energy only: their force in half a step is nothing beside it.) The element's nodes
+ * are numbered differently in its block, so corners are those of the layout. */
+static double element_account(const lar_simulation *simulation, const body_element *element,
+                              double half) {
     const lar_domain *domain = &simulation->domain;
-    const lar_material *material = lar_domain_material(domain, e);
-    double corner[8][3], u[8][3], v[8][3], force[8][3], hourglass = 0, account;
-    lar_mesh_corners(&domain->model->mesh, e, corner);
-    lar_domain_corners(domain, simulation->state.u, e, u);
-    lar_domain_corners(domain, simulation->state.v, e, v);
-    if (domain->kind == LAR_ELEMENT_HEX8) {
-        lar_hex8 hex8;
-        lar_hex8_prepare(corner, material, &hex8);
-        account = lar_hex8_energy(&hex8, material, u, &hourglass) + hourglass +
-                  lar_guard_energy(domain, &simulation->state, e);
-        lar_hex8_force(&hex8, material, u, force);
+    const lar_material *material = lar_domain_material(domain, element->e);
+    const lar_state *state = &simulation->state;
+    double u[8][3], v[8][3], force[8][3], hourglass = 0, account;
+    if (element->hex8) {
+        const lar_gid *node = domain->layout.corner[element->e];
+        for (int a = 0; a < 8; a++) {
+            size_t at = 4 * (size_t)domain->layout.local[node[a]];
+            memcpy(u[a], state->u + at, sizeof u[a]);
+            memcpy(v[a], state->v + at, sizeof v[a]);
+        }
+        account = lar_hex8_energy(element->hex8, material, (const double(*)[3])u, &hourglass) +
+                  lar_guard_energy(domain, state, element->e) + hourglass;
+        lar_hex8_force(element->hex8, material, (const double(*)[3])u, force);
     } else {
-        account = lar_hex8_full_energy(corner, material, u);
-        lar_hex8_full_force(corner, material, u, force);
+        double corner[8][3];
+        lar_mesh_corners(&domain->model->mesh, element->e, corner);
+        lar_domain_corners(domain, state->u, element->e, u);
+        lar_domain_corners(domain, state->v, element->e, v);
+        account = lar_hex8_full_energy((const double(*)[3])corner, material, (const double(*)[3])u);
+        lar_hex8_full_force((const double(*)[3])corner, material, (const double(*)[3])u, force);
     }
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) account -= half * force[a][i] * v[a][i];
@@ -133,11 +147,21 @@ static double element_account(const lar_simulation *simulation, lar_gid e, doubl
 static double stiffening(const lar_simulation *simulation, const lar_settings *wanted) {
     const lar_domain *domain = &simulation->domain;
     double half = 0.5 * length_of_step(simulation), sum = 0;
-    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
-        int i = lar_factor_of(domain->model->element_material[e]);
-        if (wanted->factor[i] == domain->factor[i]) continue;
-        sum += (wanted->factor[i] / domain->factor[i] - 1) * element_account(simulation, e, half);
-    }
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t k = 0; k < LAR_BLOCK * domain->run[r].count; k++) {
+            int32_t b = domain->run_first[r] + k / LAR_BLOCK;
+            lar_hex8 hex8;
+            body_element element = {.e = domain->layout.block[b].element[k % LAR_BLOCK]};
+            if (element.e < 0) continue;
+            int i = lar_factor_of(domain->model->element_material[element.e]);
+            double ratio = wanted->factor[i] / domain->factor[i];
+            if (ratio == 1) continue;
+            if (domain->kind == LAR_ELEMENT_HEX8) {
+                lar_domain_element(domain, r, b, k % LAR_BLOCK, &hex8);
+                element.hex8 = &hex8;
+            }
+            sum += (ratio - 1) * element_account(simulation, &element, half);
+        }
     return sum;
 }
 
