@@ -657,6 +657,18 @@ LAR_API lar_status lar_session_load(lar_session *session, const char *path, lar_
  * LAR_ERROR_IO when there is another file at `path`, or a recording that is being written. */
 LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
 
+/* As lar_simulation_set_gravity and the others, at the end of the tick under way; done, or failed,
+ * when they return. Refused while a recording is being played, and when the run has broken off. */
+LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gravity[3],
+                                           lar_error *error);
+LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
+LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
+                                             lar_error *error);
+/* As they were at the end of the last tick. */
+LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
+LAR_API double lar_session_damping(const lar_session *session);
+LAR_API double lar_session_stiffness(const lar_session *session, int32_t material);
+
 /* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
  * has a device (lar_session_attach) does not listen. */
 LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,

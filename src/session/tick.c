@@ -30,6 +30,9 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->replay_length = player ? (double)player->length * session->time_step : 0;
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
+    lar_simulation_gravity(session->simulation, view->gravity);
+    view->damping = lar_simulation_damping(session->simulation);
+    memcpy(view->factor, session->simulation->tools.settings.factor, sizeof view->factor);
     for (int32_t i = 0; i < session->tools; i++) {
         view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;
