@@ -23,6 +23,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
+    session->advice.stiffer = session->simulation->tools.division.base;
     if (quantiles) lar_advise(&session->advice, session->pace.pace, status);
     const lar_player *player = session->player;
     status->replaying = player != NULL;
