@@ -273,7 +273,8 @@ bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
     for (int i = 0; i < LAR_FACTORS_MOST; i++) {
         changed[i] = settings->factor[i] != domain->factor[i];
         any = any || changed[i];
-        __atomic_store(&domain->factor[i], &settings->factor[i], __ATOMIC_RELAXED);
+        double factor = settings->factor[i];
+        __atomic_store(&domain->factor[i], &factor, __ATOMIC_RELAXED);
     }
     if (!any) return false;
     for (int i = 0; i < model->material_count; i++)
