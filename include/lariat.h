@@ -446,6 +446,28 @@ typedef enum lar_field {
 LAR_API lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
                                         const double (*u)[3], float *out, lar_error *error);
 
+/* ---- changing a body while it runs ----------------------------------------------------------
+ *
+ * From the present step on, in the same step on all processors; in checkpoints and recordings.
+ * Reset goes back to what the model says. Work that a change does counts as external (lar_energy).
+ */
+
+/* Gravity [m/s^2], at most 1000 long; NULL: as the model says, which may follow a curve. */
+LAR_API lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double gravity[3],
+                                              lar_error *error);
+/* Damping in proportion to mass [1/s], 0 or more, as lar_model_damping: the model's. */
+LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping,
+                                              lar_error *error);
+/* How many times as stiff a material is as the model says, 0.1 to 4; -1: all of them. The 64th
+ * material and all after it share a factor. While one is stiffer, steps may be divided
+ * (lar_simulation_step_parts). Takes as long as some forty steps. */
+LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
+                                                double factor, lar_error *error);
+/* As they are now. The stiffness of a material that does not exist is 0. */
+LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
+LAR_API double lar_simulation_damping(const lar_simulation *simulation);
+LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+
 /* ---- tools and contact of a simulation ---------------------------------------------------- */
 
 /* Those of the model, then options.hands hands. */
@@ -634,6 +656,18 @@ LAR_API lar_status lar_session_load(lar_session *session, const char *path, lar_
 /* Begins a recording at `path`, after the end of the one under way; NULL ends that only.
  * LAR_ERROR_IO when there is another file at `path`, or a recording that is being written. */
 LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
+
+/* As lar_simulation_set_gravity and the others, at the end of the tick under way; done, or failed,
+ * when they return. Refused while a recording is being played, and when the run has broken off. */
+LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gravity[3],
+                                           lar_error *error);
+LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
+LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
+                                             lar_error *error);
+/* As they were at the end of the last tick. */
+LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
+LAR_API double lar_session_damping(const lar_session *session);
+LAR_API double lar_session_stiffness(const lar_session *session, int32_t material);
 
 /* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
  * has a device (lar_session_attach) does not listen. */

@@ -247,7 +247,7 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
     d->need = 0;
     double asked = d->lately + room->springs * hardness;
-    int32_t wanted = 1;
+    int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MOST &&
            (asked > room->most * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
@@ -263,6 +263,8 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
 
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
                       double time_step, double unit) {
+    const lar_step_division *division = &tools->division;
+    double need = division->lately / ((double)division->base * division->base);
     bool changed = false;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_limits *limits = &list->limits[i];
@@ -271,8 +273,7 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         follower->felt = (lar_tool_felt){0};
         if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
         bool closes = follower->hand.to.opening < 1 || tools->motion[i].to.opening < 1;
-        mean_load mean =
-            mean_of(&felt, limits, closes, tools->division.lately, unit, &follower->load);
+        mean_load mean = mean_of(&felt, limits, closes, need, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

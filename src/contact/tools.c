@@ -31,8 +31,9 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_
 }
 
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
-    *tools =
-        (lar_tools){.count = list->count, .division = {.parts = 1, .before = 1, .hardness = 1}};
+    *tools = (lar_tools){.count = list->count,
+                         .division = {.parts = 1, .before = 1, .hardness = 1, .base = 1}};
+    lar_settings_reset(&tools->settings);
     for (int32_t i = 0; i < list->count; i++) {
         tools->motion[i] = (lar_tool_motion){.from = list->tool[i].rest, .to = list->tool[i].rest};
         tools->follower[i].hand = tools->motion[i];

@@ -1,5 +1,5 @@
-/* Where the tools are: the input of a simulation besides its model. Where they are asked to go is
- * one thing (their hand), where they go another (tool_body.h).
+/* Where the tools are, and what else is the input of a simulation besides its model. Where they are
+ * asked to go is one thing (their hand), where they go another (tool_body.h).
  *
  *     tool_move at step 100, 10 steps:   from ---- linear ---- to ======= rests there
  *                                        100                  110
@@ -17,7 +17,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "model/model.h"
+#include "model/settings.h"
 
 enum { LAR_TOOLS_MOST = 16, LAR_HOLDS_MOST = 256 };
 
@@ -59,12 +59,14 @@ typedef struct lar_step_division {
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
     uint64_t decided; /* the step when it was decided last */
+    int32_t base;     /* parts that stiffer materials (settings.h) take at least, a power of two */
+    int32_t due;      /* to be decided before the next step, wherever an interval begins */
 } lar_step_division;
 
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
  * for it. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
-    return division->lately > 0.7;
+    return division->lately > 0.7 * division->base * division->base;
 }
 
 /* The hand of a tool, and how far the tool is from following it. */
@@ -79,6 +81,7 @@ typedef struct lar_tool_follower {
 typedef struct lar_tools {
     int32_t count, hold_count;
     lar_step_division division;
+    lar_settings settings;
     lar_tool_motion motion[LAR_TOOLS_MOST]; /* where tools really go */
     lar_hold hold[LAR_HOLDS_MOST];
     lar_tool_follower follower[LAR_TOOLS_MOST]; /* of processor zero only */

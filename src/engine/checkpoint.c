@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,8 @@
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
 static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304 };
+/* Version 3 had no settings: neither them nor what they take of a step. */
+enum { VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
     char magic[8];
@@ -33,14 +35,21 @@ typedef struct file_head {
 /* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
 _Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
 _Static_assert(sizeof(file_head) == 144, "the format");
-_Static_assert(sizeof(lar_step_division) == 48, "the format");
+_Static_assert(sizeof(lar_step_division) == 56, "the format");
+_Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until there");
+_Static_assert(sizeof(lar_settings) == 552, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 
 typedef double node_vector[3];
 
-static size_t file_bytes(size_t tools, size_t holds, size_t nodes) {
-    return sizeof(file_head) + sizeof(lar_step_division) +
+static size_t settings_bytes(uint32_t version) {
+    return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
+                                      : sizeof(lar_step_division) + sizeof(lar_settings);
+}
+
+static size_t file_bytes(uint32_t version, size_t tools, size_t holds, size_t nodes) {
+    return sizeof(file_head) + settings_bytes(version) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
            sizeof(uint64_t);
@@ -96,6 +105,7 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 static unsigned char *fill_tools(unsigned char *at, const lar_tools *tools) {
     size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
     at = append(at, &tools->division, sizeof tools->division);
+    at = append(at, &tools->settings, sizeof tools->settings);
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->hold, holds * sizeof tools->hold[0]);
@@ -201,7 +211,7 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
                                const lar_tools *tools, lar_bytes *bytes, lar_error *error) {
     lar_status status = check_finite(path, whole, state, error);
     if (status) return status;
-    lar_bytes made = {.size = file_bytes((size_t)tools->count, (size_t)tools->hold_count,
+    lar_bytes made = {.size = file_bytes(VERSION, (size_t)tools->count, (size_t)tools->hold_count,
                                          (size_t)whole->model->mesh.node_count)};
     made.data = fill(whole, state, tools, made.size);
     if (!made.data) return lar_fail_memory(error, made.size, path);
@@ -236,11 +246,11 @@ static lar_status check_file(const char *path, const lar_bytes *bytes, file_head
         return refuse(error, path,
                       "was saved on a machine with another order of bytes; load it on one like "
                       "that");
-    if (bytes->size >= 16 && head->version != VERSION)
+    if (bytes->size >= 16 && head->version != VERSION && head->version != BEFORE_SETTINGS)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
-                        "%s: is a checkpoint of version %lu, this Lariat reads version %d; save it "
-                        "anew with this one",
-                        path, (unsigned long)head->version, VERSION);
+                        "%s: is a checkpoint of version %lu, this Lariat reads versions %d and %d; "
+                        "save it anew with this one",
+                        path, (unsigned long)head->version, BEFORE_SETTINGS, VERSION);
     if (bytes->size < sizeof *head || bytes->size < head->bytes)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: is cut off after %zu bytes; take another checkpoint", path,
@@ -385,7 +395,8 @@ static bool good_division(const lar_step_division *d, const file_head *head) {
     return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
            d->decided <= head->step && d->hardness >= 1 &&
            d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MOST &&
-           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST;
+           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST && power_of_two(d->base) &&
+           (d->due == 0 || d->due == 1);
 }
 
 /* A way between two places is a number. Empty hands, which go no way, may be anywhere. */
@@ -417,13 +428,18 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
 static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
     const lar_tool_list *list = whole->acting.touch.list;
-    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds};
+    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds, .division = {.base = 1}};
     size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
-    *at = extract(*at, &tools->division, sizeof tools->division);
+    bool settings = head->version != BEFORE_SETTINGS;
+    lar_settings_reset(&tools->settings);
+    *at = extract(*at, &tools->division,
+                  settings ? sizeof tools->division : offsetof(lar_step_division, base));
+    if (settings) *at = extract(*at, &tools->settings, sizeof tools->settings);
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
-    bool good = good_division(&tools->division, head);
+    bool good = good_division(&tools->division, head) &&
+                lar_settings_good(&tools->settings, whole->time_step);
     for (int32_t i = 0; i < tools->count; i++)
         good = good && good_motion(&tools->motion[i]) &&
                near_enough(&list->tool[i], &tools->motion[i]) &&
@@ -443,15 +459,17 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
     if (head.tools != (list ? list->count : 0) || head.holds < 0 || head.holds > LAR_HOLDS_MOST ||
-        bytes->size != file_bytes((size_t)head.tools, (size_t)head.holds, nodes))
+        bytes->size != file_bytes(head.version, (size_t)head.tools, (size_t)head.holds, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     lar_checkpoint found = {.step = head.step,
                             .external = head.external,
                             .damped = head.damped,
                             .contact = head.contact};
+    if (head.version == BEFORE_SETTINGS) found.damped *= model->damping;
     const unsigned char *at = bytes->data + sizeof head;
     if (!take_tools(&head, whole, &at, &found.tools))
-        return refuse(error, path, "has a tool that cannot be so; take another checkpoint");
+        return refuse(error, path,
+                      "has a tool or a setting that cannot be so; take another checkpoint");
     found.level = (const double *)(const void *)at;
     found.u = (const node_vector *)(const void *)(found.level + nodes);
     found.v = found.u + nodes;

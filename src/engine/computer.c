@@ -304,10 +304,26 @@ static void report_here(const lar_computer *computer, lar_report *report) {
     }
 }
 
+static void stiffen_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    if (number % computer->threads == 0)
+        lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
+}
+
+/* What has been set since the last stretch: gravity and damping are read in every step, materials
+ * are made anew. */
+static void take_settings(lar_computer *computer) {
+    const lar_settings *settings = &computer->tools->settings;
+    const lar_domain *domain = &computer->processor[0].domain;
+    if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
+        lar_crew_run(computer->crew, stiffen_seat, computer);
+}
+
 /* `first`: of the stretches of an advance. */
 static lar_status advance_here(lar_computer *computer, uint64_t until, bool first,
                                lar_error *error) {
     computer->until = until;
+    take_settings(computer);
     for (int32_t i = 0; i < seats(computer); i++) {
         lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
         if (first) lar_report_begin(acting);
@@ -426,7 +442,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     memcpy(tools, payload, bytes);
     bool fits = tools->count == count && tools->hold_count >= 0 &&
                 tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
-                holds_fit(computer, tools);
+                holds_fit(computer, tools) &&
+                lar_settings_good(&tools->settings, computer->whole->time_step);
     return fits ? LAR_OK : refuse_order(error);
 }
 

@@ -86,8 +86,6 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
             if (share && share->presses[face / 6] != share->thread) continue;
             add_pressure(c, &model->mesh, local, face, &model->pressure[i]);
         }
-    for (int axis = 0; axis < 3; axis++)
-        if (model->gravity_curve[axis] >= 0) c->gravity_varies = true;
     if (share) {
         free(c->held);
         c->held = NULL;
@@ -101,14 +99,6 @@ void lar_conditions_destroy(lar_conditions *c) {
     free(c->pressure);
     free(c->held);
     *c = (lar_conditions){0};
-}
-
-void lar_gravity_at(const lar_model *model, double time, double gravity[3]) {
-    for (int axis = 0; axis < 3; axis++) {
-        int curve = model->gravity_curve[axis];
-        gravity[axis] = model->gravity[axis];
-        if (curve >= 0) gravity[axis] *= lar_curve_value(&model->curve[curve], time);
-    }
 }
 
 static double factor_at(const lar_model *model, int curve, double time) {
@@ -159,7 +149,7 @@ static double half_work(const double force[3], const double *v, double dt) {
 static double gravity_half_work(const lar_condition_context *context, double time,
                                 const lar_state *state) {
     double gravity[3], momentum[3] = {0};
-    lar_gravity_at(context->model, time, gravity);
+    lar_gravity_at(context->model, context->settings, time, gravity);
     for (int32_t n = context->first; n < context->end; n++)
         for (int i = 0; i < 3; i++) momentum[i] += context->weight[n] * state->v[4 * n + i];
     return half_work(gravity, momentum, context->time_step);
@@ -173,7 +163,8 @@ double lar_conditions_half_work(const lar_conditions *c, const lar_condition_con
     for (int32_t i = 0; i < c->pressure_count; i++)
         for (int a = 0; a < 4; a++)
             work += half_work(c->pressure[i].now[a], state->v + c->pressure[i].node[a], dt);
-    if (c->gravity_varies) work += gravity_half_work(context, time, state);
+    if (lar_gravity_varies(context->model, context->settings))
+        work += gravity_half_work(context, time, state);
     return work;
 }
 
@@ -231,8 +222,9 @@ static double hold(const lar_conditions *c, const double *weight, lar_state *sta
 double lar_conditions_impose(lar_conditions *c, const lar_condition_context *context, double time,
                              lar_state *state) {
     const lar_model *model = context->model;
-    double dt = context->time_step, share = dt / context->whole_step, gravity[3], work = 0;
-    lar_gravity_at(model, time, gravity);
+    double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
+    double dt = context->time_step, share = damping * dt / context->whole_step;
+    lar_gravity_at(model, context->settings, time, gravity);
     state->damped -= share * hold(c, context->weight, state);
     for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
         const lar_constraint *constraint = &c->constraint[i];
@@ -248,9 +240,8 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / dt;
-        double reaction =
-            mass * (acceleration + model->damping * mean - gravity[constraint->value % 4]) +
-            constraint->force;
+        double reaction = mass * (acceleration + damping * mean - gravity[constraint->value % 4]) +
+                          constraint->force;
         if (weight > 0) work += reaction * mean * dt;
     }
     return work;

@@ -16,7 +16,7 @@
 #define LAR_ENGINE_CONDITIONS_H
 
 #include "engine/state.h"
-#include "model/model.h"
+#include "model/settings.h"
 
 /* One axis of one node held at, or moved to, by * curve(t). */
 typedef struct lar_constraint {
@@ -51,21 +51,21 @@ typedef struct lar_conditions {
     lar_point_force *force;
     lar_face_pressure *pressure;
     uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
-    bool gravity_varies;
 } lar_conditions;
 
 /* Everything a step needs to know besides the lists. */
 typedef struct lar_condition_context {
     const lar_model *model;
-    double scale;         /* force units per newton */
-    double time_step;     /* of the step, or the part of it, under way [s] */
-    double whole_step;    /* [s] */
-    double hardness;      /* of tools: lar_step_division */
-    int32_t shares;       /* of LAR_STEP_SHARES, that the part of the step is */
-    double stable_step;   /* the elements' bound at rest [s] */
-    const double *mass;   /* by local node */
-    const double *weight; /* the same, 0 for nodes that another processor accounts for */
-    int32_t first, end;   /* local nodes that the thread moves */
+    const lar_settings *settings; /* NULL: as the model says */
+    double scale;                 /* force units per newton */
+    double time_step;             /* of the step, or the part of it, under way [s] */
+    double whole_step;            /* [s] */
+    double hardness;              /* of tools: lar_step_division */
+    int32_t shares;               /* of LAR_STEP_SHARES, that the part of the step is */
+    double stable_step;           /* the elements' bound at rest [s] */
+    const double *mass;           /* by local node */
+    const double *weight;         /* the same, 0 for nodes that another processor accounts for */
+    int32_t first, end;           /* local nodes that the thread moves */
 } lar_condition_context;
 
 /* The thread of one processor that the conditions are for. */
@@ -106,9 +106,6 @@ double lar_conditions_impose(lar_conditions *conditions, const lar_condition_con
 
 /* Displacement of a constraint at `time` [m]. */
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time);
-
-/* Gravity at `time` [m/s^2]. */
-void lar_gravity_at(const lar_model *model, double time, double gravity[3]);
 
 /* Largest nodal load [N], for the choice of the force scale. */
 double lar_conditions_largest(const lar_conditions *conditions);

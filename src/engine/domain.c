@@ -20,9 +20,10 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
                                     : lar_hex8_full_frequency(corner, material);
 }
 
-/* `rate` may be NULL. */
+/* `rate` may be NULL; else [elements], and `most`: lar_domain.fastest. */
 static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                              lar_gid *worst, lar_element_rate *rate, lar_error *error) {
+                              lar_gid *worst, lar_element_rate *rate, double *most,
+                              lar_error *error) {
     double fastest = 0;
     *worst = 0;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
@@ -31,6 +32,8 @@ static lar_status stable_step(const lar_model *model, lar_element_kind kind, dou
         if (rate) {
             double density = lar_model_material_of(model, e)->density;
             rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
+            double *among = &most[lar_factor_of(model->element_material[e])];
+            *among = fmax(*among, rate[e].square);
         }
         if (!(frequency <= fastest)) {
             fastest = frequency;
@@ -47,7 +50,7 @@ static lar_status stable_step(const lar_model *model, lar_element_kind kind, dou
 
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
                            lar_gid *worst, lar_error *error) {
-    return stable_step(model, kind, step, worst, NULL, error);
+    return stable_step(model, kind, step, worst, NULL, NULL, error);
 }
 
 double lar_auto_step(const lar_model *model, double stable_step) {
@@ -62,7 +65,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     if (!domain->rate)
         return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
     lar_status status = stable_step(model, domain->kind, &domain->stable_step,
-                                    &domain->stable_worst, domain->rate, error);
+                                    &domain->stable_worst, domain->rate, domain->fastest, error);
     if (status) return status;
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
@@ -93,17 +96,29 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+/* What an element's material says in its lane, and *limit of corner_limit. */
+static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
+                          int lane, lar_gid e, double *limit) {
+    int32_t material = domain->model->element_material[e];
+    double factor = domain->factor[lar_factor_of(material)];
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        head->stiffness[m][lane] = base->stiffness[m] * factor * domain->scale;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+        head->modulus[k][lane] =
+            domain->material[material].parameter[k] * base->volume * domain->scale;
+    *limit = base->limit * factor * factor;
+}
+
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
-                      lar_gid e, double *steepest, double *limit) {
+                      lar_gid e, double *steepest, lar_lane_base *base) {
     lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_material *material = lar_model_material_of(domain->model, e);
     const lar_gid *node = domain->layout.corner[e];
     lar_block_head *head = memory;
     double corner[8][3];
     lar_hex8 hex8;
     for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
-    lar_hex8_prepare((const double(*)[3])corner, material, &hex8);
+    lar_hex8_prepare((const double(*)[3])corner, lar_model_material_of(domain->model, e), &hex8);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) {
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
@@ -112,16 +127,14 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
             else if (m < 3 && i == (m + run->turn) % 3)
                 ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
         }
-    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
-        head->stiffness[m][lane] = hex8.stiffness[m] * domain->scale;
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
-    }
-    *limit =
-        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
-    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        head->modulus[k][lane] = material->parameter[k] * hex8.volume * domain->scale;
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
+    base->volume = hex8.volume;
+    memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
+    base->limit =
+        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
 }
 
 /* More than this is read from memory in every step: beyond the second-level cache and a fair share
@@ -167,10 +180,11 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->strained = lar_calloc(elements, sizeof *domain->strained);
     domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
+    domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->strain = lar_calloc(elements, sizeof *domain->strain);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
-    if (!domain->blocks || !domain->corner_limit || !domain->strained || !domain->strained_count ||
-        !domain->strain || !domain->rest)
+    if (!domain->blocks || !domain->base || !domain->corner_limit || !domain->strained ||
+        !domain->strained_count || !domain->strain || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -187,10 +201,13 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
             double *limit = domain->corner_limit + LAR_BLOCK * (domain->run_first[r] + b);
             for (int lane = 0; lane < LAR_BLOCK; lane++) limit[lane] = INFINITY;
             for (int lane = 0; lane < LAR_BLOCK; lane++)
-                if (lanes->element[lane] >= 0)
-                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest,
-                              limit + lane);
-                else
+                if (lanes->element[lane] >= 0) {
+                    lar_lane_base *base =
+                        domain->base + LAR_BLOCK * (domain->run_first[r] + b) + lane;
+                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest, base);
+                    fill_material(domain, base, (void *)memory, lane, lanes->element[lane],
+                                  limit + lane);
+                } else
                     for (int a = 0; a < 8; a++)
                         ((lar_block_head *)(void *)memory)->node[a][lane] =
                             4 * (domain->layout.node_padded - 1);
@@ -204,6 +221,87 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
                                        .stress_square = stress * stress,
                                        .hourglass_square = 0x1p54 * 0x1p54};
     return LAR_OK;
+}
+
+/* ---- materials ------------------------------------------------------------------------------ */
+
+static lar_status copy_materials(lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    size_t count = (size_t)model->material_count;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) domain->factor[i] = 1;
+    domain->material = lar_calloc(count, sizeof *domain->material);
+    if (!domain->material)
+        return lar_fail_memory(error, count * sizeof *domain->material, "the materials");
+    memcpy(domain->material, model->material, count * sizeof *domain->material);
+    return LAR_OK;
+}
+
+static lar_material times(const lar_material *material, double factor) {
+    lar_material made = *material;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++) made.parameter[k] *= factor;
+    return made;
+}
+
+lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor) {
+    int32_t material = domain->model->element_material[e];
+    double now;
+    __atomic_load(&domain->factor[lar_factor_of(material)], &now, __ATOMIC_RELAXED);
+    if (factor) *factor = now;
+    return times(&domain->model->material[material], now);
+}
+
+/* Elements whose material has changed. */
+static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST]) {
+    char *memory = domain->blocks;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++) {
+            size_t block = (size_t)(domain->run_first[r] + b);
+            double *limit = domain->corner_limit + LAR_BLOCK * block;
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                lar_gid e = domain->layout.block[block].element[lane];
+                if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
+                    fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
+                                  lane, e, limit + lane);
+            }
+            memory += lar_block_size(domain->run[r].shape);
+        }
+}
+
+bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
+    const lar_model *model = domain->model;
+    bool changed[LAR_FACTORS_MOST], any = false;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+        changed[i] = settings->factor[i] != domain->factor[i];
+        any = any || changed[i];
+        double factor = settings->factor[i];
+        __atomic_store(&domain->factor[i], &factor, __ATOMIC_RELAXED);
+    }
+    if (!any) return false;
+    for (int i = 0; i < model->material_count; i++)
+        domain->material[i] = times(&model->material[i], domain->factor[lar_factor_of(i)]);
+    if (domain->blocks) fill_changed(domain, changed);
+    return true;
+}
+
+void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
+    const lar_block_run *run = &domain->run[r];
+    const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
+    const void *block =
+        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_block_size(run->shape);
+    const lar_hex8_block *general = block;
+    const lar_box_block *box = block;
+    *hex8 = (lar_hex8){.volume = base->volume};
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        hex8->stiffness[m] = general->head.stiffness[m][lane] / domain->scale;
+    if (run->shape == LAR_SHAPE_BOX) {
+        for (int m = 0; m < 3; m++) hex8->gradient[m][(m + run->turn) % 3] = box->gradient[m][lane];
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+            hex8->gradient[m][i] = general->gradient[m][i][lane];
+        for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) hex8->shape[m][i] = general->shape[m][i][lane];
+    }
 }
 
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
@@ -248,7 +346,7 @@ static void prepare_motion(lar_domain *domain) {
     const lar_model *model = domain->model;
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
-    lar_gravity_at(model, 0, gravity);
+    lar_gravity_at(model, NULL, 0, gravity);
     domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
     for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
@@ -272,6 +370,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
                                     lar_layout_style style, lar_domain *domain, lar_error *error) {
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
+    if (!status) status = copy_materials(domain, error);
     if (!status) status = choose_step(domain, options, error);
     domain->interval = LAR_INTERVAL_MOST; /* those with tools decide more often: simulation.c */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
@@ -330,8 +429,9 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
                            .motion = whole->motion};
-    lar_status status =
-        lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
+    lar_status status = copy_materials(domain, error);
+    if (!status)
+        status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = copy_nodes(whole, counted, domain, error);
     if (!status) status = list_runs(domain, run_most, error);
@@ -347,6 +447,8 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run);
     free(domain->run_first);
     free(domain->blocks);
+    free(domain->material);
+    free(domain->base);
     free(domain->corner_limit);
     free(domain->strained);
     free(domain->strained_count);

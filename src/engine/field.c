@@ -42,7 +42,7 @@ void lar_field_plan_destroy(lar_field_plan *plan) {
 /* As lar_measure_stress. */
 static double element_value(const lar_field_plan *plan, const lar_domain *whole, lar_field field,
                             lar_gid e, const double u[8][3]) {
-    const lar_material *material = lar_model_material_of(whole->model, e);
+    const lar_material now = lar_domain_material_copy(whole, e, NULL), *material = &now;
     double cauchy[6], corner[8][3];
     if (plan->element) {
         double F[3][3], P[3][3];
@@ -141,15 +141,16 @@ lar_status lar_field_stored_energy(const lar_simulation *simulation, const doubl
     if (status) return status;
     *strain = *hourglass = 0;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        double corner[8][3], place[8][3], other = 0;
+        double corner[8][3], place[8][3], other = 0, factor;
         corners_of(&model->mesh, e, u, corner);
         lar_mesh_corners(&model->mesh, e, place);
-        const lar_material *material = lar_model_material_of(model, e);
+        const lar_material now = lar_domain_material_copy(&simulation->domain, e, &factor);
+        const lar_material *material = &now;
         *strain += plan->element ? lar_hex8_energy(&plan->element[e], material,
                                                    (const double(*)[3])corner, &other)
                                  : lar_hex8_full_energy((const double(*)[3])place, material,
                                                         (const double(*)[3])corner);
-        *hourglass += other;
+        *hourglass += factor * other; /* the plan has the hourglass stiffness of the model */
     }
     return LAR_OK;
 }

@@ -24,8 +24,9 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
 static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
                       const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_element_rate *rate = &domain->rate[e];
-    const lar_material *material = lar_model_material_of(domain->model, e);
-    double square = rate->square * lar_hex8_growth(material, strain);
+    const lar_material *material = lar_domain_material(domain, e);
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    double square = factor * rate->square * lar_hex8_growth(material, strain);
     if (pressed) {
         double rest[8][3], now[8][3];
         lar_guard guard;
@@ -107,7 +108,7 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     corners_of(domain, state, e, rest, now);
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
-                         lar_model_material_of(domain->model, e), LEAD * step, force, &guard);
+                         lar_domain_material(domain, e), LEAD * step, force, &guard);
     if (!(guard.least < LAR_GUARD_START)) return;
     double part = soften(domain, e, guard.stiffness, step, state->close, force);
     add(domain, e, (const double(*)[3])force, state);
@@ -136,6 +137,6 @@ double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gi
     lar_guard guard;
     corners_of(domain, state, e, rest, now);
     lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
-                   lar_model_material_of(domain->model, e), &guard);
+                   lar_domain_material(domain, e), &guard);
     return guard.energy;
 }

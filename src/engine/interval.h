@@ -6,7 +6,8 @@
  * lar_tools
  *
  * Several processors stop there, for one of them has to know what all have felt. What is decided:
- * where tools go, and whether steps are divided (contact/tool_body.h).
+ * where tools go, and whether steps are divided (contact/tool_body.h). A material that was made
+ * stiffer (model/settings.h) does not wait: there is a decision before the next step.
  */
 #ifndef LAR_ENGINE_INTERVAL_H
 #define LAR_ENGINE_INTERVAL_H
@@ -29,7 +30,8 @@ void lar_interval_restart(lar_interval *interval);
 void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
                           lar_tools *tools);
 
-/* Before the step `step`: where an interval begins, decides. True when lar_tools has changed. */
+/* Before the step `step`: where an interval begins, or a decision is due, decides. True when
+ * lar_tools has changed. */
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools);
 
 /* The step before which the interval that `step` belongs to ends: domain.interval steps, or one

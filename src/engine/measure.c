@@ -13,19 +13,27 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
     lar_domain_corners(domain, state->u, e, u);
     *hourglass = 0;
     if (domain->kind != LAR_ELEMENT_HEX8)
-        return lar_hex8_full_energy(corner, lar_model_material_of(domain->model, e), u);
+        return lar_hex8_full_energy(corner, lar_domain_material(domain, e), u);
     lar_hex8 hex8;
-    lar_hex8_prepare(corner, lar_model_material_of(domain->model, e), &hex8);
-    return lar_hex8_energy(&hex8, lar_model_material_of(domain->model, e), u, hourglass) +
+    lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
+    return lar_hex8_energy(&hex8, lar_domain_material(domain, e), u, hourglass) +
            lar_guard_energy(domain, state, e);
+}
+
+static double damping_of(const lar_domain *domain) {
+    return lar_damping_of(domain->model, lar_settings_of(&domain->acting));
+}
+
+static void gravity_at(const lar_domain *domain, double time, double gravity[3]) {
+    lar_gravity_at(domain->model, lar_settings_of(&domain->acting), time, gravity);
 }
 
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
 static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
                             const double gravity[3]) {
-    lar_motion motion = lar_step_motion(domain, lar_division_of(&domain->acting), state);
+    lar_motion motion = lar_step_motion(domain, &domain->acting, state);
     double step = lar_mean_step(domain, lar_division_of(&domain->acting), state);
-    double half = 0.5 * domain->model->damping * step;
+    double half = 0.5 * damping_of(domain) * step;
     double drift = gravity[value % 4] * step / (1 + half);
     return motion.keep * state->v[value] + drift -
            motion.push * domain->push[value / 4] * (double)state->force[value];
@@ -37,7 +45,7 @@ static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_
     double mass = domain->mass[value / 4], behind = state->v[value];
     energy->kinetic += 0.5 * mass * behind * ahead;
     energy->damping +=
-        0.25 * domain->model->damping * domain->time_step * mass * behind * (behind + ahead);
+        0.25 * damping_of(domain) * domain->time_step * mass * behind * (behind + ahead);
 }
 
 /* What a support exerts on a value: all that the rest of the equation of motion leaves open. */
@@ -47,16 +55,16 @@ static double support_force(const lar_domain *domain, const lar_state *state,
     int32_t value = constraint->value;
     double behind = state->v[value];
     double inertia =
-        (ahead - behind) / domain->time_step + 0.5 * domain->model->damping * (ahead + behind);
+        (ahead - behind) / domain->time_step + 0.5 * damping_of(domain) * (ahead + behind);
     return domain->mass[value / 4] * (inertia - gravity[value % 4]) +
            (double)state->force[value] / domain->scale;
 }
 
-static double gravity_potential(const lar_domain *domain, const lar_state *state) {
+static double gravity_potential(const lar_domain *domain, const lar_state *state,
+                                const double gravity[3]) {
     double work = 0;
     for (int32_t n = 0; n < domain->layout.node_count; n++)
-        for (int i = 0; i < 3; i++)
-            work += domain->mass[n] * domain->model->gravity[i] * state->u[4 * n + i];
+        for (int i = 0; i < 3; i++) work += domain->mass[n] * gravity[i] * state->u[4 * n + i];
     return work;
 }
 
@@ -75,7 +83,7 @@ static void add_stops(const lar_domain *domain, const lar_state *state, const do
                       lar_energy *energy) {
     const lar_planes *planes = &domain->acting.touch.planes;
     lar_condition_context context = lar_domain_context(domain);
-    double half = 0.5 * domain->model->damping * domain->time_step;
+    double half = 0.5 * damping_of(domain) * domain->time_step;
     for (int32_t entry = 0; entry < planes->count;) {
         int32_t value = planes->node[entry].value;
         double free[3], ahead[3], mass = domain->mass[value / 4];
@@ -135,18 +143,17 @@ static void clear_forces(const lar_domain *domain, lar_state *state) {
 void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
     lar_condition_context context = lar_domain_context(domain);
     double time = lar_state_time(domain, state), gravity[3];
-    lar_gravity_at(domain->model, time, gravity);
+    gravity_at(domain, time, gravity);
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);
 
-    *energy =
-        (lar_energy){.external = state->external,
-                     .contact = state->contact,
-                     .damping = 0.25 * domain->model->damping * domain->time_step * state->damped};
+    *energy = (lar_energy){.external = state->external,
+                           .contact = state->contact,
+                           .damping = 0.25 * domain->time_step * state->damped};
     energy->external += lar_conditions_half_work(&domain->acting.conditions, &context, time, state);
     add_contact(domain, &context, state, energy);
-    if (!domain->acting.conditions.gravity_varies)
-        energy->external += gravity_potential(domain, state);
+    if (!lar_gravity_varies(domain->model, lar_settings_of(&domain->acting)))
+        energy->external += gravity_potential(domain, state, gravity);
     add_motion(domain, state, gravity, energy);
     clear_forces(domain, state);
 
@@ -165,7 +172,7 @@ double lar_measure_element_energy(const lar_domain *domain, const lar_state *sta
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]) {
     double corner[8][3], u[8][3];
-    const lar_material *material = lar_model_material_of(domain->model, e);
+    const lar_material *material = lar_domain_material(domain, e);
     lar_mesh_corners(&domain->model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
     if (domain->kind != LAR_ELEMENT_HEX8) {
@@ -189,7 +196,7 @@ lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
     for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
     double gravity[3];
-    lar_gravity_at(domain->model, lar_state_time(domain, state), gravity);
+    gravity_at(domain, lar_state_time(domain, state), gravity);
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);
     memset(sum, 0, 3 * sizeof *sum);

@@ -205,8 +205,9 @@ void lar_planes_stop(lar_planes *planes, const lar_condition_context *context, l
                   state->v + near->node.value, &sum);
     }
     state->fastest = sum.fastest;
-    state->damped += sum.damped; /* the update kernel has counted the free motion */
-    state->contact -= 0.5 * (1 + 0.5 * context->model->damping * dt) * sum.work;
+    double damping = lar_damping_of(context->model, context->settings);
+    state->damped += damping * sum.damped; /* the update kernel has counted the free motion */
+    state->contact -= 0.5 * (1 + 0.5 * damping * dt) * sum.work;
     planes->travel += step_travel(context, state) - moved;
     seen->touching += sum.touching;
     seen->deepest = larger(seen->deepest, sum.deepest);

@@ -52,8 +52,9 @@ static double energy_ahead(const lar_rest *rest, const lar_simulation *simulatio
     static const double SLOWEST = 0.99; /* noise at the end of all motion does not fade */
     const lar_rest_window *window = &rest->window;
     double seconds = (double)(window->end - window->begin) * lar_simulation_time_step(simulation);
+    double damping = lar_simulation_damping(simulation);
     double ratio = mean < SLOWEST * rest->mean_before ? mean / rest->mean_before : SLOWEST;
-    return 2.0 * simulation->domain.model->damping * mean * seconds * ratio / (1.0 - ratio);
+    return 2.0 * damping * mean * seconds * ratio / (1.0 - ratio);
 }
 
 int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {

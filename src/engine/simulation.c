@@ -42,7 +42,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
     }
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);
-    lar_gravity_at(model, 0, gravity);
+    lar_gravity_at(model, NULL, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             int32_t value = 4 * domain->layout.local[g] + i;
@@ -79,25 +79,6 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
     return LAR_OK;
 }
 
-void lar_simulation_set_start(lar_simulation *simulation) {
-    lar_state *state = &simulation->state;
-#define LAR_STATE_CLEAR(type, name, values, kept)                                                  \
-    memset(state->name, 0, (size_t)state->node_count *(values) * sizeof(type));
-    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
-#undef LAR_STATE_CLEAR
-    state->step = 0;
-    state->part = 0;
-    state->parts = 1;
-    state->listed = false;
-    state->damped = state->external = state->contact = 0;
-    simulation->measured = simulation->taken = 0;
-    lar_tools_reset(&simulation->list, &simulation->tools);
-    lar_acting_forget(&simulation->domain.acting);
-    set_initial_displacements(simulation);
-    set_initial_velocities(simulation);
-    lar_acting_forget(&simulation->domain.acting);
-}
-
 /* How much the tissue bears of a tool: see contact/tool_body.h. */
 static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
     const lar_model *model = domain->model;
@@ -108,8 +89,8 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
                                   (double)lar_tool_interval(domain->time_step) * domain->time_step};
     double edges = 0, mass = 0;
     for (int32_t f = 0; f < surface->face_count; f++) {
-        scale.shear = fmin(scale.shear,
-                           lar_material_shear(lar_model_material_of(model, surface->element[f])));
+        scale.shear =
+            fmin(scale.shear, lar_material_shear(lar_domain_material(domain, surface->element[f])));
         for (int a = 0; a < 4; a++) {
             double edge[3];
             int32_t node = surface->corner[f][a], next = surface->corner[f][(a + 1) % 4];
@@ -123,6 +104,31 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
         scale.stiffness = law.stiffness * mass / (4 * (double)surface->face_count);
     }
     lar_tool_limits_set(&scale, list);
+}
+
+void lar_simulation_settle(lar_simulation *simulation) {
+    if (lar_domain_stiffen(&simulation->domain, &simulation->tools.settings))
+        set_tool_limits(&simulation->domain, &simulation->list);
+}
+
+void lar_simulation_set_start(lar_simulation *simulation) {
+    lar_state *state = &simulation->state;
+#define LAR_STATE_CLEAR(type, name, values, kept)                                                  \
+    memset(state->name, 0, (size_t)state->node_count *(values) * sizeof(type));
+    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
+#undef LAR_STATE_CLEAR
+    state->step = 0;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
+    state->damped = state->external = state->contact = 0;
+    simulation->measured = simulation->taken = 0;
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    lar_simulation_settle(simulation);
+    lar_acting_forget(&simulation->domain.acting);
+    set_initial_displacements(simulation);
+    set_initial_velocities(simulation);
+    lar_acting_forget(&simulation->domain.acting);
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,
@@ -276,6 +282,7 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
     simulation->report_steps = 0;
     simulation->measured = simulation->taken = 0;
     simulation->gathered = true;
+    lar_simulation_settle(simulation);
     return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
 }
 

@@ -45,6 +45,9 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, l
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 
+/* Materials become as stiff as simulation->tools say, and tools bear what these tissues bear. */
+void lar_simulation_settle(lar_simulation *simulation);
+
 /* All processors go on from simulation->state and ->tools as they are now; what tripped and what
  * was felt is forgotten. */
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error);

@@ -25,7 +25,7 @@ typedef struct lar_state {
     int32_t part;    /* parts of a divided step done; 0 between advances */
     int32_t parts;   /* of the step under way */
     uint64_t round;  /* times that nodes were moved; no state */
-    double damped;   /* sum over the steps of sum m |v + v'|^2 */
+    double damped;   /* sum over the steps of sum c m |v + v'|^2, c: damping */
     double external; /* work of loads, prescribed motion and tools so far [J] */
     double contact;  /* what contacts have taken from the bodies so far [J] */
     double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */

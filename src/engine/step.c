@@ -60,7 +60,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
 static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state, lar_trip *trip) {
     const lar_model *model = domain->model;
     double corner[8][3], u[8][3], f[8][3];
-    const lar_material *material = lar_model_material_of(model, e);
+    const lar_material *material = lar_domain_material(domain, e);
     lar_mesh_corners(&model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
     double J = domain->kind == LAR_ELEMENT_HEX8_FULL
@@ -95,7 +95,7 @@ void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, la
 /* ---- how long a step is --------------------------------------------------------------------- */
 
 const lar_step_division *lar_division_of(const lar_acting *acting) {
-    static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1};
+    static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1, .base = 1};
     return acting->touch.tools ? &acting->touch.tools->division : &undivided;
 }
 
@@ -106,15 +106,25 @@ double lar_mean_step(const lar_domain *domain, const lar_step_division *division
     return changes ? 0.5 * (step + domain->time_step / division->before) : step;
 }
 
-lar_motion lar_step_motion(const lar_domain *domain, const lar_step_division *division,
+const lar_settings *lar_settings_of(const lar_acting *acting) {
+    return acting->touch.tools ? &acting->touch.tools->settings : NULL;
+}
+
+static bool is_set(const lar_settings *settings) {
+    return settings && (settings->gravity_set || settings->damping_set);
+}
+
+lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
                            const lar_state *state) {
+    const lar_step_division *division = lar_division_of(acting);
+    const lar_settings *settings = lar_settings_of(acting);
     lar_motion motion = domain->motion;
     double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
     motion.dt = whole / division->parts;
-    if (mean == whole) return motion;
-    double half = 0.5 * domain->model->damping * mean;
+    if (mean == whole && !is_set(settings)) return motion;
+    double half = 0.5 * lar_damping_of(domain->model, settings) * mean;
     double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
-    lar_gravity_at(domain->model, 0, gravity);
+    lar_gravity_at(domain->model, settings, 0, gravity);
     motion.keep = (1 - half) / (1 + half);
     motion.push = mean / whole * (1 + half_whole) / (1 + half);
     for (int i = 0; i < 3; i++) motion.drift[i] = gravity[i] * mean / (1 + half);
@@ -126,6 +136,7 @@ void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
     const lar_step_division *division = lar_division_of(acting);
     if (state->part == 0) state->parts = division->parts;
     context->time_step = domain->time_step / state->parts;
+    context->settings = lar_settings_of(acting);
     context->hardness = division->hardness;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
@@ -152,25 +163,25 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
         acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
-    lar_motion motion = lar_step_motion(domain, lar_division_of(acting), state);
-    if (acting->conditions.gravity_varies) {
+    const lar_settings *settings = lar_settings_of(acting);
+    lar_motion motion = lar_step_motion(domain, acting, state);
+    double damping = lar_damping_of(model, settings), damped = 0;
+    if (lar_gravity_varies(model, settings)) {
         double gravity[3];
-        lar_gravity_at(model, time, gravity);
+        lar_gravity_at(model, settings, time, gravity);
         double mean = lar_mean_step(domain, lar_division_of(acting), state);
         for (int i = 0; i < 3; i++)
-            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * model->damping * mean);
+            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
-    double before = state->damped;
     if (state->step % park_interval == 0) park_spares(domain, context, state);
-    const double *weight = model->damping > 0 ? domain->weight : NULL;
+    const double *weight = damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
     if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
-                                 state->force, domain->push, weight, &state->damped,
-                                 &state->fastest) &&
+                                 state->force, domain->push, weight, &damped, &state->fastest) &&
         !trip->kind)
         *trip = (lar_trip){
             .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
-    if (state->parts > 1) state->damped = before + (state->damped - before) / state->parts;
+    state->damped += damping * damped / state->parts;
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,

@@ -56,6 +56,8 @@ void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
 void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
                     lar_condition_context *context, lar_state *state);
 
+/* What has been set in place of what the model says; NULL: nothing can be. */
+const lar_settings *lar_settings_of(const lar_acting *acting);
 /* How steps are divided now. */
 const lar_step_division *lar_division_of(const lar_acting *acting);
 /* Velocities stand half-way between the displacements before and after: where the length of steps
@@ -63,7 +65,7 @@ const lar_step_division *lar_division_of(const lar_acting *acting);
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
                      const lar_state *state);
 /* How nodes move in the step that lies before the state: see lar_step_division. */
-lar_motion lar_step_motion(const lar_domain *domain, const lar_step_division *division,
+lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
                            const lar_state *state);
 
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
@@ -93,7 +95,9 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
 /* What the conditions need of a domain, for the nodes first .. end - 1. */
 static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
                                                           lar_lid end) {
+    const lar_tools *tools = domain->acting.touch.tools;
     return (lar_condition_context){.model = domain->model,
+                                   .settings = tools ? &tools->settings : NULL,
                                    .scale = domain->scale,
                                    .time_step = domain->time_step,
                                    .whole_step = domain->time_step,

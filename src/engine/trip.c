@@ -13,7 +13,7 @@ static void examine_element(const lar_domain *domain, const lar_state *state, la
     lar_hex8 hex8;
     lar_mesh_corners(&model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
-    lar_hex8_prepare(corner, lar_model_material_of(model, e), &hex8);
+    lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
     lar_hex8_gradient(&hex8, u, F);
     *volume_ratio = lar_lane_cofactor((const double *)F, cof);
     /* |F^-1| / sqrt(3): 1 at rest */

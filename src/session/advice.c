@@ -1,6 +1,7 @@
 #include "session/advice.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 /* Of a step's time, what is left for it: forces, pictures and waking take the rest. */
@@ -50,10 +51,14 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
     double allowed = ROOM * a->time_step / pace, least = status->step_least;
     if (least > allowed && status->step_parts > 1 && least / status->step_parts <= allowed) {
         status->slow_cause = LAR_SLOW_DIVISION;
+        bool stiffer = a->stiffer >= status->step_parts;
+        const char *why = stiffer ? "because the body was made stiffer than the model has it; make "
+                                    "it softer"
+                                  : "while tissue is strained or tools press hard; let go or pull "
+                                    "less";
         snprintf(status->slow_advice, sizeof status->slow_advice,
-                 "steps are divided by %d while tissue is strained or tools press hard; let go or "
-                 "pull less, or choose a slower pace",
-                 (int)status->step_parts);
+                 "steps are divided by %d %s, or choose a slower pace", (int)status->step_parts,
+                 why);
     } else if (least > allowed) {
         status->slow_cause = LAR_SLOW_STEP;
         advise_smaller(a, least / allowed, least, allowed, status);

@@ -20,6 +20,7 @@ typedef struct lar_advice {
     int32_t elements;
     int32_t busy, cores; /* threads that compute; cores of this machine that they may use */
     int priority;        /* lar_session_options.priority */
+    int32_t stiffer;     /* not constant: parts of a step that stiffer materials take; 0, 1: none */
 } lar_advice;
 
 /* Fills in slow_cause and slow_advice, from slow_motion, step_least and step_parts. `pace`: as

@@ -132,6 +132,36 @@ lar_status lar_session_record(lar_session *session, const char *path, lar_error 
     return status ? status : closed;
 }
 
+static lar_status set(lar_session *session, lar_setting setting, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = check_session(session, error);
+    if (status) return status;
+    return ask_and_wait(
+        session, (lar_request){.kind = LAR_REQUEST_SET, .setting = setting, .answer = &answer},
+        error);
+}
+
+lar_status lar_session_set_gravity(lar_session *session, const double gravity[3],
+                                   lar_error *error) {
+    lar_setting setting = {.kind = LAR_SETTING_MODEL_GRAVITY};
+    if (gravity)
+        setting = (lar_setting){.kind = LAR_SETTING_GRAVITY,
+                                .value = {gravity[0], gravity[1], gravity[2]}};
+    return set(session, setting, error);
+}
+
+lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error) {
+    return set(session, (lar_setting){.kind = LAR_SETTING_DAMPING, .value = {damping}}, error);
+}
+
+lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
+                                     lar_error *error) {
+    return set(
+        session,
+        (lar_setting){.kind = LAR_SETTING_STIFFNESS, .material = material, .value = {factor}},
+        error);
+}
+
 lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                               lar_error *error) {
     lar_request_answer answer = {0};

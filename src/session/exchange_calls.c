@@ -1,6 +1,7 @@
 /* Tools, status and snapshots of a session, from any thread. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "session/session.h"
@@ -100,6 +101,24 @@ void lar_session_status_get(const lar_session *session, lar_session_status *stat
     if (!session || !status) return;
     *status = look_at_view(session)->status;
     end_look(session);
+}
+
+void lar_session_gravity(const lar_session *session, double gravity[3]) {
+    memcpy(gravity, look_at_view(session)->gravity, 3 * sizeof *gravity);
+    end_look(session);
+}
+
+double lar_session_damping(const lar_session *session) {
+    double damping = look_at_view(session)->damping;
+    end_look(session);
+    return damping;
+}
+
+double lar_session_stiffness(const lar_session *session, int32_t material) {
+    if (material < 0 || material >= session->simulation->domain.model->material_count) return 0;
+    double factor = look_at_view(session)->factor[lar_factor_of(material)];
+    end_look(session);
+    return factor;
 }
 
 int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,

@@ -137,6 +137,25 @@ static lar_status change_player(lar_session *session, const lar_request *request
     return LAR_OK;
 }
 
+static lar_status set(lar_session *session, const lar_request *request, lar_error *error) {
+    if (session->player)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a recording is being played; leave it to change gravity, damping and "
+                        "stiffness");
+    if (session->status.state == LAR_SESSION_STOPPED)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the run has broken off; reset it or load a state before gravity, damping "
+                        "and stiffness are changed");
+    lar_status status = lar_setting_apply(&request->setting, session->simulation, error);
+    if (!status) {
+        lar_session_note(session, &(lar_record){.kind = LAR_RECORD_SET,
+                                                .step = lar_simulation_steps(session->simulation),
+                                                .setting = request->setting});
+        lar_session_publish(session, false);
+    }
+    return status;
+}
+
 static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
     switch (request->kind) {
     case LAR_REQUEST_RESET:
@@ -150,6 +169,8 @@ static lar_status change(lar_session *session, const lar_request *request, lar_e
         return change_recorder(session, request, error);
     case LAR_REQUEST_REPLAY:
         return change_player(session, request, error);
+    case LAR_REQUEST_SET:
+        return set(session, request, error);
     default:
         return attach(session, request, error);
     }

@@ -128,6 +128,8 @@ static lar_status apply(lar_player *p, lar_simulation *simulation, const lar_pla
     case LAR_RECORD_MOVE:
         return lar_simulation_tool_move(simulation, record->tool, &record->pose, record->steps,
                                         error);
+    case LAR_RECORD_SET:
+        return lar_setting_apply(&record->setting, simulation, error);
     case LAR_RECORD_HASH:
         return compare(p, simulation, record, error);
     case LAR_RECORD_RESET:

@@ -17,6 +17,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "session/setting.h"
 
 /* What the recording was made with. */
 typedef struct lar_recording_header {
@@ -32,7 +33,8 @@ typedef enum lar_record_kind {
     LAR_RECORD_MOVE,      /* lar_simulation_tool_move(tool, pose, steps) at step */
     LAR_RECORD_HASH,      /* the state hash at step */
     LAR_RECORD_RESET,     /* lar_simulation_reset at step */
-    LAR_RECORD_END        /* at step; nothing follows */
+    LAR_RECORD_END,       /* at step; nothing follows */
+    LAR_RECORD_SET        /* lar_setting_apply(setting) at step */
 } lar_record_kind;
 
 typedef struct lar_record {
@@ -41,6 +43,7 @@ typedef struct lar_record {
     uint64_t step;
     uint64_t steps, hash;
     lar_tool_pose pose;
+    lar_setting setting;
     uint64_t bytes; /* of a state, in the file behind this */
 } lar_record;
 

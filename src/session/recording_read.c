@@ -63,11 +63,12 @@ static lar_status read_header(lar_recording_reader *reader, lar_error *error) {
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: the recording is cut off in its header; take a complete copy",
                         reader->path);
-    if (word[0] != LAR_RECORDING_VERSION)
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s: is a recording of version %" PRIu64
-                        ", and this Lariat reads version %d; play it with the Lariat that made it",
-                        reader->path, word[0], LAR_RECORDING_VERSION);
+    if (word[0] < 1 || word[0] > LAR_RECORDING_VERSION)
+        return lar_fail(
+            error, LAR_ERROR_FORMAT,
+            "%s: is a recording of version %" PRIu64
+            ", and this Lariat reads versions 1 to %d; play it with the Lariat that made it",
+            reader->path, word[0], LAR_RECORDING_VERSION);
     memcpy(&first, magic, sizeof first);
     first = le64toh(first);
     reader->checksum = lar_chain(lar_chain(0, &first, 1), word, LAR_RECORDING_HEADER_WORDS);
@@ -137,6 +138,19 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
     return lar_recording_refuse(reader, error, "moves a tool to where none can be; it was altered");
 }
 
+/* Whether the values make sense is said where they are set. */
+static lar_status take_setting(const lar_recording_reader *reader, const uint64_t *word,
+                               lar_record *record, lar_error *error) {
+    int64_t material = (int64_t)word[2];
+    if (word[1] >= LAR_SETTING_KINDS || material < -1 || material > INT32_MAX)
+        return lar_recording_refuse(reader, error, "sets what cannot be set; it was altered");
+    record->setting = (lar_setting){
+        .kind = (lar_setting_kind)word[1],
+        .material = (int32_t)material,
+        .value = {lar_double_of(word[3]), lar_double_of(word[4]), lar_double_of(word[5])}};
+    return LAR_OK;
+}
+
 /* Only a reset or a new state goes back in time. */
 static lar_status take_record(lar_recording_reader *reader, const uint64_t *word,
                               lar_record *record, lar_error *error) {
@@ -147,6 +161,7 @@ static lar_status take_record(lar_recording_reader *reader, const uint64_t *word
         return lar_recording_refuse(reader, error, "goes back in time; it was altered");
     reader->step = record->kind == LAR_RECORD_RESET ? 0 : record->step;
     if (record->kind == LAR_RECORD_HASH) record->hash = word[1];
+    if (record->kind == LAR_RECORD_SET) return take_setting(reader, word, record, error);
     return record->kind == LAR_RECORD_MOVE ? take_move(reader, word, record, error) : LAR_OK;
 }
 

@@ -12,7 +12,7 @@
 #define LAR_RECORDING_MAGIC "\x89LARREC\n"
 
 enum {
-    LAR_RECORDING_VERSION = 1,
+    LAR_RECORDING_VERSION = 2,       /* version 1 had no settings, and is read */
     LAR_RECORDING_HEADER_WORDS = 10, /* behind the magic, without the checksum */
     LAR_RECORD_WORDS_MOST = 11       /* of the payload, but for states */
 };
@@ -30,6 +30,8 @@ static inline int lar_record_words(uint64_t kind) {
         return 1;
     case LAR_RECORD_END:
         return 1;
+    case LAR_RECORD_SET:
+        return 6;
     default:
         return 0;
     }

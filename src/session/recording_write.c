@@ -78,6 +78,11 @@ void lar_recording_put(lar_recording_writer *writer, const lar_record *record) {
         for (int i = 0; i < 4; i++) word[8 + i] = lar_word_of(record->pose.orientation[i]);
         word[12] = lar_word_of(record->pose.opening);
     }
+    if (record->kind == LAR_RECORD_SET) {
+        word[3] = (uint64_t)record->setting.kind;
+        word[4] = (uint64_t)(int64_t)record->setting.material;
+        for (int i = 0; i < 3; i++) word[5 + i] = lar_word_of(record->setting.value[i]);
+    }
     put_words(writer, word, 2 + (size_t)words);
     put_checksum(writer);
 }

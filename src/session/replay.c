@@ -130,6 +130,16 @@ static lar_status move(player *p, const lar_record *record, lar_error *error) {
                     p->reader.path, p->reader.number, record->step, cause.message);
 }
 
+static lar_status set(player *p, const lar_record *record, lar_error *error) {
+    lar_error cause;
+    lar_status status = lar_setting_apply(&record->setting, p->simulation, &cause);
+    if (status == LAR_ERROR_PEER && error) *error = cause;
+    if (!status || status == LAR_ERROR_PEER) return status;
+    return lar_fail(error, LAR_ERROR_FORMAT,
+                    "%s: record %" PRIu64 ", at step %" PRIu64 ", sets what cannot be: %s",
+                    p->reader.path, p->reader.number, record->step, cause.message);
+}
+
 static lar_status play(player *p, const lar_record *record, lar_error *error) {
     if (record->kind == LAR_RECORD_STATE) return take_state(p, record, error);
     if (p->reader.number == 1)
@@ -140,6 +150,7 @@ static lar_status play(player *p, const lar_record *record, lar_error *error) {
     p->report->broken = status == LAR_ERROR_UNSTABLE && record->kind == LAR_RECORD_END;
     if (status || p->stopped) return status;
     if (record->kind == LAR_RECORD_MOVE) return move(p, record, error);
+    if (record->kind == LAR_RECORD_SET) return set(p, record, error);
     if (record->kind == LAR_RECORD_HASH) return compare(p, record, error);
     if (record->kind == LAR_RECORD_RESET) return reset(p, error);
     return lar_recording_check_end(&p->reader, error);

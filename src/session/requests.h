@@ -30,6 +30,7 @@ typedef enum lar_request_kind {
     LAR_REQUEST_REPLAY,
     LAR_REQUEST_SEEK,
     LAR_REQUEST_ATTACH,
+    LAR_REQUEST_SET,
     LAR_REQUEST_END
 } lar_request_kind;
 
@@ -56,6 +57,7 @@ typedef struct lar_request {
     lar_player *player;         /* REPLAY; NULL: ends */
     double seconds;             /* SEEK */
     lar_device *device;         /* ATTACH: the session's when it succeeds */
+    lar_setting setting;        /* SET */
     lar_request_answer *answer; /* NULL: nobody waits */
 } lar_request;
 

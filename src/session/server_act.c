@@ -90,6 +90,12 @@ static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
 }
 
+static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .setting = *wish};
+    if (!lar_work_ask(&server->work, &job))
+        lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+}
+
 static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what, const char *name) {
     lar_json *json = &server->json;
     lar_json_begin(json);
@@ -234,6 +240,11 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
     case LAR_WISH_RECORD:
     case LAR_WISH_REPLAY:
         ask_job(server, viewer, wish);
+        break;
+    case LAR_WISH_GRAVITY:
+    case LAR_WISH_DAMPING:
+    case LAR_WISH_STIFFNESS:
+        ask_setting(server, viewer, wish);
         break;
     }
 }

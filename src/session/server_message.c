@@ -45,6 +45,7 @@ typedef enum key_id {
     KEY_ENERGY,
     KEY_AXIS,
     KEY_INDEX,
+    KEY_MATERIAL,
     KEYS
 } key_id;
 
@@ -65,7 +66,7 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_HAND] = {"hand", IS_WHOLE, 0, LAR_VIEWER_HANDS - 1, 0},
                                         [KEY_AFTER] = {"after", IS_WHOLE, 0, 9007199254740991.0, 0},
                                         [KEY_STEPS] = {"steps", IS_WHOLE, 1, 100000, 0},
-                                        [KEY_VALUE] = {"value", IS_REAL, 0, 100, 0},
+                                        [KEY_VALUE] = {"value", IS_REAL, 0, 1e6, 0},
                                         [KEY_TIME] = {"time", IS_REAL, 0, 1e9, 0},
                                         [KEY_OPENING] = {"opening", IS_REAL, 0, 1, 0},
                                         [KEY_ON] = {"on", IS_BOOLEAN, 0, 0, 0},
@@ -77,7 +78,8 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_FACE] = {"face", IS_WHOLE, 0, INT32_MAX, 0},
                                         [KEY_ENERGY] = {"energy", IS_BOOLEAN, 0, 0, 0},
                                         [KEY_AXIS] = {"axis", IS_WHOLE, 0, 2, 0},
-                                        [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0}};
+                                        [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_MATERIAL] = {"material", IS_WHOLE, 0, INT32_MAX, 0}};
 
 #define BIT(key) (1u << KEY_##key)
 
@@ -103,7 +105,10 @@ static const struct {
     [LAR_WISH_REPLAY] = {"replay", 0, BIT(NAME)},
     [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0},
     [LAR_WISH_INSPECT] = {"inspect", 0, BIT(NODE) | BIT(FACE) | BIT(ENERGY)},
-    [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0}};
+    [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0},
+    [LAR_WISH_GRAVITY] = {"gravity", 0, BIT(TO)},
+    [LAR_WISH_DAMPING] = {"damping", 0, BIT(VALUE)},
+    [LAR_WISH_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)}};
 enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
 
 /* ---- reading ---------------------------------------------------------------------------- */
@@ -338,15 +343,17 @@ static bool set_tool(reader *r, int32_t tools, lar_wish *wish) {
 }
 
 static bool set_pace(reader *r, lar_wish *wish) {
-    wish->pace = r->number[KEY_VALUE][0];
-    if (!(r->seen & BIT(VALUE)) || wish->pace == 0 || wish->pace >= 0.001) return true;
+    double pace = r->number[KEY_VALUE][0];
+    if (wish->kind != LAR_WISH_PACE) return true;
+    wish->pace = pace;
+    if (pace == 0 || (pace >= 0.001 && pace <= 100)) return true;
     return refuse(r, LAR_CLOSE_POLICY, "value must lie between 0.001 and 100, or be 0");
 }
 
 static bool set_rest(reader *r, lar_wish *wish) {
-    key_id point = wish->kind == LAR_WISH_GRAB   ? KEY_POINT
-                   : wish->kind == LAR_WISH_PULL ? KEY_TO
-                                                 : KEY_POSITION;
+    key_id point = wish->kind == LAR_WISH_GRAB                                     ? KEY_POINT
+                   : wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_GRAVITY ? KEY_TO
+                                                                                   : KEY_POSITION;
     memcpy(wish->point, r->number[point], sizeof wish->point);
     wish->hand = (int32_t)r->number[KEY_HAND][0];
     wish->after = (uint64_t)r->number[KEY_AFTER][0];
@@ -357,6 +364,9 @@ static bool set_rest(reader *r, lar_wish *wish) {
     wish->face = r->seen & BIT(FACE) ? (int32_t)r->number[KEY_FACE][0] : -1;
     wish->axis = (int32_t)r->number[KEY_AXIS][0];
     wish->index = (int32_t)r->number[KEY_INDEX][0];
+    wish->valued = r->seen & (BIT(TO) | BIT(VALUE));
+    wish->value = r->number[KEY_VALUE][0];
+    wish->material = r->seen & BIT(MATERIAL) ? (int32_t)r->number[KEY_MATERIAL][0] : -1;
     wish->energy = r->number[KEY_ENERGY][0] != 0;
     memcpy(wish->name, r->text[KEY_NAME], sizeof wish->name);
     return true;

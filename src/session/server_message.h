@@ -51,7 +51,10 @@ typedef enum lar_wish_kind {
     LAR_WISH_REPLAY,
     LAR_WISH_SEEK,
     LAR_WISH_INSPECT,
-    LAR_WISH_SLICE
+    LAR_WISH_SLICE,
+    LAR_WISH_GRAVITY,
+    LAR_WISH_DAMPING,
+    LAR_WISH_STIFFNESS
 } lar_wish_kind;
 
 /* One message. What its kind does not have is zero. */
@@ -63,8 +66,11 @@ typedef struct lar_wish {
     uint64_t after;  /* forces */
     uint64_t steps;  /* step */
     double pace;
-    double time;     /* seek [s] */
-    double point[3]; /* grab, pull, tool */
+    bool valued;      /* gravity, damping, stiffness: else as the model says */
+    double value;     /* damping, stiffness */
+    int32_t material; /* stiffness; -1: all */
+    double time;      /* seek [s] */
+    double point[3];  /* grab, pull, tool, gravity */
     double orientation[4];
     double opening;
     bool turns, opens;            /* tool: orientation, opening were given */

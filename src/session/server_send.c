@@ -101,6 +101,19 @@ static void write_scan(lar_json *json, const lar_image *image) {
     lar_json_close(json, '}');
 }
 
+/* What the page may set, and what it goes back to. */
+static void write_body(lar_json *json, const lar_model *model) {
+    double gravity[3];
+    lar_gravity_at(model, NULL, 0, gravity);
+    lar_json_open(json, "body", '{');
+    lar_json_vector(json, "gravity", gravity, 3);
+    lar_json_boolean(json, "gravity_varies", lar_gravity_varies(model, NULL));
+    lar_json_number(json, "damping", lar_model_damping(model));
+    lar_json_number(json, "stiffness_min", LAR_FACTOR_MIN);
+    lar_json_number(json, "stiffness_max", LAR_FACTOR_MAX);
+    lar_json_close(json, '}');
+}
+
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     const lar_session *session = server->session;
     const lar_simulation *simulation = session->simulation;
@@ -139,6 +152,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_boolean(json, "saves", server->save_folder != NULL);
     lar_json_number(json, "hand_force", session->options.hand_force);
     lar_json_number(json, "tool_speed", session->options.tool_speed);
+    write_body(json, server->model);
     return json->failed ? lar_fail_memory(error, json->length, "what viewers are told") : LAR_OK;
 }
 
@@ -195,6 +209,21 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
 }
 
+/* As it is now. */
+static void write_settings(lar_json *json, const lar_session *session) {
+    double gravity[3];
+    int32_t materials = session->simulation->domain.model->material_count;
+    lar_session_gravity(session, gravity);
+    lar_json_open(json, "body", '{');
+    lar_json_vector(json, "gravity", gravity, 3);
+    lar_json_number(json, "damping", lar_session_damping(session));
+    lar_json_open(json, "stiffness", '[');
+    for (int32_t i = 0; i < materials; i++)
+        lar_json_number(json, NULL, lar_session_stiffness(session, i));
+    lar_json_close(json, ']');
+    lar_json_close(json, '}');
+}
+
 static void write_replay(const lar_server *server, lar_json *json) {
     const lar_session_status *s = &server->status;
     if (!s->replaying) return;
@@ -220,6 +249,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     for (int i = 0; i < server->recordings.count; i++)
         lar_json_text(json, NULL, server->recordings.name[i]);
     lar_json_close(json, ']');
+    write_settings(json, server->session);
     write_replay(server, json);
     lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < server->session->tools; i++) {

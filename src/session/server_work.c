@@ -17,6 +17,17 @@ static void inspect(lar_work *work, lar_job_end *end) {
                          &end->reading, &end->error);
 }
 
+static void set(lar_work *work, const lar_wish *wish, lar_error *error) {
+    lar_session *session = work->session;
+    double damping = lar_model_damping(work->model);
+    if (wish->kind == LAR_WISH_GRAVITY)
+        lar_session_set_gravity(session, wish->valued ? wish->point : NULL, error);
+    else if (wish->kind == LAR_WISH_DAMPING)
+        lar_session_set_damping(session, wish->valued ? wish->value : damping, error);
+    else
+        lar_session_set_stiffness(session, wish->material, wish->valued ? wish->value : 1, error);
+}
+
 static void do_job(lar_work *work, lar_job_end *end) {
     const lar_job *job = &end->job;
     lar_error *error = &end->error;
@@ -39,6 +50,11 @@ static void do_job(lar_work *work, lar_job_end *end) {
         break;
     case LAR_WISH_INSPECT:
         inspect(work, end);
+        break;
+    case LAR_WISH_GRAVITY:
+    case LAR_WISH_DAMPING:
+    case LAR_WISH_STIFFNESS:
+        set(work, &job->setting, error);
         break;
     default:
         break;

@@ -35,6 +35,8 @@
 /* What the engine tells in every tick. */
 typedef struct lar_session_view {
     lar_session_status status;
+    double gravity[3], damping;      /* [m/s^2] [1/s] */
+    double factor[LAR_FACTORS_MOST]; /* of the stiffness of materials */
     struct {
         lar_tool_pose pose;
         lar_tool_force force;

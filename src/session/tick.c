@@ -23,6 +23,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
+    session->advice.stiffer = session->simulation->tools.division.base;
     if (quantiles) lar_advise(&session->advice, session->pace.pace, status);
     const lar_player *player = session->player;
     status->replaying = player != NULL;
@@ -30,6 +31,9 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->replay_length = player ? (double)player->length * session->time_step : 0;
     lar_session_view *view = lar_mailbox_draft(&session->view);
     view->status = *status;
+    lar_simulation_gravity(session->simulation, view->gravity);
+    view->damping = lar_simulation_damping(session->simulation);
+    memcpy(view->factor, session->simulation->tools.settings.factor, sizeof view->factor);
     for (int32_t i = 0; i < session->tools; i++) {
         view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;

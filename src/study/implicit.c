@@ -132,7 +132,7 @@ static lar_status external(lar_implicit *m, const double *u, double time, double
                            lar_error *error) {
     lar_condition_context context = {.model = m->model, .scale = m->scale};
     double gravity[3];
-    lar_gravity_at(m->model, time, gravity);
+    lar_gravity_at(m->model, NULL, time, gravity);
     memset(m->state.force, 0, 4 * (size_t)m->state.node_count * sizeof *m->state.force);
     for (int32_t r = 0; r < m->rows; r++) m->state.u[4 * (r / 3) + r % 3] = u[r];
     int32_t beyond = lar_conditions_load(&m->conditions, &context, time, &m->state);

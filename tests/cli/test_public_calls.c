@@ -177,6 +177,13 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_tool_pose(NULL, 0, &pose, &error));
     REFUSED(lar_simulation_tool_pose(simulation, 0, NULL, &error));
     REFUSED(lar_simulation_tool_move(NULL, 0, &pose, 10, &error));
+    REFUSED(lar_simulation_set_gravity(NULL, NULL, &error));
+    REFUSED(lar_simulation_set_damping(NULL, 0, &error));
+    REFUSED(lar_simulation_set_stiffness(NULL, -1, 1, &error));
+    REFUSED(lar_simulation_set_stiffness(simulation, INT32_MAX, 1, &error));
+    REFUSED(lar_session_set_gravity(NULL, NULL, &error));
+    REFUSED(lar_session_set_damping(NULL, 0, &error));
+    REFUSED(lar_session_set_stiffness(NULL, -1, 1, &error));
     REFUSED(lar_simulation_tool_move(simulation, 0, NULL, 10, &error));
     REFUSED(lar_simulation_tool_move(simulation, 0, &pose, 0, &error));
     REFUSED(lar_simulation_tool_force(NULL, 0, &force, &error));

@@ -378,7 +378,8 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
-    enum { DIVISION = 144, TOOL = 192, FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
+    enum { DIVISION = 144, SETTINGS = DIVISION + 56, TOOL = SETTINGS + 552 };
+    enum { FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
         size_t at, size;
@@ -405,7 +406,17 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 32, 8, 1025, "tool"},
         {DIVISION + 32, 8, NAN, "tool"},
         {DIVISION + 40, 8, 1e300, "tool"}, /* when decided */
-        {TOOL, 8, INFINITY, "tool"},       /* a position */
+        {DIVISION + 48, 4, 0, "tool"},     /* parts of stiffer materials */
+        {DIVISION + 52, 4, 2, "tool"},     /* due */
+        {SETTINGS, 4, 2, "tool"},          /* whether gravity is set */
+        {SETTINGS + 4, 4, -1, "tool"},     /* and damping */
+        {SETTINGS + 8, 8, 1001, "tool"},   /* gravity */
+        {SETTINGS + 24, 8, NAN, "tool"},
+        {SETTINGS + 32, 8, -1, "tool"}, /* damping */
+        {SETTINGS + 32, 8, 1e9, "tool"},
+        {SETTINGS + 40, 8, 0, "tool"}, /* the factor of the first material, and of the last */
+        {SETTINGS + 40 + 63 * 8, 8, 4.5, "tool"},
+        {TOOL, 8, INFINITY, "tool"}, /* a position */
         {TOOL, 8, -1e200, "tool"},
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */
         {TOOL + 56, 8, 1.5, "tool"},    /* an opening */

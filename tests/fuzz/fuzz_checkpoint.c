@@ -15,6 +15,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum {
+    AT_VERSION = 8,
     AT_BYTES = 16, /* docs/formats.md */
     AT_IDENTITY = 24,
     AT_STEP = 96,
@@ -32,7 +33,10 @@ static void load(const lar_bytes *bytes) {
         return;
     }
     require(lar_simulation_pack(s, "fuzz.checkpoint", &again, &error) == LAR_OK);
-    require(again.size == bytes->size && memcmp(again.data, bytes->data, again.size) == 0);
+    uint32_t version;
+    memcpy(&version, bytes->data + AT_VERSION, sizeof version);
+    if (version > 3) /* the last one without settings, which comes out as a newer one */
+        require(again.size == bytes->size && memcmp(again.data, bytes->data, again.size) == 0);
     lar_bytes_free(&again);
     lar_status status = lar_simulation_advance(s, 3, &error);
     require(status == LAR_OK || status == LAR_ERROR_UNSTABLE);
@@ -55,7 +59,7 @@ static void repair(lar_bytes *bytes) {
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
     size_t levels = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
     if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_HOLDS_MOST &&
-        last == AT_DIVISION + sizeof(lar_step_division) +
+        last == AT_DIVISION + sizeof(lar_step_division) + sizeof(lar_settings) +
                     3 * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
                     (size_t)counts[1] * sizeof(lar_hold) + levels + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));

@@ -44,6 +44,14 @@ static void strained_tissue_is_named(void **unused) {
     lar_session_status s = slow(&organ, 1, 1.6e-4, 4);
     assert_int_equal(s.slow_cause, LAR_SLOW_DIVISION);
     has(&s, "divided by 4");
+    has(&s, "tissue is strained");
+    lar_advice stiffer = organ;
+    stiffer.stiffer = 4;
+    s = slow(&stiffer, 1, 1.6e-4, 4);
+    has(&s, "divided by 4 because the body was made stiffer");
+    stiffer.stiffer = 2; /* strained besides */
+    s = slow(&stiffer, 1, 1.6e-4, 4);
+    has(&s, "tissue is strained");
     s = slow(&organ, 1, 1.6e-3, 4); /* too long undivided, too */
     assert_int_equal(s.slow_cause, LAR_SLOW_STEP);
 }

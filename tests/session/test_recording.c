@@ -208,6 +208,88 @@ static void damage_is_found(void **unused) {
     lar_bytes_free(&file);
 }
 
+/* Gravity, damping and stiffness are played at their steps, in a session too. */
+static void settings_are_played(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    options.record = PATH;
+    options.hash_every = 50;
+    bench b = open_bench("2x1x1", 1, &options);
+    const double gravity[3] = {0.5, 0, -3};
+    double now[3];
+    DONE(lar_session_start(b.session, &failure));
+    lead(&b, 100);
+    DONE(lar_session_set_gravity(b.session, gravity, &failure));
+    lead(&b, 100);
+    DONE(lar_session_set_stiffness(b.session, -1, 3, &failure));
+    DONE(lar_session_set_damping(b.session, 7, &failure));
+    lead(&b, 200);
+    lar_session_gravity(b.session, now);
+    assert_memory_equal(now, gravity, sizeof now);
+    assert_true(lar_session_damping(b.session) == 7);
+    assert_true(lar_session_stiffness(b.session, 0) == 3);
+    assert_true(lar_session_stiffness(b.session, 1) == 0);
+    assert_int_equal(lar_session_set_stiffness(b.session, 0, 9, &failure), LAR_ERROR_ARGUMENT);
+    lar_session_pause(b.session);
+    await(&b, LAR_SESSION_PAUSED, 0);
+    DONE(lar_session_set_gravity(b.session, NULL, &failure));
+    lar_session_play(b.session);
+    lead(&b, 100);
+    DONE(lar_session_reset(b.session, &failure));
+    assert_true(lar_session_stiffness(b.session, 0) == 1);
+    DONE(lar_session_set_stiffness(b.session, 0, 0.5, &failure));
+    lead(&b, 100);
+    close_bench(&b);
+    for (int grid = 0; grid < 2; grid++) {
+        lar_replay_report report;
+        DONE(replay(PATH, grid ? "2x2x1" : NULL, 1, &report));
+        assert_true(report.hashes > 8 && report.different == UINT64_MAX);
+    }
+    options.record = NULL;
+    b = open_bench(NULL, 0, &options);
+    DONE(lar_session_start(b.session, &failure));
+    DONE(lar_session_replay(b.session, PATH, &failure));
+    await(&b, LAR_SESSION_PAUSED, 0);
+    assert_string_equal(status_of(&b).message, "");
+    assert_true(lar_session_stiffness(b.session, 0) == 0.5);
+    assert_int_equal(lar_session_set_damping(b.session, 1, &failure), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "is being played"));
+    DONE(lar_session_replay(b.session, NULL, &failure));
+    DONE(lar_session_set_damping(b.session, 1, &failure));
+    close_bench(&b);
+
+    /* One that was altered. */
+    static const struct {
+        int word;
+        uint64_t value;
+        const char *why;
+    } forged[] = {{1, 9, "sets what cannot be set"},
+                  {2, (uint64_t)-2, "sets what cannot be set"},
+                  {2, 1, "there is no material 1"},
+                  {3, 0x7ff8000000000000, "sets what cannot be: "}};
+    for (int i = 0; i < 4; i++) {
+        reload();
+        *word_at(find(LAR_RECORD_SET, 1) + 16 + 8 * (size_t)forged[i].word) = forged[i].value;
+        sign();
+        write_bad(file.size);
+        refused(LAR_ERROR_FORMAT, forged[i].why);
+    }
+    lar_bytes_free(&file);
+}
+
+/* Version 1 is what is left without settings. */
+static void recordings_of_before_are_played(void **unused) {
+    (void)unused;
+    record(NULL, 0);
+    reload();
+    *word_at(8) = 1;
+    sign();
+    write_bad(file.size);
+    lar_replay_report report;
+    DONE(replay(BAD, NULL, 0, &report));
+    lar_bytes_free(&file);
+}
+
 static void forged_files_are_refused(void **unused) {
     (void)unused;
     record(NULL, 0);
@@ -249,9 +331,9 @@ static void forged_files_are_refused(void **unused) {
         refused(LAR_ERROR_FORMAT, forged[i].name);
     }
     reload();
-    *word_at(8) = 2;
+    *word_at(8) = 3;
     write_bad(file.size);
-    refused(LAR_ERROR_FORMAT, "version 2");
+    refused(LAR_ERROR_FORMAT, "version 3");
     reload();
     *word_at(8 * 7) = 0; /* time step */
     sign();
@@ -514,6 +596,8 @@ int main(void) {
                                        cmocka_unit_test(broken_runs_break_again),
                                        cmocka_unit_test(first_difference_is_named),
                                        cmocka_unit_test(damage_is_found),
+                                       cmocka_unit_test(settings_are_played),
+                                       cmocka_unit_test(recordings_of_before_are_played),
                                        cmocka_unit_test(forged_files_are_refused),
                                        cmocka_unit_test(other_models_are_refused),
                                        cmocka_unit_test(killed_writers_leave_a_beginning),

@@ -427,6 +427,35 @@ static void plays_pauses_steps_and_resets(void **unused) {
     end_serving(&s);
 }
 
+/* Body: what one viewer sets the others see. */
+static void gravity_damping_and_stiffness_are_set(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    client c = open_client(s.port), other = open_client(s.port);
+    const char *hello = await_text(&c, "hello");
+    assert_non_null(strstr(hello, "\"body\":{\"gravity\":[0,0,-9.81],\"gravity_varies\":false,"
+                                  "\"damping\":20,\"stiffness_min\":0.1,\"stiffness_max\":4}"));
+    await_status(&other, "\"body\":{\"gravity\":[0,0,-9.81],\"damping\":20,\"stiffness\":[1]}");
+    say(&c, "{\"do\":\"gravity\",\"to\":[1,0,-2.5]}");
+    say(&c, "{\"do\":\"damping\",\"value\":150}");
+    say(&c, "{\"do\":\"stiffness\",\"value\":2.5}");
+    await_status(&other, "\"body\":{\"gravity\":[1,0,-2.5],\"damping\":150,\"stiffness\":[2.5]}");
+    await_status(&other, "\"step_parts\":");
+    say(&other, "{\"do\":\"stiffness\",\"value\":0.5,\"material\":0}");
+    await_status(&c, "\"stiffness\":[0.5]");
+    say(&c, "{\"do\":\"stiffness\",\"value\":9}");
+    assert_non_null(strstr(await_text(&c, "note"), "0.1 to 4"));
+    say(&c, "{\"do\":\"stiffness\",\"value\":1,\"material\":7}");
+    assert_non_null(strstr(await_text(&c, "note"), "no material 7"));
+    say(&c, "{\"do\":\"gravity\"}");
+    say(&c, "{\"do\":\"damping\"}");
+    say(&c, "{\"do\":\"stiffness\"}");
+    await_status(&other, "\"body\":{\"gravity\":[0,0,-9.81],\"damping\":20,\"stiffness\":[1]}");
+    close_client(&c);
+    close_client(&other);
+    end_serving(&s);
+}
+
 static void saves_where_it_may(void **unused) {
     (void)unused;
     char folder[256];
@@ -524,6 +553,7 @@ int main(void) {
                                        cmocka_unit_test(a_reset_takes_instruments_out_of_hands),
                                        cmocka_unit_test(a_tool_that_tissue_stops_says_so),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
+                                       cmocka_unit_test(gravity_damping_and_stiffness_are_set),
                                        cmocka_unit_test(saves_where_it_may),
                                        cmocka_unit_test(shows_why_it_stopped_and_begins_again),
                                        cmocka_unit_test(tells_when_it_ends)};

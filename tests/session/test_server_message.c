@@ -58,6 +58,18 @@ static void examples_of_the_page_are_understood(void **unused) {
     assert_true(wish.axis == 2 && wish.index == 40);
     assert_string_equal(good("{\"do\":\"load\",\"name\":\"uterus-1.checkpoint\"}").name,
                         "uterus-1.checkpoint");
+    wish = good("{\"do\":\"gravity\",\"to\":[0,0.5,-9.81]}");
+    assert_int_equal(wish.kind, LAR_WISH_GRAVITY);
+    assert_true(wish.valued && wish.point[1] == 0.5 && wish.point[2] == -9.81);
+    assert_false(good("{\"do\":\"gravity\"}").valued);
+    wish = good("{\"do\":\"damping\",\"value\":250}");
+    assert_true(wish.kind == LAR_WISH_DAMPING && wish.valued && wish.value == 250);
+    assert_false(good("{\"do\":\"damping\"}").valued);
+    wish = good("{\"do\":\"stiffness\",\"value\":0.5,\"material\":2}");
+    assert_true(wish.kind == LAR_WISH_STIFFNESS && wish.valued && wish.value == 0.5);
+    assert_int_equal(wish.material, 2);
+    wish = good("{\"do\":\"stiffness\"}");
+    assert_true(!wish.valued && wish.material == -1);
     /* Escapes are characters like others. */
     assert_int_equal(good("{\"\\u0064o\":\"pl\\u0061y\"}").kind, LAR_WISH_PLAY);
 }
@@ -105,7 +117,14 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":.5}", "a number"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":5.}", "a number"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":5e}", "a number"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":-1}", "between 0 and 100"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":-1}", "between 0 and 1e+06"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":101}", "between 0.001 and 100"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"gravity\",\"to\":[0,0]}", "array of 3"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"gravity\",\"to\":[0,0,-1001]}", "between -1000 and 1000"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"gravity\",\"value\":1}", "gravity has no key value"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"damping\",\"value\":-1}", "between 0 and"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"damping\",\"material\":1}", "damping has no key material"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"stiffness\",\"value\":1,\"material\":0.5}", "whole"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":1e-9}", "0.001"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pace\",\"value\":[1]}", "a number"},
         {LAR_CLOSE_POLICY, "{\"do\":\"grab\",\"hand\":4,\"point\":[0,0,0]}", "between 0 and 3"},

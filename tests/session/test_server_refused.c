@@ -93,6 +93,9 @@ static void who_may_only_watch_does_nothing_else(void **unused) {
                                        "{\"do\":\"load\"}",
                                        "{\"do\":\"replay\"}",
                                        "{\"do\":\"seek\",\"time\":0}",
+                                       "{\"do\":\"gravity\"}",
+                                       "{\"do\":\"damping\",\"value\":1}",
+                                       "{\"do\":\"stiffness\",\"value\":1}",
                                        "{\"do\":\"tool\",\"tool\":0,\"position\":[5,5,5]}",
                                        "{\"do\":\"grab\",\"hand\":0,\"point\":[0,0,0]}"};
     static const char *const paths[] = {"/socket?token=for-the-public",

@@ -202,7 +202,7 @@ static void release(implicit *body) {
 static bool begin(implicit *body, newmark_mass kind) {
     const lar_model *model = body->model;
     double gravity[3];
-    lar_gravity_at(model, 0, gravity);
+    lar_gravity_at(model, NULL, 0, gravity);
     for (int f = 0; f < model->fix_count; f++)
         for (int32_t n = 0; n < model->fix[f].nodes.count; n++)
             for (int i = 0; i < 3; i++)

@@ -1,4 +1,5 @@
 /* The viewer: puts the parts together and runs the loop of animation frames. */
+import { BodyCard } from './cards/bodycard';
 import { Colours } from './cards/colours';
 import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
@@ -49,6 +50,7 @@ function start(): void {
             panel.setHello(hello);
             transport.setHello(hello);
             saved.setHello(hello);
+            body.setHello(hello);
             inside.setHello(hello);
             measure.setHello(hello);
             plots.setHello(hello);
@@ -88,6 +90,7 @@ function start(): void {
         status(status) {
             transport.update(status);
             saved.update(status);
+            body.update(status);
             replay.update(status);
             hints.silence(replay.shown || trouble.shown || measure.press !== 'pull');
             panel.update(status);
@@ -143,6 +146,7 @@ function start(): void {
     });
     const toolCard = new ToolCard(instrument);
     const saved = new SavedCard(session);
+    const body = new BodyCard(session, note);
     const replay = new ReplayBar(session);
     const transport = new Transport(session, help, replay);
     const measure = new MeasureCard(session, view, note);
@@ -153,7 +157,7 @@ function start(): void {
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, measure, used);
     listenToKeys({
-        view, hand, instrument, transport, replay, saved, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
+        view, hand, instrument, transport, replay, saved, body, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
     });
 
     const edges = element<HTMLInputElement>('edges');

@@ -29,6 +29,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get reading() { return { node: measure.node, element: measure.elementNumber }; },
         get measured() { return measure.distance; },
         get scan() { return scan.shown; },
+        get body() { return session.status?.body ?? null; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
         get others() { return view.others.shown; },

@@ -285,6 +285,32 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await v.until(() => window.lariat.others === 0, undefined, 20000);
 });
 
+test('gravity pulls the organ down, a stiffer one gives less, and other viewers see it', async () => {
+    await fresh();
+    const other = await openPage(browser, engine.url);
+    await v.page.bringToFront();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('0');
+    await v.page.getByLabel('towards').selectOption('-z');
+    await v.page.locator('#gravity').fill('15');
+    await v.until(() => window.lariat.displacement > 1e-3, undefined, 20000);
+    await v.until(() => window.lariat.body.gravity[2] === -15);
+    await v.page.locator('#damping').fill('0.5');
+    await v.page.waitForTimeout(1500);
+    const sagged = await v.get('displacement');
+    await v.page.locator('#stiffness').fill('1');
+    await v.until((soft) => window.lariat.body.stiffness.every((factor) => factor === 4) && window.lariat.displacement < 0.6 * soft, sagged, 20000);
+    await v.shot('13-body');
+    await other.page.bringToFront();
+    await other.until(() => window.lariat.body.stiffness[0] === 4 && document.getElementById('body-short').textContent === 'changed');
+    await other.close();
+    await v.page.bringToFront();
+    await v.page.getByRole('button', { name: 'As the scene' }).click();
+    await v.until(() => window.lariat.body.gravity[2] === 0 && window.lariat.body.stiffness[0] === 1);
+    await v.page.locator('#body-card').evaluate((card) => (card.open = false));
+    assert.equal(await v.get('state'), 'playing');
+});
+
 test('values of a node and an element are those of the engine', async () => {
     await fresh();
     await v.page.locator('#picture').focus();
@@ -332,6 +358,7 @@ test('who opens the second address can only watch', async () => {
         socket.onmessage = ({ data }) => typeof data === 'string' && /"note"/.test(data) && done(data);
     }));
     assert.match(answer, /may only watch/);
+    assert.equal(await w.page.locator('#gravity').isDisabled(), true);
     assert.equal(await w.get('state'), 'playing');
     await w.close();
     await own.end();

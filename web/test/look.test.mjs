@@ -371,3 +371,84 @@ test('a video is filmed and saved', async () => {
     assert.ok(data.includes(Buffer.from([0x1f, 0x43, 0xb6, 0x75])), 'pictures are in it');
     await v.close();
 });
+
+const within = (a, b, by) => assert.ok(Math.abs(a - b) < by, `${a} is not ${b}`);
+
+test('gravity, damping and stiffness are set by slider and by keyboard, and go back', async (t) => {
+    const own = await mock({ organs: 'halves' });
+    t.after(() => own.close());
+    const { body } = own.state;
+    const v = await openPage(browser, own.url);
+    const other = await openPage(browser, own.url);
+    await v.page.bringToFront();
+    const card = v.page.locator('#body-card');
+    const text = (id) => v.page.locator(`#${id}`).innerText();
+    assert.equal(await card.evaluate((it) => it.open), false);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('0');
+    assert.equal(await card.evaluate((it) => it.open), true);
+    assert.equal(await v.page.evaluate(() => document.activeElement.id), 'gravity');
+    assert.equal(await text('gravity-text'), '9.81 m/s²');
+    assert.equal(await text('damping-text'), '4 1/s');
+    assert.equal(await text('stiffness-text'), '× 1.00');
+    assert.equal(await v.page.locator('#gravity-direction').inputValue(), '-z');
+    for (const width of [390, 1024]) {
+        await v.page.setViewportSize({ width, height: 780 });
+        await v.page.locator('#body-reset').scrollIntoViewIfNeeded();
+        await v.page.waitForTimeout(150);
+        await v.shot(`body-${width}`);
+    }
+    await v.page.setViewportSize({ width: 1000, height: 640 });
+
+    // Arrow keys move the slider, and not the picture.
+    const eye = await v.get('distance');
+    await v.page.locator('#gravity').focus();
+    await v.page.keyboard.press('ArrowRight');
+    await v.until(() => window.lariat.body.gravity[2] < -9.9);
+    within(await v.get('distance'), eye, 1e-6);
+    await v.page.locator('#gravity').fill('5');
+    await v.until(() => window.lariat.body.gravity[2] === -5);
+    await v.page.getByLabel('towards').selectOption('+x');
+    await v.until(() => window.lariat.body.gravity[0] === 5);
+    assert.deepEqual(body.gravity.map(Math.abs), [5, 0, 0]);
+    await v.page.getByLabel('towards').selectOption('off');
+    await v.until(() => window.lariat.body.gravity[0] === 0);
+    assert.equal(await text('gravity-text'), 'off');
+    await v.page.getByLabel('towards').selectOption('-y');
+    await v.until(() => window.lariat.body.gravity[1] < -9);
+
+    await v.page.locator('#damping').fill('0.5');
+    await v.until(() => window.lariat.body.damping === 25);
+    await v.page.locator('#stiffness').fill('1');
+    await v.until(() => window.lariat.body.stiffness.every((factor) => factor === 4));
+    assert.equal(await text('body-short'), 'changed');
+    await v.page.locator('#stiffness-of').selectOption('tubes');
+    await v.page.locator('#stiffness').fill('0');
+    await v.until(() => window.lariat.body.stiffness[1] === 0.1);
+    assert.equal(body.stiffness[0], 4);
+    await v.page.locator('#stiffness-of').selectOption('all');
+    assert.equal(await text('stiffness-text'), 'mixed');
+    await other.until(() => document.getElementById('body-short').textContent === 'changed');
+    within(Number(await other.page.locator('#damping').inputValue()), 0.5, 0.01);
+
+    // Dragged through many values: few messages, and the last one counts.
+    const before = own.state.settings;
+    const began = Date.now();
+    const box = await v.page.locator('#damping').boundingBox();
+    await v.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await v.page.mouse.down();
+    for (let i = 0; i <= 60; i += 20) await v.page.mouse.move(box.x + box.width * (0.5 + i / 150), box.y + box.height / 2, { steps: 20 });
+    await v.page.mouse.up();
+    await v.page.waitForTimeout(300);
+    const [sent, most] = [own.state.settings - before, (Date.now() - began) / 70 + 2];
+    assert.ok(sent > 0 && sent < most, `${sent} messages, ${most} may be`);
+    await v.until((shown) => Math.abs(window.lariat.body.damping - shown) < 1e-9, parseFloat(await text('damping-text')));
+
+    await v.page.getByRole('button', { name: 'As the scene' }).click();
+    await v.until(() => document.getElementById('body-short').textContent === '');
+    assert.deepEqual(body, { gravity: [0, 0, -9.81], damping: 4, stiffness: [1, 1] });
+    await v.until(() => document.getElementById('gravity-text').textContent === '9.81 m/s²');
+    assert.deepEqual(own.faults, []);
+    await other.close();
+    await v.close();
+});

@@ -99,6 +99,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
         slices: 0, // that were asked for
         late: 0, energies: 0, // answers that were; questions for energies
+        body: { gravity: [0, 0, -9.81], damping: 4, stiffness: Array(materials).fill(1) }, settings: 0, // and how often they were set
         refused: [], // what those who may only watch have asked for
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
@@ -185,6 +186,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
             { name: 'processor', number: 32, title: 'processor', unit: '' },
         ],
         saves: true, hand_force: 5, tool_speed: 1, watches: false,
+        body: { gravity: [0, 0, -9.81], gravity_varies: false, damping: 4, stiffness_min: 0.1, stiffness_max: 4 },
     });
     const bins = (...held) => Array.from({ length: 40 }, (_, i) => held.find(([bin]) => bin === i)?.[1] ?? 0);
     const status = () => ({
@@ -196,7 +198,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
         recording: state.recording, recording_lost: state.recordingLost ?? '', lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
-        recoveries: state.recoveries, recovery: state.recovery,
+        recoveries: state.recoveries, recovery: state.recovery, body: state.body,
         placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true, grasp: 0 }
@@ -417,6 +419,9 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                     say({ kind: 'saved', what: 'checkpoint', name: state.saved.at(-1) });
                 },
                 load: () => now.set(rest),
+                gravity: () => (state.settings++, state.body.gravity = m.to ?? [0, 0, -9.81]),
+                damping: () => (state.settings++, state.body.damping = m.value ?? 4),
+                stiffness: () => (state.settings++, state.body.stiffness.forEach((_, i, all) => m.material === undefined || m.material === i ? (all[i] = m.value ?? 1) : 0)),
                 replay() {
                     state.replay = m.name ? { name: m.name, time: 0, length: 2 } : null;
                 },

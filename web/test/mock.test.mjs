@@ -151,7 +151,7 @@ test('who may only watch sees everything and is offered nothing that the engine 
         const v = await openPage(browser, own.url + address);
         assert.ok(await v.get('watches'));
         await v.page.getByText('only watching').waitFor({ timeout: 3000 });
-        for (const id of ['play', 'step', 'reset', 'record', 'save', 'load', 'pace'])
+        for (const id of ['play', 'step', 'reset', 'record', 'save', 'load', 'pace', 'gravity', 'gravity-direction', 'damping', 'stiffness', 'body-reset'])
             assert.equal(await v.page.locator(`#${id}`).isDisabled(), true, id);
         assert.equal(await v.page.locator('#ask').isDisabled(), false);
         assert.equal(await v.page.locator('#hint').innerText(), 'Drag to look around, wheel to zoom');
@@ -162,7 +162,7 @@ test('who may only watch sees everything and is offered nothing that the engine 
         await v.until((n) => window.lariat.pictures > n + 2, pictures);
         assert.equal(await v.get('hand'), 'free');
         await v.page.locator('#picture').focus();
-        for (const key of ['Space', '.', 'r', 'j', 'c', 's', 'v', 'p', '[', 'x', ',']) await v.page.keyboard.press(key);
+        for (const key of ['Space', '.', 'r', 'j', 'c', 's', 'v', 'p', '[', 'x', ',', '0']) await v.page.keyboard.press(key);
         await v.page.getByText('This page may only watch').first().waitFor({ timeout: 3000 });
         await v.page.locator('#saved').evaluate((card) => (card.open = true));
         assert.equal(await v.page.locator('#saved-states button').first().isDisabled(), true);

@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'link/protocol', 'dom',
+        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -373,4 +373,22 @@ test('a distance is told with what it was at rest', () => {
 test('the panel says into how many parts steps are divided', () => {
     assert.equal(parts.panel.division(1), 'none');
     assert.equal(parts.panel.division(4), 'step divided by 4');
+});
+
+test('sliders of the body: what they say is what they show, and nothing is lost on the way', () => {
+    const { dampingAt, placeOfDamping, factorAt, placeOfFactor, directionOf } = parts.bodycard;
+    assert.equal(dampingAt(0, 200), 0);
+    assert.equal(dampingAt(1, 200), 200);
+    for (const damping of [0, 0.5, 4, 33, 200]) assert.equal(dampingAt(placeOfDamping(damping, 200), 200), damping);
+    assert.equal(placeOfDamping(900, 200), 1);
+    assert.equal(factorAt(0, 0.1, 4), 0.1);
+    assert.equal(factorAt(1, 0.1, 4), 4);
+    for (const factor of [0.1, 0.25, 1, 1.5, 4]) assert.equal(factorAt(placeOfFactor(factor, 0.1, 4), 0.1, 4), factor);
+    assert.equal(factorAt(placeOfFactor(1.02, 0.1, 4), 0.1, 4), 1, 'near 1 is 1');
+    assert.equal(directionOf([0, 0, -3], [0, 0, -9.81]), '-z');
+    assert.equal(directionOf([0, 2, 0], [0, 0, -9.81]), '+y');
+    assert.equal(directionOf([0, 0, 0], [0, 0, -9.81]), 'off');
+    assert.equal(directionOf([1, 0, -1], [2, 0, -2]), 'scene');
+    assert.equal(directionOf([1, 0, -1], [0, 0, -2]), 'other');
+    assert.equal(directionOf([1, 0, -1], [0, 0, 0]), 'other');
 });

@@ -10,7 +10,7 @@ export function division(parts: number): string {
 type Row = [name: string, title: string, value: (s: Status) => string, bad?: (s: Status) => boolean];
 
 const DIVIDED =
-    'Strained tissue and tools that press hard need shorter steps: while they do, every step is ' +
+    'Strained tissue, tools that press hard and organs made stiffer need shorter steps: while they do, every step is ' +
     'computed in several parts, which takes as many times as long.';
 
 const ANSWER =

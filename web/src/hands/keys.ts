@@ -1,5 +1,6 @@
 /* The keyboard: everything that the mouse can do. The list for people is in index.html (#help). */
 import { element } from '../dom';
+import type { BodyCard } from '../cards/bodycard';
 import type { Colours } from '../cards/colours';
 import type { Hand } from './hand';
 import type { Instrument } from './instrument';
@@ -22,6 +23,7 @@ export interface Served {
     transport: Transport;
     replay: ReplayBar;
     saved: SavedCard;
+    body: BodyCard;
     colours: Colours;
     panel: Panel;
     inside: InsideCard;
@@ -69,6 +71,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
         s: () => s.transport.saveNow(),
         v: () => s.transport.loadLast(),
         o: () => s.saved.toggle(),
+        0: () => s.body.open(),
         x: () => s.replay.leave(),
         ',': () => s.replay.seekBy(-0.25),
         ';': () => s.replay.seekBy(0.25),

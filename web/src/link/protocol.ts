@@ -44,6 +44,14 @@ export interface Hello {
     saves: boolean;
     hand_force: number;
     tool_speed: number;
+    body?: {
+        // as the scene has it; gravity at the start where it varies
+        gravity: [number, number, number];
+        gravity_varies: boolean;
+        damping: number; // [1/s]
+        stiffness_min: number; // factors of it
+        stiffness_max: number;
+    };
     watches: boolean; // this viewer may look, and do nothing to the run
 }
 
@@ -102,6 +110,7 @@ export interface Status {
     viewers: number;
     saved: string[]; // saved states, oldest first
     recordings: string[];
+    body?: { gravity: [number, number, number]; damping: number; stiffness: number[] }; // now; stiffness by material
     replay?: { name: string; time: number; length: number }; // what is played, in simulated seconds
     tools: ToolStatus[];
 }
@@ -336,4 +345,7 @@ export type Request =
     | { do: 'record'; on: boolean }
     | { do: 'load'; name?: string }
     | { do: 'replay'; name?: string }
-    | { do: 'seek'; time: number };
+    | { do: 'seek'; time: number }
+    | { do: 'gravity'; to?: Point }
+    | { do: 'damping'; value?: number }
+    | { do: 'stiffness'; value?: number; material?: number };

@@ -1,0 +1,26 @@
+/* One change of gravity, damping or stiffness: what is asked of a session, recorded and replayed.
+ */
+#ifndef LAR_SESSION_SETTING_H
+#define LAR_SESSION_SETTING_H
+
+#include "base/error.h"
+
+/* The numbers stand in recordings. */
+typedef enum lar_setting_kind {
+    LAR_SETTING_GRAVITY = 0,   /* value[0..2] */
+    LAR_SETTING_MODEL_GRAVITY, /* as the model says */
+    LAR_SETTING_DAMPING,       /* value[0] */
+    LAR_SETTING_STIFFNESS,     /* value[0], of `material`; -1: all */
+    LAR_SETTING_KINDS
+} lar_setting_kind;
+
+typedef struct lar_setting {
+    lar_setting_kind kind;
+    int32_t material;
+    double value[3];
+} lar_setting;
+
+lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
+                             lar_error *error);
+
+#endif
