@@ -209,8 +209,8 @@ double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b
 /* Corners of two faces, seen from one of the first. */
 typedef struct corners {
     double a[4][3], b[4][3];
-    int shared, common[4];  /* nodes, by their corners in `a`, */
-    bool both[2][4];        /* which corners these are */
+    int shared, common[4]; /* nodes, by their corners in `a`, */
+    bool both[2][4];       /* which corners these are */
 } corners;
 
 static void see(const double (*x)[3], const int32_t a[4], const int32_t b[4], corners *c) {

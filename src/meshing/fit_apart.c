@@ -20,7 +20,8 @@ static const double GAP = 0.01, LEASH = 0.5;
  * cross: they may be the next. */
 static const double WARY = 0.15;
 enum { RINGS = 2, LOCAL = 3 }; /* the third time in a round all are */
-/* Where a smaller part of the faces than this cross once more, only places around them are added. */
+/* Where a smaller part of the faces than this cross once more, only places around them are added.
+ */
 static const double FEW = 1e-3;
 /* The cosine between normals of neighbours that look the same way. */
 static const double ALIKE = 0.8;
@@ -224,7 +225,8 @@ static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *err
 }
 
 /* What is watched from now on. Where a body has but few places to cross, more of them are watched
- * each time; another one's are watched everywhere at once: a round that is done again costs more. */
+ * each time; another one's are watched everywhere at once: a round that is done again costs more.
+ */
 static lar_status watch_more(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
     const size_t nodes = (size_t)work->mesh->node_count;

@@ -67,18 +67,18 @@ typedef struct lar_fit_near {
 /* What keeps outer faces apart (fit_apart.c). */
 typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
-    int32_t *start, *around;    /* per node: face * 4 + corner */
-    bool *crosses;              /* per face */
-    bool *watched;              /* per node: its faces must stay clear of others */
-    bool any, all;              /* of nodes */
-    bool *strict;               /* per face: clear of neighbours that look the same way too */
-    bool *ring;                 /* per node: of faces that cross, and around them */
-    int tries;                  /* of this round */
-    int32_t *near_start;        /* per face with a watched node: the faces that it may meet */
+    int32_t *start, *around; /* per node: face * 4 + corner */
+    bool *crosses;           /* per face */
+    bool *watched;           /* per node: its faces must stay clear of others */
+    bool any, all;           /* of nodes */
+    bool *strict;            /* per face: clear of neighbours that look the same way too */
+    bool *ring;              /* per node: of faces that cross, and around them */
+    int tries;               /* of this round */
+    int32_t *near_start;     /* per face with a watched node: the faces that it may meet */
     lar_fit_near *near;
-    double (*from)[3];          /* per node: where it was before this round, */
-    bool *awake;                /* and whether it was worth moving */
-    double *way;                /* per face: all that its nodes went since these lists were made */
+    double (*from)[3]; /* per node: where it was before this round, */
+    bool *awake;       /* and whether it was worth moving */
+    double *way;       /* per face: all that its nodes went since these lists were made */
 } lar_fit_apart;
 
 typedef struct lar_fit_work {

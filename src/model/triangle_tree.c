@@ -339,7 +339,8 @@ typedef struct waiting {
 static double leaf_box_distance(const leaf_triangle *leaf, const double p[3]) {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-        const double a = leaf->at[0][i] - p[i], b = leaf->at[1][i] - p[i], c = leaf->at[2][i] - p[i];
+        const double a = leaf->at[0][i] - p[i], b = leaf->at[1][i] - p[i],
+                     c = leaf->at[2][i] - p[i];
         const double away = larger(larger(smaller(smaller(a, b), c), -larger(larger(a, b), c)), 0);
         sum += away * away;
     }
