@@ -4,12 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
 #include "cli/run_report.h"
+
+enum { PATH_SIZE = 4096 };
 
 typedef struct run_settings {
     const char *scene, *out, *resume, *save;
@@ -109,16 +112,44 @@ static uint64_t next_frame(const run *r) {
 }
 
 /* What a run leaves for the next one: its state, beside the frames. */
-static int save_state(run *r) {
+static int state_path(run *r, char path[PATH_SIZE]) {
     const char *slash = strrchr(r->settings.scene, '/');
     const char *name = slash ? slash + 1 : r->settings.scene, *dot = strrchr(name, '.');
-    char path[4096];
-    lar_error error;
-    int length = snprintf(path, sizeof path, "%s/%.*s.checkpoint", r->settings.out,
+    int length = snprintf(path, PATH_SIZE, "%s/%.*s.checkpoint", r->settings.out,
                           (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)), name);
-    if (length < 0 || (size_t)length >= sizeof path)
-        return fail(r, CLI_FAILED, "the name of the folder for results is too long");
+    return length >= 0 && length < PATH_SIZE
+               ? CLI_DONE
+               : fail(r, CLI_FAILED, "the name of the folder for results is too long");
+}
+
+static int save_state(run *r) {
+    char path[PATH_SIZE];
+    lar_error error;
+    int status = state_path(r, path);
+    if (status) return status;
     return lar_simulation_save(r->simulation, path, &error) ? fail_by(r, &error) : CLI_DONE;
+}
+
+/* A run that ends early leaves no report and no state of an earlier one. The state that it goes on
+ * from stays until there is another one. */
+static int forget_earlier(run *r) {
+    char state[PATH_SIZE], report[PATH_SIZE + 16];
+    int status = state_path(r, state);
+    if (status) return status;
+    snprintf(report, sizeof report, "%s/run.json", r->settings.out);
+    const char *path[2] = {report, state};
+    for (int i = 0; i < 2; i++) {
+        struct stat file, from;
+        if (r->settings.resume && stat(r->settings.resume, &from) == 0 &&
+            stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino)
+            continue;
+        if (unlink(path[i]) != 0 && errno != ENOENT)
+            return cli_complain(&cli_run, CLI_FAILED,
+                                "%s: is of an earlier run and cannot be removed: %s; check the "
+                                "folder and its permissions, or choose another one",
+                                path[i], strerror(errno));
+    }
+    return CLI_DONE;
 }
 
 static run_report report_of(const run *r) {
@@ -137,7 +168,7 @@ static run_report report_of(const run *r) {
 }
 
 static int write_run_json(run *r, const run_report *report) {
-    char path[4096], part[4096 + 8];
+    char path[PATH_SIZE], part[PATH_SIZE + 8];
     int length = snprintf(path, sizeof path, "%s/run.json", r->settings.out);
     if (length < 0 || (size_t)length >= sizeof path)
         return fail(r, CLI_FAILED, "the name of the folder for results is too long");
@@ -294,6 +325,7 @@ static int compute(run *r) {
         (r->settings.surface ? lar_results_open_surface : lar_results_open)(
             r->settings.out, r->simulation, &r->results, &error))
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status && r->settings.out) status = forget_earlier(r);
     if (!status) {
         cli_catch_stop();
         status = advance(r);

@@ -131,6 +131,7 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
     if (!status && !(comm = lar_calloc(1, sizeof *comm)))
         status = lar_fail_memory(error, sizeof *comm, "communication");
     if (status) {
+        if (options->team) lar_comm_team_give_up(options->team, options->self);
         if (options->listener >= 0) close(options->listener);
         return status;
     }
@@ -138,6 +139,7 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
     comm->options = *options;
     comm->verdict = &comm->own_verdict;
     status = open_parts(comm, error);
+    if (status && options->team) lar_comm_team_give_up(options->team, options->self);
     if (status)
         lar_comm_close(comm);
     else

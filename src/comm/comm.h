@@ -71,6 +71,8 @@ lar_comm_options lar_comm_options_default(void);
  * closed. */
 lar_status lar_comm_team_create(int32_t count, lar_comm_team **team, lar_error *error);
 void lar_comm_team_destroy(lar_comm_team *team);
+/* Nobody shall wait for a processor that could not open. The first verdict stands. */
+void lar_comm_team_give_up(lar_comm_team *team, int32_t processor);
 
 /* Opens a listening socket for processor zero before the processes start. `address` is
  * "host:port", port 0 takes a free one; *bound gets the address to give to the others. The caller

@@ -50,6 +50,13 @@ void lar_comm_team_destroy(lar_comm_team *team) {
     free(team);
 }
 
+void lar_comm_team_give_up(lar_comm_team *team, int32_t processor) {
+    uint64_t nobody = 0;
+    __atomic_compare_exchange_n(&team->verdict, &nobody,
+                                lar_comm_verdict(processor, LAR_LOSS_FAILED), false,
+                                __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+}
+
 static lar_status threads_open(lar_comm *comm, lar_error *error) {
     lar_comm_team *team = comm->options.team;
     int32_t self = comm->options.self;
@@ -66,10 +73,7 @@ static lar_status threads_open(lar_comm *comm, lar_error *error) {
     comm->verdict = &team->verdict;
     comm->waiting = team->waiting;
     comm->receive = team->receive[self] = lar_calloc_aligned(bytes ? bytes : 8, 1);
-    if (!comm->receive) {
-        lar_comm_abort(comm);
-        return lar_fail_memory(error, bytes, "a receive buffer");
-    }
+    if (!comm->receive) return lar_fail_memory(error, bytes, "a receive buffer");
     team->half[self] = comm->options.receive_bytes;
     team->identity[self] = comm->options.identity;
     __atomic_fetch_add(&team->arrived, 1, __ATOMIC_ACQ_REL);

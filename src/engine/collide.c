@@ -20,8 +20,8 @@ typedef struct touching {
     double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
 } touching;
 
-static void place_of_node(const lar_collide *collide, const lar_state *state, int32_t node,
-                          double x[3], double v[3]) {
+static inline void place_of_node(const lar_collide *collide, const lar_state *state, int32_t node,
+                                 double x[3], double v[3]) {
     const lar_contact_view *view = &collide->view;
     if (view->place) {
         const double *place = view->place[view->slot[node]];
@@ -55,7 +55,8 @@ static void place_of(const lar_collide *collide, const lar_state *state, int32_t
 static void corners_of(const lar_collide *collide, const lar_state *state, int32_t face,
                        double x[4][3], double v[4][3]) {
     for (int a = 0; a < 4; a++)
-        place_of(collide, state, collide->surface->face[face].corner[a], x[a], v ? v[a] : NULL);
+        place_of_node(collide, state, collide->surface->face[face].corner[a], x[a],
+                      v ? v[a] : NULL);
 }
 
 /* The face is at least so far away: as far as the box around it. */
@@ -73,10 +74,12 @@ static double nearest_possible(const double x[3], const double corner[4][3]) {
     return sqrt(square);
 }
 
-/* Distances of a group's faces: where one need not be known, at least so much. */
+/* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct survey {
     double reach; /* of the faces for the node [m] */
     double fade;  /* by how much others than the closest may be farther away and still count [m] */
+    int32_t count;
+    int32_t entry[LAR_GROUP_FACES_MOST]; /* ascending */
     double distance[LAR_GROUP_FACES_MOST];
     double least;         /* of those within reach; INFINITY: none is */
     int32_t at;           /* the entry that it belongs to, */
@@ -96,23 +99,25 @@ static double fade_of(const lar_collide *collide, int32_t node, int32_t face) {
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
-static void survey_face(lar_collide *collide, const lar_state *state, const double x[3], int32_t f,
-                        int32_t i, survey *s) {
-    double corner[4][3], tie = tie_of(collide, f), *distance = &s->distance[i];
+/* Looks at face f, entry i. Returns its distance, or at least so much. */
+static double survey_face(lar_collide *collide, const lar_state *state, const double x[3],
+                          int32_t f, int32_t i, survey *s) {
+    double corner[4][3], tie = tie_of(collide, f);
     corners_of(collide, state, f, corner, NULL);
-    *distance = nearest_possible(x, (const double(*)[3])corner);
-    if (*distance <= s->least + s->fade + tie && *distance <= s->reach + tie) {
+    double distance = nearest_possible(x, (const double(*)[3])corner);
+    if (distance <= s->least + s->fade + tie && distance <= s->reach + tie) {
         lar_face_point point;
         collide->info.tested++;
         lar_face_closest(x, (const double(*)[3])corner, tie, &point);
-        *distance = point.distance;
-        if (*distance <= s->reach && *distance < s->least) {
-            s->least = *distance;
+        distance = point.distance;
+        if (distance <= s->reach && distance < s->least) {
+            s->least = distance;
             s->at = i;
             s->point = point;
         }
     }
-    if (*distance - s->reach < s->gap) s->gap = *distance - s->reach;
+    if (distance - s->reach < s->gap) s->gap = distance - s->reach;
+    return distance;
 }
 
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
@@ -134,19 +139,21 @@ static void survey_group(lar_collide *collide, const lar_state *state, int32_t g
                                  &collide->surface->face[face[0]]);
     s->fade = fade_of(collide, group->node, face[0]);
     s->least = s->gap = s->next = INFINITY;
-    survey_face(collide, state, x, face[first], first, s);
+    s->count = 0;
+    double distance_of_first = survey_face(collide, state, x, face[first], first, s);
     for (int32_t i = 0; i < group->count; i++) {
-        if (i == first) continue;
-        if (collide->travel >= away[i]) {
-            survey_face(collide, state, x, face[i], i, s);
+        if (i != first && collide->travel < away[i]) {
+            if (away[i] < s->next) s->next = away[i];
             continue;
         }
-        s->distance[i] = INFINITY;
-        if (away[i] < s->next) s->next = away[i];
+        s->entry[s->count] = i;
+        s->distance[s->count++] =
+            i == first ? distance_of_first : survey_face(collide, state, x, face[i], i, s);
     }
-    for (int32_t i = 0; i < group->count; i++)
-        if (s->distance[i] < INFINITY)
-            away[i] = away_until(collide->travel, s->distance[i], tie_of(collide, face[i]), s);
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k];
+        away[i] = away_until(collide->travel, s->distance[k], tie_of(collide, face[i]), s);
+    }
 }
 
 /* The closest face of a group, an entry of it. */
@@ -154,11 +161,11 @@ static int32_t choose_face(const lar_collide *collide, const lar_state *state, i
                            const double x[3], const survey *s, lar_face_point *point) {
     const lar_contact_group *group = &collide->list.group[g];
     int32_t chosen = -1;
-    for (int32_t i = 0; i < group->count; i++) {
-        int32_t f = collide->list.face[group->first + i];
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k], f = collide->list.face[group->first + i];
         double corner[4][3], tie = tie_of(collide, f);
         lar_face_point other = s->point;
-        if (!(s->distance[i] <= s->least + tie) || s->distance[i] > s->reach + tie) continue;
+        if (!(s->distance[k] <= s->least + tie) || s->distance[k] > s->reach + tie) continue;
         if (i != s->at) {
             corners_of(collide, state, f, corner, NULL);
             lar_face_closest(x, (const double(*)[3])corner, tie, &other);
@@ -261,10 +268,10 @@ static void blend(const lar_collide *collide, const lar_state *state, int32_t g,
     double upright = 1 - 50 * (1 - closest->height / closest->distance);
     double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
     touching blended = {.fading = -1};
-    for (int32_t i = 0; i < group->count && fade > 0; i++) {
-        int32_t f = collide->list.face[group->first + i];
+    for (int32_t k = 0; k < s->count && fade > 0; k++) {
+        int32_t f = collide->list.face[group->first + s->entry[k]];
         double corner[4][3], sum[4] = {0};
-        if (!(s->distance[i] < s->least + fade) ||
+        if (!(s->distance[k] < s->least + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
         corners_of(collide, state, f, corner, NULL);

@@ -73,8 +73,10 @@ static lar_status open_folder(lar_results *results, const char *folder, const la
     lar_status status = lar_series_open(&results->series, folder, name, ".vtu", error);
     if (!status && (surface || model->output.surface))
         status = lar_surface_results_open(&results->surface, folder, name, model, error);
-    free(name);
     if (!status) status = lar_folder_make(folder, error);
+    if (!status) status = lar_series_forget_earlier(&results->series, model, error);
+    if (!status) status = lar_surface_results_forget_earlier(folder, name, model, error);
+    free(name);
     if (!status) status = prepare_arrays(results, model, error);
     char *probes = status ? NULL : lar_folder_join(folder, "probes.csv");
     if (probes) status = lar_results_spare(probes, model, error);

@@ -105,7 +105,8 @@ static lar_status add_line(lar_probe_file *file, const lar_model *model, lar_sim
             print_header(line, model);
         uselocale(before);
         bool complete = !ferror(line);
-        if ((fclose(line) != 0 || !complete) && !status)
+        /* glibc 2.36 says nothing when it has no memory for the text at the end. */
+        if ((fclose(line) != 0 || !complete || !text || size == 0) && !status)
             status = lar_fail_memory(error, size, "a line of probes.csv");
     }
     if (!status) status = append(file, text, size, error);

@@ -1,9 +1,11 @@
 #include "engine/results_series.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/folder.h"
 #include "model/format/mesh_io.h"
@@ -36,19 +38,23 @@ void lar_series_clear(lar_series *series) {
     *series = (lar_series){0};
 }
 
-static void frame_ending(const lar_series *series, char ending[32]) {
-    snprintf(ending, 32, "_%06d%s", series->count, series->extension);
+static void frame_ending(const lar_series *series, int frame, char ending[32]) {
+    snprintf(ending, 32, "_%06d%s", frame, series->extension);
+}
+
+static char *frame_path(const lar_series *series, int frame) {
+    char ending[32];
+    frame_ending(series, frame, ending);
+    return path_with(series, ending);
 }
 
 char *lar_series_next(const lar_series *series) {
-    char ending[32];
-    frame_ending(series, ending);
-    return path_with(series, ending);
+    return frame_path(series, series->count);
 }
 
 lar_status lar_series_add(lar_series *series, double time, lar_error *error) {
     char ending[32];
-    frame_ending(series, ending);
+    frame_ending(series, series->count, ending);
     size_t size = strlen(series->name) + sizeof ending;
     bool room = LAR_GROW(series->file, series->file_capacity, series->count) &&
                 LAR_GROW(series->time, series->time_capacity, series->count);
@@ -66,6 +72,42 @@ lar_status lar_series_complete(lar_series *series, lar_error *error) {
     series->listed = series->count;
     return lar_pvd_write(series->list, (const char *const *)series->file, series->time,
                          series->count, error);
+}
+
+/* ---- earlier runs --------------------------------------------------------------------------- */
+
+static lar_status remove_file(const char *path, lar_error *error) {
+    if (unlink(path) == 0 || errno == ENOENT) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is of an earlier run and cannot be removed: %s; check the folder and its "
+                    "permissions, or choose another one",
+                    path, strerror(errno));
+}
+
+/* Looks whether `frame` may go, or removes it. *there: it was. */
+static lar_status forget_frame(const lar_series *series, int frame, const lar_model *model,
+                               bool removes, bool *there, lar_error *error) {
+    struct stat file;
+    char *path = frame_path(series, frame);
+    if (!path) return lar_fail_memory(error, 64, "a frame's name");
+    *there = lstat(path, &file) == 0;
+    lar_status status = LAR_OK;
+    if (*there) status = removes ? remove_file(path, error) : lar_results_spare(path, model, error);
+    free(path);
+    return status;
+}
+
+lar_status lar_series_forget_earlier(const lar_series *series, const lar_model *model,
+                                     lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int removes = 0; removes < 2; removes++) {
+        if (removes) status = remove_file(series->list, error);
+        bool there = true;
+        for (int frame = 0; there && !status; frame++)
+            status = forget_frame(series, frame, model, removes, &there, error);
+        if (status) return status;
+    }
+    return LAR_OK;
 }
 
 /* ---- what the model was read from ----------------------------------------------------------- */

@@ -24,6 +24,11 @@ lar_status lar_series_open(lar_series *series, const char *folder, const char *n
                            const char *extension, lar_error *error);
 void lar_series_clear(lar_series *series); /* idempotent; a zeroed one is fine */
 
+/* Removes list and frames of an earlier run with this name, 000000 and so on: they would look like
+ * those of a run that ends early. Nothing goes when the model was read from one of them. */
+lar_status lar_series_forget_earlier(const lar_series *series, const lar_model *model,
+                                     lar_error *error);
+
 /* Where the next frame goes; NULL without memory. The caller frees it. */
 char *lar_series_next(const lar_series *series);
 /* The next frame has been written: it belongs to the series now. */

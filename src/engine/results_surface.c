@@ -3,9 +3,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the series; the frames of the mesh have `taken` theirs. */
+static const char *name_beside(const char *taken) {
+    return strcmp(taken, "surface") == 0 ? "fine_surface" : "surface";
+}
+
+lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
+                                              const lar_model *model, lar_error *error) {
+    lar_series series;
+    lar_status status = lar_series_open(&series, folder, name_beside(taken), ".vtp", error);
+    if (!status) status = lar_series_forget_earlier(&series, model, error);
+    lar_series_clear(&series);
+    return status;
+}
+
 lar_status lar_surface_results_open(lar_surface_results *results, const char *folder,
                                     const char *taken, const lar_model *model, lar_error *error) {
-    const char *name = strcmp(taken, "surface") == 0 ? "fine_surface" : "surface";
     *results = (lar_surface_results){0};
     if (!lar_model_embedded(model, NULL)) return LAR_OK;
     lar_triangles *placed = &results->placed;
@@ -15,7 +28,7 @@ lar_status lar_surface_results_open(lar_surface_results *results, const char *fo
     results->u = lar_calloc(nodes, sizeof *results->u);
     if (!placed->vertex || !results->u)
         return lar_fail_memory(error, 24 * (vertices + nodes), "the places of the fine surface");
-    return lar_series_open(&results->series, folder, name, ".vtp", error);
+    return lar_series_open(&results->series, folder, name_beside(taken), ".vtp", error);
 }
 
 lar_status lar_surface_results_add(lar_surface_results *results, const lar_simulation *simulation,

@@ -11,6 +11,10 @@ typedef struct lar_surface_results {
     lar_triangles placed; /* its vertices are its own, the rest is the model's */
 } lar_surface_results;
 
+/* Whether or not there will be one again: see lar_series_forget_earlier. */
+lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
+                                              const lar_model *model, lar_error *error);
+
 /* Without a riding surface all of these do nothing. `taken`: the name of the frames of the mesh,
  * which stays theirs. The caller closes in any case. */
 lar_status lar_surface_results_open(lar_surface_results *results, const char *folder,

@@ -63,8 +63,9 @@ static lar_status read_header(const char *path, const lar_bytes *bytes, nifti_he
                                               lar_image_is_gzip(bytes->data, bytes->size), error);
     if (status) return status;
     size_t got = (size_t)lar_image_stream_read(&stream, &raw, sizeof raw);
-    bool damaged = stream.damaged && got < sizeof raw.one;
+    bool damaged = stream.damaged && got < sizeof raw.one, starved = stream.starved;
     lar_image_stream_close(&stream);
+    if (starved) return lar_fail_memory(error, bytes->size, path);
     if (damaged)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: the compressed data are damaged or cut short after %zu bytes; copy or "

@@ -22,6 +22,7 @@ typedef struct lar_image_stream {
     const unsigned char *at, *end;
     bool gzip;
     bool damaged;   /* the compressed data make no sense from here on */
+    bool starved;   /* there is no memory to decompress more, which then counts as damaged */
     bool ended;     /* nothing more comes */
     uint64_t given; /* bytes handed out */
     z_stream inflate;

@@ -13,6 +13,8 @@ enum {
 
 /* ---- bytes ---------------------------------------------------------------------------------- */
 
+enum { WINDOW = 1 << 16 }; /* about what zlib needs */
+
 bool lar_image_is_gzip(const unsigned char *bytes, size_t size) {
     return size >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
 }
@@ -22,7 +24,7 @@ lar_status lar_image_stream_open(lar_image_stream *stream, const char *path,
                                  lar_error *error) {
     *stream = (lar_image_stream){.path = path, .at = bytes, .end = bytes + size};
     if (gzip && inflateInit2(&stream->inflate, 16 + MAX_WBITS) != Z_OK)
-        return lar_fail_memory(error, 1 << 16, path);
+        return lar_fail_memory(error, WINDOW, path);
     stream->gzip = gzip;
     return LAR_OK;
 }
@@ -56,6 +58,7 @@ static void inflate_some(lar_image_stream *stream, unsigned char *out, uInt size
             if (stream->ended) stream->at = past_zeros(stream->at, stream->end);
         } else if (result != Z_OK) { /* also Z_BUF_ERROR: more is needed, and there is none */
             stream->ended = stream->damaged = true;
+            stream->starved = result == Z_MEM_ERROR;
         }
     }
 }
@@ -199,6 +202,7 @@ lar_status lar_image_put(lar_image *image, int64_t voxel, double value, lar_erro
 
 static lar_status cut_short(const lar_image_stream *stream, uint64_t promised, uint64_t found,
                             lar_error *error) {
+    if (stream->starved) return lar_fail_memory(error, WINDOW, stream->path);
     return lar_fail(error, LAR_ERROR_FORMAT,
                     "%s: the header promises %llu bytes of voxels, the file holds %llu%s; it "
                     "is cut short or damaged, copy or write it again",
@@ -210,6 +214,7 @@ static lar_status cut_short(const lar_image_stream *stream, uint64_t promised, u
  * header promises is damaged, or another image than the header says. */
 static lar_status check_end(lar_image_stream *stream, uint64_t promised, lar_error *error) {
     uint64_t surplus = lar_image_stream_read(stream, NULL, SURPLUS_MOST);
+    if (stream->starved) return lar_fail_memory(error, WINDOW, stream->path);
     if (stream->damaged)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: the compressed data do not fit their check sum, or end before it; the "

@@ -65,4 +65,24 @@ expect 1 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/agai
 complains 'will not be overwritten'
 expect 0 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/elsewhere"
 
+# What an earlier run left does not look like that of a later one which ends early; what other
+# scenes left stays, and so does the state that a run goes on from.
+later=$SCRATCH/later organ=$SCRATCH/organ
+expect 0 "$LARIAT" demo-model "$organ"
+expect 0 "$LARIAT" run "$scene" --steps 1 --out "$later"
+expect 0 "$LARIAT" run "$organ/uterus.yaml" --time 0.2 --out "$later"
+frames() {
+    find "$later" -name "$1_*.vtu" | wc -l
+}
+many=$(frames uterus)
+expect 0 "$LARIAT" run "$organ/uterus.yaml" --resume "$later/uterus.checkpoint" --steps 1 \
+    --out "$later"
+[ "$(frames uterus)" -lt "$many" ] || fail "frames of a longer run"
+[ "$(frames beam)" -gt 0 ] || fail "another scene's frames are gone"
+sed 's/force: \[[^]]*\]/force: [40, 100, 120]/' "$organ/uterus.yaml" >"$organ/broken"
+mv "$organ/broken" "$organ/uterus.yaml"
+expect 3 "$LARIAT" run "$organ/uterus.yaml" --time 0.2 --out "$later"
+[ ! -e "$later/run.json" ] || fail "run.json of an earlier run"
+[ ! -e "$later/uterus.checkpoint" ] || fail "the state of an earlier run"
+
 finish "full disks and wrong folders are reported"

@@ -89,6 +89,24 @@ static void another_backend_or_number_is_refused(void **state) {
     mix(f, odd, "a processor says that it is number 1 of 4, processor 0 expects 1 to 2 of 3");
 }
 
+/* Before it has met anybody: the others of the team do not wait for it until their time is over. */
+static void nobody_waits_for_one_that_cannot_open(void **state) {
+    (void)state;
+    fleet f = {
+        .backend = "threads", .count = 2, .bytes = 64, .start_timeout = 600, .body = nothing};
+    fleet_prepare(&f);
+    fleet odd = f;
+    odd.bytes = 4; /* no multiple of 8 */
+    fleet_member members[2] = {{.of = &f, .self = 0}, {.of = &odd, .self = 1}};
+    for (int p = 0; p < 2; p++)
+        assert_int_equal(pthread_create(&members[p].thread, NULL, fleet_thread, &members[p]), 0);
+    for (int p = 0; p < 2; p++) pthread_join(members[p].thread, NULL);
+    lar_comm_team_destroy(f.team);
+    assert_non_null(strstr(members[1].text, "a receive buffer of 4 bytes"));
+    assert_non_null(strstr(members[0].text, "processor 1"));
+    assert_null(strstr(members[0].text, "did not start"));
+}
+
 /* A version whose first words were other: what follows them is not read. */
 static void another_protocol_is_refused(void **state) {
     (void)state;
@@ -112,6 +130,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(another_model_or_schedule_is_refused),
                                        cmocka_unit_test(another_version_is_refused),
                                        cmocka_unit_test(another_backend_or_number_is_refused),
+                                       cmocka_unit_test(nobody_waits_for_one_that_cannot_open),
                                        cmocka_unit_test(another_protocol_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <libxml/parser.h>
 
 #include "model/format/vtu_array.h"
+#include "model/format/xml_starved.h"
 
 static const char *attribute(const xmlNode *node, const char *name) {
     const xmlAttr *found = xmlHasProp(node, (const xmlChar *)name);
@@ -33,14 +34,21 @@ xmlNode *lar_vtk_xml_child(xmlNode *node, const char *name) {
 
 static lar_status parse_xml(lar_vtk_xml *file) {
     xmlInitParser();
+    lar_xml_watch watch;
+    lar_xml_watch_begin(&watch);
     xmlParserCtxt *context = xmlNewParserCtxt();
-    if (!context) return lar_fail_memory(file->error, sizeof *context, file->path);
+    if (!context) {
+        lar_xml_watch_end(&watch);
+        return lar_fail_memory(file->error, sizeof *context, file->path);
+    }
     /* No entity substitution, no network, and without XML_PARSE_HUGE the limits stay on. */
     file->document = xmlCtxtReadMemory(context, file->split.xml ? file->split.xml : "",
                                        (int)file->split.xml_length, NULL, NULL,
                                        XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING);
     lar_status status = LAR_OK;
-    if (!file->document) {
+    if (lar_xml_watch_end(&watch)) {
+        status = lar_fail_memory(file->error, file->split.xml_length, file->path);
+    } else if (!file->document) {
         const char *message =
             context->lastError.message ? context->lastError.message : "no XML element found";
         int length = (int)strcspn(message, "\n");

@@ -119,20 +119,22 @@ static bool read_block_header(const lar_vtu_array_text *array, byte_source *sour
            !__builtin_add_overflow(before, *last_size, total);
 }
 
-/* One zlib stream of `packed` bytes into exactly `size` bytes. `scratch` holds base64 output. */
-static bool inflate_block(byte_source *source, size_t packed, unsigned char *scratch,
-                          unsigned char *out, size_t size) {
+/* One zlib stream of `packed` bytes into exactly `size` bytes. `scratch` holds base64 output.
+ * Returns what zlib does. */
+static int inflate_block(byte_source *source, size_t packed, unsigned char *scratch,
+                         unsigned char *out, size_t size) {
     const unsigned char *from = source->at;
     if (source->base64) {
-        if (!source_read(source, scratch, packed)) return false;
+        if (!source_read(source, scratch, packed)) return Z_DATA_ERROR;
         from = scratch;
     } else {
-        if (packed > (size_t)(source->end - source->at)) return false;
+        if (packed > (size_t)(source->end - source->at)) return Z_DATA_ERROR;
         source->at += packed;
     }
     uLongf got = size;
     uLong used = packed;
-    return uncompress2(out, &got, from, &used) == Z_OK && got == size && used == packed;
+    int result = uncompress2(out, &got, from, &used);
+    return result == Z_OK && (got != size || used != packed) ? Z_DATA_ERROR : result;
 }
 
 /* The compressed sizes, each checked against the bytes there. False when they cannot be. */
@@ -182,7 +184,10 @@ static lar_status unpack(const lar_vtu_array_text *array, size_t size, unsigned 
     size_t filled = 0;
     for (uint64_t i = 0; i < blocks && !status; i++) {
         size_t want = (size_t)(i + 1 < blocks ? block_size : last_size);
-        if (!inflate_block(&source, packed[i], scratch, data + filled, want))
+        int result = inflate_block(&source, packed[i], scratch, data + filled, want);
+        if (result == Z_MEM_ERROR)
+            status = lar_fail_memory(error, want, array->name);
+        else if (result != Z_OK)
             status = damaged(array, "cannot be decompressed", error);
         filled += want;
     }
