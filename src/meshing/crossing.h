@@ -25,6 +25,11 @@ typedef struct lar_face_crossings {
  * apart (0 or more, in units of the places `x`); when they are nearer the answer is above 0. */
 double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap);
 
+/* How far their nodes may move, the farthest of the one and the farthest of the other in sum, while
+ * the faces stay apart whatever else they do; 0: nothing is known of them, they may cross. */
+double lar_faces_clearance(const double (*x)[3], const int32_t a[4], const int32_t b[4],
+                           double gap);
+
 /* All pairs of `count` faces. `crosses` [count], by the caller, is set for each face that crosses
  * another one; NULL: not wanted. */
 lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4], int32_t count,

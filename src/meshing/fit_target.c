@@ -21,29 +21,46 @@ static const double CUT_WEIGHT = 4;
 
 /* ---- trees ---------------------------------------------------------------------------------- */
 
-/* What stands for the boundary between a and b: the triangles between them; where there are none,
- * since a gap or a third region between them is thinner than a cell, all of either. */
-static int32_t choose_triangles(const lar_fit_work *work, const uint16_t region[2],
-                                int32_t *chosen) {
-    const lar_boundary *boundary = work->boundary;
-    const int32_t triangles = boundary->triangles.triangle_count;
-    int32_t count = 0;
-    for (int32_t t = 0; t < triangles; t++)
-        if (lar_boundary_between(boundary, t, region[0], region[1])) chosen[count++] = t;
-    for (int32_t t = 0; count == 0 && t < triangles; t++)
-        for (int k = 0; k < 2; k++)
-            if (boundary->side[t][k] != 0 &&
-                (boundary->side[t][k] == region[0] || boundary->side[t][k] == region[1])) {
-                chosen[count++] = t;
-                break;
-            }
-    return count;
-}
+/* Triangles by the region behind them, so that not all are looked at for each pair. */
+enum { BEHIND = LAR_REGION_CUT + LAR_CUTS };
 
 typedef struct planting {
     lar_fit_work *work;
+    int32_t start[BEHIND + 1], *order;
     bool failed; /* atomic */
 } planting;
+
+static bool sort_triangles(planting *all) {
+    const lar_boundary *boundary = all->work->boundary;
+    const int32_t triangles = boundary->triangles.triangle_count;
+    all->order = lar_calloc((size_t)triangles, sizeof *all->order);
+    if (!all->order) return false;
+    for (int32_t t = 0; t < triangles; t++) all->start[boundary->side[t][1] + 1]++;
+    for (int r = 0; r < BEHIND; r++) all->start[r + 1] += all->start[r];
+    for (int32_t t = 0; t < triangles; t++) all->order[all->start[boundary->side[t][1]]++] = t;
+    memmove(all->start + 1, all->start, BEHIND * sizeof *all->start);
+    all->start[0] = 0;
+    return true;
+}
+
+/* What stands for the boundary between a and b: the triangles between them, in their order. Where
+ * there are none, since a gap or a third region between them is thinner than a cell, nothing draws
+ * faces. */
+static int32_t choose_triangles(const planting *all, const uint16_t region[2], int32_t *chosen) {
+    const lar_boundary *boundary = all->work->boundary;
+    int32_t at[2], end[2], count = 0;
+    for (int k = 0; k < 2; k++) {
+        at[k] = all->start[region[k]];
+        end[k] = all->start[region[k] + 1];
+    }
+    while (at[0] < end[0] || at[1] < end[1]) {
+        const bool other =
+            at[0] == end[0] || (at[1] < end[1] && all->order[at[1]] < all->order[at[0]]);
+        const int32_t t = all->order[at[other]++];
+        if (lar_boundary_between(boundary, t, region[0], region[1])) chosen[count++] = t;
+    }
+    return count;
+}
 
 static void plant_trees(void *context, int32_t first, int32_t end) {
     planting *all = context;
@@ -52,7 +69,7 @@ static void plant_trees(void *context, int32_t first, int32_t end) {
     bool ready = chosen != NULL;
     for (int32_t p = first; ready && p < end; p++) {
         lar_fit_pair *pair = &all->work->pair[p];
-        const int32_t count = choose_triangles(all->work, pair->region, chosen);
+        const int32_t count = choose_triangles(all, pair->region, chosen);
         ready =
             count == 0 || !lar_triangle_tree_create(triangles, chosen, count, &pair->tree, NULL);
     }
@@ -64,7 +81,9 @@ lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
     enum { PORTION = 4 };
     const size_t bytes = (size_t)work->boundary->triangles.triangle_count * sizeof(int32_t);
     planting all = {.work = work};
-    lar_share(work->pair_count, PORTION, plant_trees, &all);
+    all.failed = !sort_triangles(&all);
+    if (!all.failed) lar_share(work->pair_count, PORTION, plant_trees, &all);
+    free(all.order);
     if (!all.failed) return LAR_OK;
     return lar_fail_memory(error, bytes, "the triangles between two regions");
 }

@@ -57,17 +57,28 @@ typedef struct lar_fit_region {
     double missing, weight;
 } lar_fit_region;
 
+/* A face near another one. Until the ways of both (lar_fit_apart.way) sum up to `clear`, they are
+ * apart wherever their nodes went. */
+typedef struct lar_fit_near {
+    double clear;
+    int32_t face;
+} lar_fit_near;
+
 /* What keeps outer faces apart (fit_apart.c). */
 typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
-    int32_t *start, *around;    /* per node: face * 4 + corner */
-    bool *crosses;              /* per face */
-    double (*box)[2][3];        /* per face, lower and upper, once nodes are watched */
-    bool *watched;              /* per node: its faces must stay clear of others */
-    bool any, all, strict;      /* of nodes; of neighbours that look the same way too */
-    int32_t *near_start, *near; /* per face with a watched node: the faces that it may meet */
-    double (*from)[3];          /* per node: where it was before this round, */
-    bool *awake;                /* and whether it was worth moving */
+    int32_t *start, *around; /* per node: face * 4 + corner */
+    bool *crosses;           /* per face */
+    bool *watched;           /* per node: its faces must stay clear of others */
+    bool any, all;           /* of nodes */
+    bool *strict;            /* per face: clear of neighbours that look the same way too */
+    bool *ring;              /* per node: of faces that cross, and around them */
+    int tries;               /* of this round */
+    int32_t *near_start;     /* per face with a watched node: the faces that it may meet */
+    lar_fit_near *near;
+    double (*from)[3]; /* per node: where it was before this round, */
+    bool *awake;       /* and whether it was worth moving */
+    double *way;       /* per face: all that its nodes went since these lists were made */
 } lar_fit_apart;
 
 typedef struct lar_fit_work {

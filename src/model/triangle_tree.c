@@ -327,15 +327,31 @@ static double box_distance(const box *around, const double p[3]) {
     return square(away);
 }
 
+/* Distances to a triangle are rounded otherwise than those to its box. */
+static const double SLACK = 1 + 1e-12;
+
 typedef struct waiting {
     int32_t node;
     double distance; /* squared, from the point to the node's box */
 } waiting;
 
+/* To the box around a triangle: cheaper than to the triangle itself, and mostly enough. */
+static double leaf_box_distance(const leaf_triangle *leaf, const double p[3]) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        const double a = leaf->at[0][i] - p[i], b = leaf->at[1][i] - p[i],
+                     c = leaf->at[2][i] - p[i];
+        const double away = larger(larger(smaller(smaller(a, b), c), -larger(larger(a, b), c)), 0);
+        sum += away * away;
+    }
+    return sum;
+}
+
 static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf, const double p[3],
                            lar_nearest *best) {
     for (int32_t k = 0; k < leaf->count; k++) {
         lar_nearest candidate;
+        if (leaf_box_distance(&tree->leaf[leaf->next + k], p) > best->distance * SLACK) continue;
         nearest_on_triangle(&tree->leaf[leaf->next + k], p, &candidate);
         if (candidate.distance < best->distance ||
             (candidate.distance == best->distance &&
@@ -346,8 +362,6 @@ static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf,
 
 bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
                                lar_nearest *nearest) {
-    /* Distances to a triangle are rounded otherwise than those to its box. */
-    const double slack = 1 + 1e-12;
     lar_nearest best = {.triangle = -1, .distance = reach * reach};
     waiting stack[STACK];
     int height = 0;
@@ -355,7 +369,7 @@ bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point
         stack[height++] = (waiting){0, box_distance(&tree->node[0].box, point)};
     while (height > 0) {
         waiting next = stack[--height];
-        while (next.distance <= best.distance * slack) {
+        while (next.distance <= best.distance * SLACK) {
             const tree_node *node = &tree->node[next.node];
             if (node->count > 0) {
                 look_into_leaf(tree, node, point, &best);
@@ -368,7 +382,7 @@ bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point
                 near = far;
                 far = swapped;
             }
-            if (far.distance <= best.distance * slack) stack[height++] = far;
+            if (far.distance <= best.distance * SLACK) stack[height++] = far;
             next = near;
         }
     }

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "meshing/crossing.h"
 #include "meshing/meshing.h"
+#include "model/triangles.h"
 
 static double depth(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
     const double one = lar_faces_cross(x, a, b, gap), other = lar_faces_cross(x, b, a, gap);
@@ -50,6 +51,96 @@ static void test_pairs(void **state) {
         const double found = against(rows[r].lift, rows[r].second, rows[r].name, 0);
         if ((found > 0) != (rows[r].depth > 0) || fabs(found - rows[r].depth) > 1e-9)
             fail_msg("row %zu: %g deep, not %g", r, found, rows[r].depth);
+    }
+}
+
+static double chance(uint32_t *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return (double)(*seed >> 8) / (1 << 24);
+}
+
+/* Two faces with `shared` common nodes, as a mesh has them, and bent. */
+static void bend_faces(uint32_t *seed, int shared, double x[8][3], int32_t name[4]) {
+    static const double corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const double turn = 6 * chance(seed), lift = 0.3 * chance(seed);
+    for (int k = 0; k < 4; k++) {
+        const double u = corner[k][0], v = corner[k][1];
+        const double second[3] = {shared > 0 ? u * cos(turn) : u + 0.6 * chance(seed),
+                                  shared > 1 ? v : v + 0.3 * chance(seed),
+                                  shared > 0 ? u * sin(turn) : lift + 0.5 * chance(seed)};
+        name[k] = 4 + k;
+        for (int i = 0; i < 3; i++) {
+            x[k][i] = (i < 2 ? corner[k][i] : 0) + 0.5 * (chance(seed) - 0.5);
+            x[4 + k][i] = second[i] + 0.5 * (chance(seed) - 0.5);
+        }
+    }
+    if (shared > 0) name[0] = 0;
+    if (shared > 1) name[3] = 3;
+}
+
+/* All of their triangles, by all directions. */
+static bool cross_plainly(const double (*x)[3], const int32_t a[4], const int32_t b[4],
+                          double gap) {
+    static const int half[4][3] = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {1, 3, 0}};
+    for (int s = 0; s < 16; s++) {
+        double one[3][3], other[3][3];
+        int same = 0;
+        for (int i = 0; i < 3; i++) {
+            memcpy(one[i], x[a[half[s / 4][i]]], sizeof one[i]);
+            memcpy(other[i], x[b[half[s % 4][i]]], sizeof other[i]);
+            for (int k = 0; k < 3; k++) same += a[half[s / 4][i]] == b[half[s % 4][k]];
+        }
+        if (same < 2 &&
+            lar_triangle_overlap((const double(*)[3])one, (const double(*)[3])other, gap) > 0)
+            return true;
+    }
+    return false;
+}
+
+/* What is seen at a glance is what all directions say; and who goes less far than the clearance
+ * crosses nothing. */
+static void test_clearance(void **state) {
+    (void)state;
+    enum { FACES = 3000, WAYS = 20 };
+    const int32_t first[4] = {0, 1, 2, 3};
+    uint32_t seed = 7;
+    for (int shared = 0; shared < 3; shared++) {
+        int crossing = 0, known = 0;
+        const double gap = shared ? 0 : 0.05;
+        for (int f = 0; f < FACES; f++) {
+            double x[8][3], moved[8][3];
+            int32_t name[4];
+            bend_faces(&seed, shared, x, name);
+            const double(*at)[3] = (const double(*)[3])x;
+            const bool plainly = cross_plainly(at, first, name, gap);
+            /* With a gap these directions are not all, and say too little of it. */
+            if (lar_faces_cross(at, first, name, gap) > 0)
+                assert_true(plainly);
+            else
+                assert_false(cross_plainly(at, first, name, 0));
+            const double clearance = lar_faces_clearance(at, first, name, gap);
+            crossing += plainly;
+            known += clearance > 0;
+            if (lar_faces_cross(at, first, name, gap) > 0) assert_true(clearance == 0);
+            for (int w = 0; clearance > 0 && w < WAYS; w++) {
+                const double part = chance(&seed),
+                             most[2] = {part * clearance, (1 - part) * clearance};
+                for (int k = 0; k < 8; k++) {
+                    /* A node of both faces goes no farther than the shorter way. */
+                    const bool both = (shared > 0 && k == 0) || (shared > 1 && k == 3);
+                    const double far = both ? fmin(most[0], most[1]) : most[k / 4];
+                    const double z = 2 * chance(&seed) - 1, turn = 6.2831853 * chance(&seed);
+                    const double r = sqrt(1 - z * z);
+                    const double way[3] = {r * cos(turn), r * sin(turn), z};
+                    for (int i = 0; i < 3; i++) moved[k][i] = x[k][i] + far * way[i];
+                }
+                if (cross_plainly((const double(*)[3])moved, first, name, 0))
+                    fail_msg("%d shared, face %d: they cross within a clearance of %g", shared, f,
+                             clearance);
+            }
+        }
+        if (!(crossing > FACES / 50 && known > FACES / 20))
+            fail_msg("%d shared: %d cross, %d have a clearance", shared, crossing, known);
     }
 }
 
@@ -125,9 +216,8 @@ static void test_of_a_mesh(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_gap),
-        cmocka_unit_test(test_all_pairs),
+        cmocka_unit_test(test_pairs),     cmocka_unit_test(test_clearance),
+        cmocka_unit_test(test_gap),       cmocka_unit_test(test_all_pairs),
         cmocka_unit_test(test_of_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
