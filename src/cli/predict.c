@@ -175,7 +175,8 @@ static int predict_growth(const predict_settings *s) {
         const lar_block_options options = {.elements = (int32_t)(s->elements ? s->elements : 150),
                                            .processors = processors[i / scaling.scheme_count],
                                            .threads = scaling.threads,
-                                           .scheme = scaling.schemes[i % scaling.scheme_count]};
+                                           .scheme = scaling.schemes[i % scaling.scheme_count],
+                                           .steps = (int32_t)s->steps};
         if (lar_predict_block(&options, &machine, &row[i], &error))
             return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
     }
@@ -247,8 +248,9 @@ static int check_mode(const predict_settings *s) {
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--measure, --trace, --svg, --grid, --distribution and --schedules "
                             "need a scene");
-    if (without && s->steps)
-        return cli_complain(&cli_predict, CLI_USAGE, "--steps belongs to a scene");
+    if (without && !s->scale && s->steps)
+        return cli_complain(&cli_predict, CLI_USAGE,
+                            "--steps belongs to a scene or to --scale-to");
     if (!s->scene && !s->scale && s->parallel.scheme >= 0)
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--scheme belongs to a scene or to --scale-to; --critical tries all");

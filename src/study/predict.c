@@ -107,11 +107,12 @@ static double alone_time(const blocks *b, const lar_cluster *machine) {
     return lar_cluster_alone(machine, elements, nodes);
 }
 
-static lar_status simulate_blocks(const blocks *b, const lar_cluster *machine,
+static lar_status simulate_blocks(const blocks *b, const lar_cluster *machine, int32_t steps,
                                   lar_block_prediction *out, lar_error *error) {
     lar_network_result r = {0};
     lar_network_options options = {.machine = machine,
                                    .schedules = &b->division.schedules,
+                                   .steps = steps,
                                    .grid = {b->grid[0], b->grid[1], b->grid[2]}};
     lar_status status = lar_network_simulate(&options, &r, error);
     if (status) return status;
@@ -153,7 +154,7 @@ lar_status lar_predict_block(const lar_block_options *options, const lar_cluster
     lar_bench_edges(options->elements, edge);
     lar_predict_grid(options->processors, grid);
     status = divide_blocks(edge, grid, options->scheme, options->threads, &b, error);
-    if (!status) status = simulate_blocks(&b, machine, out, error);
+    if (!status) status = simulate_blocks(&b, machine, options->steps, out, error);
     lar_division_destroy(&b.division);
     return status;
 }
@@ -177,7 +178,7 @@ static lar_status try_edge(const lar_critical_options *o, int scheme, int32_t ed
     for (int32_t m = 0; m < o->machines && !status; m++) {
         lar_block_prediction p;
         if (out[m].elements[scheme]) continue;
-        status = simulate_blocks(&b, &o->machine[m], &p, error);
+        status = simulate_blocks(&b, &o->machine[m], 0, &p, error);
         if (status) break;
         if (p.efficiency < o->efficiency) {
             first[m] = 0;

@@ -40,6 +40,7 @@ typedef struct lar_block_options {
     int32_t processors; /* a near cube of so many, exactly */
     int32_t threads;    /* of a processor; 0: 1 */
     int scheme;         /* 0..LAR_PREDICT_SCHEMES - 1 */
+    int32_t steps;      /* simulated, as in lar_network_options; 0: 8 */
 } lar_block_options;
 
 enum { LAR_PREDICT_BLOCK_MOST = 64000 };

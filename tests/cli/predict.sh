@@ -58,6 +58,11 @@ expect 2 "$LARIAT" predict demo/uterus.yaml --processor-speed fast
 complains 'fast is no speed'
 expect 2 "$LARIAT" predict demo/uterus.yaml --processor-speed 0
 expect 2 "$LARIAT" predict demo/uterus.yaml --critical
+# The start is forgotten after some steps, in a large grid with slow links later than in eight.
+expect 0 "$LARIAT" predict --scale-to 1000 --scheme local --machine ethernet --json
+few=$(value_of scaling.0.step_us)
+expect 0 "$LARIAT" predict --scale-to 1000 --scheme local --machine ethernet --steps 2 --json
+[ "$few" != "$(value_of scaling.0.step_us)" ] || fail "--steps of --scale-to does nothing: $few"
 expect 2 "$LARIAT" predict --critical --scale-to 10
 expect 2 "$LARIAT" predict --scale-to 10,
 complains 'no list'
@@ -65,7 +70,7 @@ expect 2 "$LARIAT" predict demo/uterus.yaml --check
 expect 2 "$LARIAT" predict demo/uterus.yaml --measure --machine thesis
 expect 2 "$LARIAT" predict demo/uterus.yaml --channels concurrent
 expect 2 "$LARIAT" predict --scale-to 10 --channels concurrent
-expect 2 "$LARIAT" predict --scale-to 10 --steps 4
+expect 2 "$LARIAT" predict --critical --steps 4
 expect 2 "$LARIAT" predict --critical --scheme two
 complains 'tries all'
 expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x2
