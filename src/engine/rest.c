@@ -31,6 +31,9 @@ static void open_window(lar_rest *rest, uint64_t step) {
 }
 
 void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
+    if (!rest) return;
+    *rest = (lar_rest){0};
+    if (!simulation) return;
     const lar_model *model = simulation->domain.model;
     uint64_t now = lar_simulation_steps(simulation);
     *rest = (lar_rest){.since = lar_model_loads_end(model), .share = REST_SHARE};
@@ -59,6 +62,7 @@ static double energy_ahead(const lar_rest *rest, const lar_simulation *simulatio
 
 int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     uint64_t now = lar_simulation_steps(simulation);
+    if (!rest || !simulation) return 0;
     if (rest->reached || now < rest->next) return rest->reached;
     lar_rest_window *window = &rest->window;
     lar_rest_energies(&simulation->domain, lar_simulation_state(simulation), &rest->kinetic,

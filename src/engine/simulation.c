@@ -323,28 +323,31 @@ const lar_state *lar_simulation_state(const lar_simulation *simulation) {
 }
 
 int32_t lar_simulation_processors(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     return simulation->computer ? simulation->computer->division.grid.count : 1;
 }
 
 int32_t lar_simulation_threads(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     return simulation->computer ? simulation->computer->threads : 1;
 }
 
 uint64_t lar_simulation_steps(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     return simulation->computer ? simulation->computer->processor[0].worker[0].state.step
                                 : simulation->state.step;
 }
 
 double lar_simulation_time(const lar_simulation *simulation) {
-    return (double)lar_simulation_steps(simulation) * simulation->domain.time_step;
+    return (double)lar_simulation_steps(simulation) * lar_simulation_time_step(simulation);
 }
 
 double lar_simulation_time_step(const lar_simulation *simulation) {
-    return simulation->domain.time_step;
+    return simulation ? simulation->domain.time_step : 0;
 }
 
 const char *lar_simulation_isa(const lar_simulation *simulation) {
-    return simulation->domain.kernels->name;
+    return simulation ? simulation->domain.kernels->name : "";
 }
 
 static void copy_nodes(const lar_domain *domain, const double *values, double (*out)[3]) {
@@ -353,11 +356,13 @@ static void copy_nodes(const lar_domain *domain, const double *values, double (*
 }
 
 void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {
-    copy_nodes(&simulation->domain, lar_simulation_state(simulation)->u, out);
+    if (simulation && out)
+        copy_nodes(&simulation->domain, lar_simulation_state(simulation)->u, out);
 }
 
 void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]) {
-    copy_nodes(&simulation->domain, lar_simulation_state(simulation)->v, out);
+    if (simulation && out)
+        copy_nodes(&simulation->domain, lar_simulation_state(simulation)->v, out);
 }
 
 uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
@@ -376,10 +381,14 @@ uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
 }
 
 uint64_t lar_simulation_hash(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     return lar_state_hash(&simulation->domain, lar_simulation_state(simulation));
 }
 
 void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {
+    if (!energy) return;
+    *energy = (lar_energy){0};
+    if (!simulation) return;
     /* The force array is scratch between steps: the state that the caller sees stays the same. */
     lar_simulation *scratch = (lar_simulation *)simulation;
     lar_simulation_state(simulation);

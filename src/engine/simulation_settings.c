@@ -76,6 +76,9 @@ lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double g
 }
 
 void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]) {
+    if (!gravity) return;
+    for (int i = 0; i < 3; i++) gravity[i] = 0;
+    if (!simulation) return;
     lar_gravity_at(simulation->domain.model, &simulation->tools.settings,
                    lar_simulation_time(simulation), gravity);
 }
@@ -100,6 +103,7 @@ lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping
 }
 
 double lar_simulation_damping(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     return lar_damping_of(simulation->domain.model, &simulation->tools.settings);
 }
 
@@ -195,7 +199,7 @@ lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t mate
 }
 
 double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material) {
-    int32_t count = simulation->domain.model->material_count;
+    int32_t count = simulation ? simulation->domain.model->material_count : 0;
     if (material < 0 || material >= count) return 0;
     return simulation->tools.settings.factor[lar_factor_of(material)];
 }

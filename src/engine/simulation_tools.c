@@ -30,7 +30,7 @@ static lar_status check_tool(const lar_simulation *simulation, int32_t tool, con
 }
 
 int32_t lar_simulation_tool_count(const lar_simulation *simulation) {
-    return simulation->list.count;
+    return simulation ? simulation->list.count : 0;
 }
 
 lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index, lar_tool_info *info,
@@ -183,18 +183,20 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
 }
 
 void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {
-    *info = simulation->report.contact;
+    if (info) *info = simulation ? simulation->report.contact : (lar_contact_info){0};
 }
 
 /* ---- divided steps ------------------------------------------------------------------------- */
 
 int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
+    if (!simulation) return 0;
     int32_t parts = simulation->tools.division.parts;
     return parts > 1 ? parts : 1;
 }
 
 uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
-    const lar_interval *interval = interval_of(simulation);
+    static const lar_interval none = {0};
+    const lar_interval *interval = simulation ? interval_of(simulation) : &none;
     if (most) *most = interval->parts > 1 ? interval->parts : 1;
     return interval->divided;
 }

@@ -413,7 +413,7 @@ lar_status lar_meshing_create(const char *const *paths, int32_t count,
 }
 
 void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info) {
-    *info = meshing->info;
+    if (info) *info = meshing ? meshing->info : (lar_meshing_info){0};
 }
 
 lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index, lar_region_info *info,

@@ -4,7 +4,7 @@
 #include "model/model.h"
 
 int64_t lar_model_element_id(const lar_model *model, int32_t element) {
-    bool known = element >= 0 && element < model->mesh.element_count;
+    bool known = model && element >= 0 && element < model->mesh.element_count;
     return known ? model->mesh.element_id[element] : -1;
 }
 
@@ -36,7 +36,7 @@ lar_status lar_model_material(const lar_model *model, int32_t index, lar_materia
 }
 
 int32_t lar_model_set_count(const lar_model *model) {
-    return model->mesh.set_count;
+    return model ? model->mesh.set_count : 0;
 }
 
 lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *info,
@@ -51,15 +51,17 @@ lar_status lar_model_set(const lar_model *model, int32_t index, lar_set_info *in
 }
 
 int32_t lar_model_notice_count(const lar_model *model) {
-    return model->notice_count;
+    return model ? model->notice_count : 0;
 }
 
 const char *lar_model_notice_text(const lar_model *model, int32_t index) {
-    return index >= 0 && index < model->notice_count ? model->notice[index] : NULL;
+    return index >= 0 && index < lar_model_notice_count(model) ? model->notice[index] : NULL;
 }
 
 void lar_model_surface(const lar_model *model, lar_surface_info *info) {
-    const lar_surface *surface = &model->surface;
+    static const lar_surface none = {0};
+    if (!info) return;
+    const lar_surface *surface = model ? &model->surface : &none;
     *info = (lar_surface_info){.faces = surface->face_count,
                                .nodes = surface->node_count,
                                .face = (const int32_t(*)[4])surface->corner,
@@ -68,7 +70,7 @@ void lar_model_surface(const lar_model *model, lar_surface_info *info) {
 }
 
 int32_t lar_model_element_material(const lar_model *model, int32_t element) {
-    bool known = element >= 0 && element < model->mesh.element_count;
+    bool known = model && element >= 0 && element < model->mesh.element_count;
     return known ? model->element_material[element] : -1;
 }
 
@@ -96,7 +98,7 @@ const int32_t *lar_model_element_nodes(const lar_model *model, int32_t element) 
 }
 
 int32_t lar_model_contact_count(const lar_model *model) {
-    return model->contact_count;
+    return model ? model->contact_count : 0;
 }
 
 lar_status lar_model_contact(const lar_model *model, int32_t index, lar_model_contact_info *info,
@@ -115,7 +117,7 @@ lar_status lar_model_contact(const lar_model *model, int32_t index, lar_model_co
 }
 
 int32_t lar_model_tool_count(const lar_model *model) {
-    return model->tool_count;
+    return model ? model->tool_count : 0;
 }
 
 lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,

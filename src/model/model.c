@@ -99,20 +99,21 @@ const double (*lar_model_positions(const lar_model *model))[3] {
 }
 
 double lar_model_output_interval(const lar_model *model) {
-    return model->output.every;
+    return model ? model->output.every : 0;
 }
 
 double lar_model_duration(const lar_model *model) {
+    if (!model) return 0;
     if (model->duration > 0.0) return model->duration;
     return lar_model_loads_end(model);
 }
 
 double lar_model_damping(const lar_model *model) {
-    return model->damping;
+    return model ? model->damping : 0;
 }
 
 int lar_model_until_rest(const lar_model *model) {
-    return model->until_rest;
+    return model ? model->until_rest : 0;
 }
 
 /* ---- the check -------------------------------------------------------------------------- */

@@ -104,18 +104,23 @@ void lar_session_status_get(const lar_session *session, lar_session_status *stat
 }
 
 void lar_session_gravity(const lar_session *session, double gravity[3]) {
+    if (!gravity) return;
+    for (int i = 0; i < 3; i++) gravity[i] = 0;
+    if (!session) return;
     memcpy(gravity, look_at_view(session)->gravity, 3 * sizeof *gravity);
     end_look(session);
 }
 
 double lar_session_damping(const lar_session *session) {
+    if (!session) return 0;
     double damping = look_at_view(session)->damping;
     end_look(session);
     return damping;
 }
 
 double lar_session_stiffness(const lar_session *session, int32_t material) {
-    if (material < 0 || material >= session->simulation->domain.model->material_count) return 0;
+    if (!session || material < 0 || material >= session->simulation->domain.model->material_count)
+        return 0;
     double factor = look_at_view(session)->factor[lar_factor_of(material)];
     end_look(session);
     return factor;

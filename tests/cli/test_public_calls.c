@@ -236,10 +236,75 @@ static void restart_and_picture_calls(void **unused) {
     lar_model_destroy(model);
 }
 
+/* All calls of lariat.h that have no status. */
+static void calls_without_a_status_accept_nothing(void **unused) {
+    (void)unused;
+    const char *text;
+    lar_model_destroy(NULL);
+    assert_true(lar_model_element_id(NULL, 0) <= 0);
+    assert_true(lar_model_set_count(NULL) <= 0);
+    assert_true(lar_model_notice_count(NULL) <= 0);
+    text = lar_model_notice_text(NULL, 0);
+    assert_true(!text || !*text);
+    lar_model_surface(NULL, NULL);
+    assert_true(lar_model_element_material(NULL, 0) <= 0);
+    assert_true(lar_model_embedded(NULL, NULL) <= 0);
+    lar_model_embedded_move(NULL, NULL, NULL);
+    assert_null(lar_model_element_nodes(NULL, 0));
+    assert_true(lar_model_contact_count(NULL) <= 0);
+    assert_true(lar_model_tool_count(NULL) <= 0);
+    lar_meshing_destroy(NULL);
+    lar_meshing_inspect(NULL, NULL);
+    lar_simulation_destroy(NULL);
+    assert_true(lar_simulation_processors(NULL) <= 0);
+    assert_true(lar_simulation_threads(NULL) <= 0);
+    assert_true(lar_simulation_steps(NULL) == 0);
+    assert_true(lar_simulation_time(NULL) == 0);
+    assert_true(lar_simulation_time_step(NULL) == 0);
+    text = lar_simulation_isa(NULL);
+    assert_true(!text || !*text);
+    lar_simulation_displacements(NULL, NULL);
+    lar_simulation_velocities(NULL, NULL);
+    assert_true(lar_simulation_hash(NULL) == 0);
+    lar_simulation_energy(NULL, NULL);
+    lar_simulation_gravity(NULL, NULL);
+    assert_true(lar_simulation_damping(NULL) == 0);
+    assert_true(lar_simulation_stiffness(NULL, 0) == 0);
+    assert_true(lar_simulation_tool_count(NULL) <= 0);
+    assert_true(lar_simulation_step_parts(NULL) <= 0);
+    assert_true(lar_simulation_divided_steps(NULL, NULL) == 0);
+    lar_simulation_contact(NULL, NULL);
+    assert_true(lar_model_output_interval(NULL) == 0);
+    assert_true(lar_model_duration(NULL) == 0);
+    lar_rest_begin(NULL, NULL);
+    assert_true(lar_rest_look(NULL, NULL) <= 0);
+    assert_true(lar_model_damping(NULL) == 0);
+    assert_true(lar_model_until_rest(NULL) <= 0);
+    lar_session_play(NULL);
+    lar_session_pause(NULL);
+    lar_session_step(NULL, 0);
+    lar_session_set_pace(NULL, 0);
+    lar_session_gravity(NULL, NULL);
+    assert_true(lar_session_damping(NULL) == 0);
+    assert_true(lar_session_stiffness(NULL, 0) == 0);
+    lar_session_status_get(NULL, NULL);
+    lar_snapshot_destroy(NULL);
+    assert_true(lar_session_force_history(NULL, 0, 0, 0, NULL, NULL) <= 0);
+    lar_session_seek(NULL, 0);
+    text = lar_server_url(NULL);
+    assert_true(!text || !*text);
+    text = lar_server_watch_url(NULL);
+    assert_true(!text || !*text);
+    assert_true(lar_server_viewers(NULL) <= 0);
+    lar_server_close(NULL);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(model_calls), cmocka_unit_test(meshing_calls),
-        cmocka_unit_test(simulation_calls), cmocka_unit_test(tool_calls),
-        cmocka_unit_test(restart_and_picture_calls)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(model_calls),
+                                       cmocka_unit_test(meshing_calls),
+                                       cmocka_unit_test(simulation_calls),
+                                       cmocka_unit_test(tool_calls),
+                                       cmocka_unit_test(restart_and_picture_calls),
+                                       cmocka_unit_test(calls_without_a_status_accept_nothing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
