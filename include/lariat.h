@@ -23,7 +23,8 @@
  * Threads. A model may be used by any number of threads at once. A simulation, and the results that
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
  * use scratch memory inside it, though never change what another call returns. A SESSION takes a
- * simulation over and computes on a thread of its own; all its calls may come from any thread.
+ * simulation over and computes on a thread of its own; all its calls may come from any thread. While
+ * it does, calls that change the simulation are refused.
  */
 #ifndef LARIAT_H
 #define LARIAT_H

@@ -293,7 +293,9 @@ lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t s
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
-    lar_status status = lar_simulation_compute(simulation, steps, watch, context, error);
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_advance", error);
+    if (status) return status;
+    status = lar_simulation_compute(simulation, steps, watch, context, error);
     bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
     if (may_gather && simulation->computer && simulation->computer->control) {
         lar_error lost;

@@ -22,6 +22,8 @@ struct lar_simulation {
     uint64_t report_steps;        /* how many steps that was */
     double measured;              /* the most energy of the bodies when that was asked [J] */
     double taken;                 /* by contacts, as of the last report [J] */
+    int32_t sessions;             /* open on it: 0 or 1. Atomic */
+    int32_t held;                 /* by the thread of a session, which alone may change it. Atomic */
     struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
 };
 
@@ -35,7 +37,13 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, la
                                   void *context, lar_error *error);
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
 
-/* Refuses NULL, and processors other than zero. `call`: the public name. */
+/* A session lets its own thread alone change the simulation, or everyone again. */
+void lar_simulation_hold(lar_simulation *simulation, bool held);
+/* Called by that thread: it is the one. */
+void lar_simulation_hold_here(const lar_simulation *simulation);
+
+/* Refuses NULL, processors other than zero, and what a session computes on. `call`: the public
+ * name. */
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error);
 

@@ -7,13 +7,31 @@
 #include "engine/hold.h"
 #include "engine/simulation.h"
 
+/* The simulation that this thread computes for a session. */
+static _Thread_local const lar_simulation *held_here;
+
+void lar_simulation_hold(lar_simulation *simulation, bool held) {
+    __atomic_store_n(&simulation->held, held, __ATOMIC_RELEASE);
+}
+
+void lar_simulation_hold_here(const lar_simulation *simulation) {
+    held_here = simulation;
+}
+
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error) {
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs a simulation, not NULL", call);
-    if (!simulation->computer || simulation->computer->first == 0) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s is for processor 0; the others call lar_simulation_serve", call);
+    if (simulation->computer && simulation->computer->first != 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is for processor 0; the others call lar_simulation_serve", call);
+    if (!__atomic_load_n(&simulation->held, __ATOMIC_ACQUIRE) || held_here == simulation)
+        return LAR_OK;
+    return lar_fail(
+        error, LAR_ERROR_ARGUMENT,
+        "%s: a session computes on this simulation, and two at once would spoil it; ask "
+        "the session (lar_session_...), or close it first",
+        call);
 }
 
 static lar_status check_tool(const lar_simulation *simulation, int32_t tool, const void *place,

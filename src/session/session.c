@@ -103,6 +103,8 @@ static lar_status record_from_start(lar_session *session, lar_error *error) {
 }
 
 static void destroy(lar_session *session) {
+    lar_simulation_hold(session->simulation, false);
+    __atomic_store_n(&session->simulation->sessions, 0, __ATOMIC_RELEASE);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_device_close(session->tool[i].device);
         lar_mailbox_destroy(&session->tool[i].hand);
@@ -121,9 +123,16 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     if (!simulation || !out)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_session_open needs a simulation and a place for the session");
+    if (__atomic_exchange_n(&simulation->sessions, 1, __ATOMIC_ACQ_REL))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a session is open on this simulation already; close it first, or create "
+                        "another simulation of the same model");
     lar_session_options asked = options ? *options : lar_session_options_default();
     lar_session *session = lar_calloc(1, sizeof *session);
-    if (!session) return lar_fail_memory(error, sizeof *session, "the session");
+    if (!session) {
+        __atomic_store_n(&simulation->sessions, 0, __ATOMIC_RELEASE);
+        return lar_fail_memory(error, sizeof *session, "the session");
+    }
     lar_requests_create(&session->requests);
     session->simulation = simulation;
     session->time_step = lar_simulation_time_step(simulation);
@@ -171,10 +180,12 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
+        lar_simulation_hold(session->simulation, true);
         int cause = lar_thread_start_urgent(&session->thread, session->options.priority,
                                             lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
+            lar_simulation_hold(session->simulation, false);
             session->status.state = LAR_SESSION_IDLE;
             lar_session_publish(session, true);
             status = refuse_thread(session, cause, error);

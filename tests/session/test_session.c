@@ -46,6 +46,34 @@ static void waits_when_it_starts_paused(void **unused) {
     lar_session_close(NULL, &failure);
 }
 
+static void refused_by(const char *part, lar_status status) {
+    assert_int_equal(status, LAR_ERROR_ARGUMENT);
+    if (!strstr(failure.message, part)) fail_msg("%s", failure.message);
+}
+
+/* Nobody else may compute what a session computes, or change it. */
+static void has_its_simulation_for_itself(void **unused) {
+    (void)unused;
+    bench b = open_bench(NULL, 0, NULL);
+    lar_session *other = NULL;
+    refused_by("a session is open", lar_session_open(b.simulation, NULL, &other, &failure));
+    assert_null(other);
+    DONE(lar_simulation_advance(b.simulation, 1, &failure)); /* it does not compute yet */
+    DONE(lar_session_start(b.session, &failure));
+    await(&b, LAR_SESSION_PLAYING, 20);
+    static const char busy[] = "a session computes on this simulation";
+    const lar_tool_pose pose = {.position = {0, 0, 0.1}, .orientation = {1, 0, 0, 0}};
+    refused_by(busy, lar_simulation_advance(b.simulation, 1, &failure));
+    refused_by(busy, lar_simulation_reset(b.simulation, &failure));
+    refused_by(busy, lar_simulation_tool_move(b.simulation, BALL, &pose, 10, &failure));
+    refused_by(busy, lar_simulation_set_damping(b.simulation, 1, &failure));
+    DONE(lar_session_reset(b.session, &failure));
+    DONE(lar_session_close(b.session, &failure));
+    DONE(lar_simulation_advance(b.simulation, 1, &failure));
+    DONE(lar_session_open(b.simulation, NULL, &b.session, &failure));
+    close_bench(&b);
+}
+
 /* The simulation does not get ahead of the clock, and on a fast pace does. */
 static void keeps_its_pace(void **unused) {
     (void)unused;
@@ -419,6 +447,7 @@ static void everybody_at_once(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(plays_pauses_and_steps),
                                        cmocka_unit_test(waits_when_it_starts_paused),
+                                       cmocka_unit_test(has_its_simulation_for_itself),
                                        cmocka_unit_test(keeps_its_pace),
                                        cmocka_unit_test(listens_in_slow_motion),
                                        cmocka_unit_test(slow_motion_is_announced),
