@@ -342,7 +342,7 @@ static int compute(run *r) {
 /* Processor zero hears Ctrl-C too, and ends the run for all. */
 static int serve(run *r) {
     lar_error error;
-    cli_catch_stop();
+    cli_catch_stop_of_all();
     return lar_simulation_serve(r->simulation, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 

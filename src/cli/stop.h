@@ -11,4 +11,8 @@ extern volatile sig_atomic_t cli_stop_asked;
  * with what there is: it looks at cli_stop_asked. A second one ends the program at once. */
 void cli_catch_stop(void);
 
+/* A processor that is not zero: of what a terminal sends to all of a run, zero hears it too, and
+ * ends the run for all. SIGTERM, which is for one, ends this one at once. */
+void cli_catch_stop_of_all(void);
+
 #endif

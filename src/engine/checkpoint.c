@@ -1,13 +1,16 @@
 #include "engine/checkpoint.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/folder.h"
@@ -181,6 +184,37 @@ static int open_part(const char *path, char *part, size_t size) {
     return file;
 }
 
+/* Whether a name in the folder of `name` is that of a part of it whose process is gone. Another
+ * machine may write to the same folder, and its processes are not known here: a part that has just
+ * been written to stays. */
+static bool is_left_over(int folder, const char *name, const char *found) {
+    static const double SURELY = 60; /* [s] */
+    size_t length = strlen(name);
+    long process = 0;
+    unsigned number;
+    char end[8] = "";
+    struct stat about;
+    if (strncmp(found, name, length) != 0 ||
+        sscanf(found + length, ".%ld-%u.%7s", &process, &number, end) != 3 ||
+        strcmp(end, "part") != 0 || process < 1)
+        return false;
+    bool gone = kill((pid_t)process, 0) != 0 && errno == ESRCH;
+    return gone && fstatat(folder, found, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
+           S_ISREG(about.st_mode) && difftime(time(NULL), about.st_mtime) > SURELY;
+}
+
+/* What processes have left that were killed while they saved to this path. */
+static void clean_up(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *above = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    DIR *folder = above ? opendir(above) : NULL;
+    for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;)
+        if (is_left_over(dirfd(folder), name, entry->d_name))
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder) closedir(folder);
+    free(above);
+}
+
 static lar_status write_file(const char *path, const unsigned char *data, size_t bytes,
                              lar_error *error) {
     size_t size = strlen(path) + sizeof ".-9223372036854775807-4294967295.part";
@@ -198,6 +232,7 @@ static lar_status write_file(const char *path, const unsigned char *data, size_t
         cause = errno;
     }
     if (good) sync_folder(path);
+    if (good) clean_up(path);
     if (file >= 0 && !good) remove(part);
     free(part);
     if (good) return LAR_OK;

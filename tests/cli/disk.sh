@@ -85,4 +85,15 @@ expect 3 "$LARIAT" run "$organ/uterus.yaml" --time 0.2 --out "$later"
 [ ! -e "$later/run.json" ] || fail "run.json of an earlier run"
 [ ! -e "$later/uterus.checkpoint" ] || fail "the state of an earlier run"
 
+# What a process has left that was killed while it saved goes with the next save; what is new, of
+# somebody who lives, or no part, stays.
+for part in 999999999-1.part $$-1.part 999999999-2.other; do
+    : >"$SCRATCH/state.$part"
+    touch -d '1 hour ago' "$SCRATCH/state.$part"
+done
+: >"$SCRATCH/state.999999999-3.part"
+expect 0 "$LARIAT" run "$scene" --steps 1 --save "$SCRATCH/state"
+[ ! -e "$SCRATCH/state.999999999-1.part" ] || fail "a part of a killed process is left"
+[ "$(find "$SCRATCH" -maxdepth 1 -name 'state.*' | wc -l)" -eq 3 ] || fail "another's file is gone"
+
 finish "full disks and wrong folders are reported"
