@@ -143,7 +143,7 @@ static void add_connection(lar_server *server, struct lws *wsi) {
         if (server->connection[i].wsi) continue;
         server->connection[i].wsi = wsi;
         server->connection[i].since = lar_clock_ns();
-        server->connection[i].viewer = false;
+        server->connection[i].viewer = server->connection[i].leaves = false;
         server->connections++;
         return;
     }
@@ -162,12 +162,32 @@ void lar_server_promote(lar_server *server, const struct lws *wsi) {
         if (server->connection[i].wsi == wsi) server->connection[i].viewer = true;
 }
 
+static bool is_stranger(const lar_server *server, int i) {
+    return server->connection[i].wsi && !server->connection[i].viewer &&
+           !server->connection[i].leaves;
+}
+
+static void show_out(lar_server *server, int i) {
+    server->connection[i].leaves = true;
+    lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+}
+
 void lar_server_sweep(lar_server *server, int64_t now) {
     for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
-        if (server->connection[i].wsi && !server->connection[i].viewer &&
-            now - server->connection[i].since > LIFE)
-            lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE,
-                            LWS_TO_KILL_ASYNC);
+        if (is_stranger(server, i) && now - server->connection[i].since > LIFE) show_out(server, i);
+}
+
+/* Who opens many connections and says nothing keeps nobody out: the oldest of those that have not
+ * become viewers makes room for one that comes. */
+static void make_room(lar_server *server) {
+    int strangers = 0, oldest = -1;
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (!is_stranger(server, i)) continue;
+        strangers++;
+        if (oldest < 0 || server->connection[i].since < server->connection[oldest].since)
+            oldest = i;
+    }
+    if (strangers >= LAR_STRANGERS_MOST) show_out(server, oldest);
 }
 
 /* All that have come. When the process has no numbers for sockets left, the spare one takes the
@@ -183,6 +203,7 @@ static void accept_all(lar_server *server) {
             if (fd >= 0) continue;
         }
         if (fd < 0) return;
+        make_room(server);
         if (server->connections >= LAR_CONNECTIONS_MOST) {
             close(fd);
             continue;

@@ -28,6 +28,7 @@ _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before
 enum {
     LAR_VIEWERS_MOST = 64,
     LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
+    LAR_STRANGERS_MOST = 64,    /* of them: those that are no viewers */
     LAR_NOTES_MOST = 8,         /* that wait for a viewer */
     LAR_SAVE_NUMBERS = 1000,
     LAR_SAVES_MOST = 64, /* of a kind, that can be named */
@@ -114,6 +115,7 @@ struct lar_server {
         struct lws *wsi; /* NULL: free */
         int64_t since;
         bool viewer;
+        bool leaves; /* it has been shown the door */
     } connection[LAR_CONNECTIONS_MOST];
 
     /* The server's thread's. */
