@@ -38,6 +38,13 @@ bool lar_text_line(lar_text *text, lar_span *line) {
     return true;
 }
 
+void lar_text_show(char *text) {
+    for (unsigned char *c = (unsigned char *)text; c && *c; c++) {
+        if (*c < ' ' || *c == 0x7f) *c = '?';
+        if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f) c[0] = c[1] = '?';
+    }
+}
+
 locale_t lar_text_locale(void) {
     static locale_t shared; /* made by the first thread that is here */
     locale_t known = __atomic_load_n(&shared, __ATOMIC_ACQUIRE);

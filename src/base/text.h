@@ -63,6 +63,10 @@ bool lar_span_split(lar_span span, char separator, lar_span *head, lar_span *res
 bool lar_span_equal(lar_span span, const char *word);
 bool lar_span_equal_nocase(lar_span span, const char *word);
 
+/* Puts '?' where a character would steer a terminal that shows the text: control characters, also
+ * those beyond ASCII (U+0080 to U+009F in UTF-8). All other UTF-8 stays. NULL is fine. */
+void lar_text_show(char *text);
+
 /* The C locale, in which numbers have a point. For uselocale() around what prints numbers into a
  * file: an embedding program may have another one. Lives as long as the program; 0, with which
  * uselocale() changes nothing, when there is no memory for it. */

@@ -28,8 +28,10 @@ int cli_complain(const cli_command *command, int status, const char *format, ...
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     /* What a message quotes from a file must not steer the terminal. */
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        if (*c < ' ' || *c == 0x7f) *c = '?';
+        if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f) c[0] = c[1] = '?';
+    }
     char who[32] = "";
     if (speaker > 0) snprintf(who, sizeof who, "processor %d: ", (int)speaker);
     fprintf(stderr, "lariat%s%s: %s%s\n", command ? " " : "", command ? command->name : "", who,

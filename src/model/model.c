@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+
 /* ---- life ------------------------------------------------------------------------------- */
 
 lar_model *lar_model_create(void) {
@@ -343,7 +345,17 @@ static lar_status notice_mesh(lar_model *model, lar_error *error) {
     return status;
 }
 
+/* Names go to terminals, tables and pages, from whatever file they are. */
+static void show_names(lar_model *model) {
+    lar_text_show(model->title);
+    for (int i = 0; i < model->material_count; i++) lar_text_show(model->material[i].name);
+    for (int i = 0; i < model->tool_count; i++) lar_text_show(model->tool[i].name);
+    for (int i = 0; i < model->output.probe_count; i++) lar_text_show(model->output.probe[i].name);
+    for (int i = 0; i < model->mesh.set_count; i++) lar_text_show(model->mesh.set[i].name);
+}
+
 lar_status lar_model_check(lar_model *model, lar_error *error) {
+    show_names(model);
     if (model->mesh.node_count <= 0 || model->mesh.element_count <= 0)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: the model has no elements; give it a mesh of hexahedra",

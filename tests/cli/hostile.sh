@@ -16,6 +16,13 @@ expect 1 timeout 20 "$LARIAT" info "$SCRATCH/zero.vtk"
 complains 'is not a regular file'
 
 # What a file says to the terminal is not passed on.
+sed 's/^title:.*/title: "a\\e[31mred \\u009b1m"/' "$beam" >"$SCRATCH/red.yaml"
+for command in info "run --steps 1"; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" $command "$SCRATCH/red.yaml"
+    says 'a?\[31mred'
+    LC_ALL=C tr -d '\n -~' <"$SCRATCH/out" | grep -q . && fail "control characters: $command"
+done
 printf '\033[31mred,x\n' >"$SCRATCH/red.csv"
 expect 1 "$LARIAT" device udp:127.0.0.1:9 --script "$SCRATCH/red.csv"
 complains "red.csv:1: '?\[31mred' is no column"
