@@ -130,6 +130,15 @@ static int save_state(run *r) {
     return lar_simulation_save(r->simulation, path, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 
+/* What is no checkpoint is somebody's: saving will refuse to replace it. */
+static bool is_checkpoint(const char *path) {
+    char magic[8] = "";
+    FILE *file = fopen(path, "rb");
+    bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, "LARIATCP", 8);
+    if (file) fclose(file);
+    return is;
+}
+
 /* A run that ends early leaves no report and no state of an earlier one. The state that it goes on
  * from stays until there is another one. */
 static int forget_earlier(run *r) {
@@ -140,6 +149,7 @@ static int forget_earlier(run *r) {
     const char *path[2] = {report, state};
     for (int i = 0; i < 2; i++) {
         struct stat file, from;
+        if (path[i] == state && !is_checkpoint(state)) continue;
         if (r->settings.resume && stat(r->settings.resume, &from) == 0 &&
             stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino)
             continue;
