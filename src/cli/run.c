@@ -133,7 +133,9 @@ static int save_state(run *r) {
 /* What is no checkpoint is somebody's: saving will refuse to replace it. */
 static bool is_checkpoint(const char *path) {
     char magic[8] = "";
-    FILE *file = fopen(path, "rb");
+    struct stat about;
+    bool plain = stat(path, &about) == 0 && S_ISREG(about.st_mode); /* a pipe would wait */
+    FILE *file = plain ? fopen(path, "rb") : NULL;
     bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, "LARIATCP", 8);
     if (file) fclose(file);
     return is;
