@@ -9,7 +9,7 @@ static void ask_stop(int signal_number) {
     cli_stop_asked = signal_number;
 }
 
-static void catch (bool terminate) {
+static void catch_signals(bool terminate) {
     struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
     struct sigaction hangup;
     sigemptyset(&action.sa_mask);
@@ -20,9 +20,9 @@ static void catch (bool terminate) {
 }
 
 void cli_catch_stop(void) {
-    catch (true);
+    catch_signals(true);
 }
 
 void cli_catch_stop_of_all(void) {
-    catch (false);
+    catch_signals(false);
 }

@@ -213,8 +213,9 @@ int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
 }
 
 uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
-    static const lar_interval none = {0};
-    const lar_interval *interval = simulation ? interval_of(simulation) : &none;
+    if (most) *most = 0;
+    if (!simulation) return 0;
+    const lar_interval *interval = interval_of(simulation);
     if (most) *most = interval->parts > 1 ? interval->parts : 1;
     return interval->divided;
 }
