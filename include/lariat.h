@@ -182,7 +182,8 @@ typedef enum lar_tool_shape {
     LAR_TOOL_SPHERE = 0, /* radius */
     LAR_TOOL_CAPSULE,    /* a shaft with round ends: radius, length */
     LAR_TOOL_GRASPER,    /* two jaws that take hold of tissue: radius and length of a jaw, spread */
-    LAR_TOOL_HAND        /* touches nothing, but takes hold of the surface within its radius */
+    LAR_TOOL_HAND,       /* touches nothing, but takes hold of the surface within its radius */
+    LAR_TOOL_NONE        /* a spare one that is not there (lar_simulation_add_tool) */
 } lar_tool_shape;
 
 /* Where a tool is. Its own axes: the tip is the origin, the shaft lies along +z, the jaws of a
@@ -371,6 +372,7 @@ typedef struct lar_options {
     int listener;       /* processor 0: a socket that listens already, taken over; -1: none */
 
     int32_t hands;     /* tools of shape LAR_TOOL_HAND besides the model's, after them */
+    int32_t spares;    /* tools that may be added while it runs, after these: 0 to 4 */
     int search_always; /* not 0: contact is searched anew in every step; the same bits, slow */
 } lar_options;
 
@@ -472,7 +474,8 @@ LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_
 
 /* ---- tools and contact of a simulation ---------------------------------------------------- */
 
-/* Those of the model, then options.hands hands. */
+/* Those of the model, then options.hands hands, then options.spares that can be added: of shape
+ * LAR_TOOL_NONE and called "" until they are. */
 LAR_API int32_t lar_simulation_tool_count(const lar_simulation *simulation);
 LAR_API lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index,
                                        lar_tool_info *info, lar_error *error);
@@ -489,6 +492,19 @@ LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, in
                                             lar_tool_pose *pose, lar_error *error);
 LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                              lar_tool_force *force, lar_error *error);
+
+/* Adds a tool in the first spare place, from the present step on, in the same step on all
+ * processors: it stands above the body, as that is and as it is at rest, tip down, clear of both.
+ * It is in checkpoints and recordings; a reset puts it back there. `shape` (sphere, capsule,
+ * grasper), `radius`, `length` and `spread` (0: 60 degrees) of `wanted` count; its name follows
+ * from its place in the list: "sphere 1". *tool, its index, may be NULL. LAR_ERROR_ARGUMENT when
+ * no place is left, and for a size that does not fit the body: a radius between that at which faces
+ * still feel it everywhere and half of the body's diagonal, a length up to five of these. */
+LAR_API lar_status lar_simulation_add_tool(lar_simulation *simulation, const lar_tool_info *wanted,
+                                           int32_t *tool, lar_error *error);
+/* Takes one that was added away, from the present step on: it lets go, and its place is free. */
+LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_t tool,
+                                              lar_error *error);
 
 /* Strained elements and tools that press hard need shorter steps: for as long as they do, every
  * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
@@ -529,6 +545,7 @@ typedef struct lar_checkpoint_info {
     int32_t tools;           /* of the model, and lar_options.hands */
     double time_step;        /* [s] */
     uint64_t step;
+    int32_t spares; /* lar_options.spares must be as many at least: tools were added */
 } lar_checkpoint_info;
 
 /* Reads a saved state without taking it up. LAR_ERROR_FORMAT when it is none, or damaged. */
@@ -670,6 +687,16 @@ LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t mater
 LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
 LAR_API double lar_session_damping(const lar_session *session);
 LAR_API double lar_session_stiffness(const lar_session *session, int32_t material);
+
+/* As lar_simulation_add_tool and lar_simulation_remove_tool, likewise. A tool that has a device is
+ * not removed. What was added stays when a run goes back to a sound state by itself, and comes to
+ * stand above the body that it finds there. */
+LAR_API lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted,
+                                        int32_t *tool, lar_error *error);
+LAR_API lar_status lar_session_remove_tool(lar_session *session, int32_t tool, lar_error *error);
+/* What a tool is, as of the last tick: as lar_simulation_tool. */
+LAR_API lar_status lar_session_tool_info(const lar_session *session, int32_t tool,
+                                         lar_tool_info *info, lar_error *error);
 
 /* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
  * has a device (lar_session_attach) does not listen. */
@@ -823,6 +850,7 @@ typedef struct lar_recording_info {
     int32_t tools, hands;    /* lar_options.hands, and with them all tools */
     double time_step;        /* [s] */
     uint64_t tick_steps;     /* steps of a tick */
+    int32_t spares;          /* lar_options.spares: as many at least */
 } lar_recording_info;
 
 /* Reads the beginning of a recording. LAR_ERROR_FORMAT when it is none. */

@@ -16,6 +16,7 @@ int cli_resume_options(const cli_command *command, const char *path, const lar_m
     if (options->element == LAR_ELEMENT_HEX8) options->element = info.element;
     int32_t hands = info.tools - lar_model_tool_count(model);
     options->hands = hands > 0 ? hands : 0;
+    if (options->spares < info.spares) options->spares = info.spares;
     return CLI_DONE;
 }
 

@@ -187,6 +187,7 @@ static int prepare(replay *r) {
     options.isa = (lar_isa)s->isa;
     options.time_step = r->recorded.time_step;
     options.hands = r->recorded.hands;
+    options.spares = r->recorded.spares;
     cli_parallel_set(&s->parallel, &options);
     status = cli_open_model(&cli_replay, s->scene, &r->model);
     if (!status)

@@ -61,7 +61,7 @@ static void write_contact(json_writer *json, const lar_simulation *simulation) {
 /* Name and force of a tool of the scene or a hand, as of the last step. */
 static bool tool_of(const lar_simulation *simulation, int32_t tool, lar_tool_info *info,
                     lar_tool_force *force) {
-    return !lar_simulation_tool(simulation, tool, info, NULL) &&
+    return !lar_simulation_tool(simulation, tool, info, NULL) && info->shape != LAR_TOOL_NONE &&
            !lar_simulation_tool_force(simulation, tool, force, NULL);
 }
 

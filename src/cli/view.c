@@ -71,6 +71,7 @@ static int prepare(view *v) {
     options.isa = (lar_isa)s->isa;
     options.time_step = s->time_step;
     options.hands = 4;
+    options.spares = 4;
     cli_parallel_set(&s->parallel, &options);
     int status = cli_processes_begin(&cli_view, &s->parallel, s->argc, s->argv, &v->processes);
     if (!status) status = cli_open_model(&cli_view, s->scene, &v->model);
@@ -95,7 +96,7 @@ static int unknown_tool(const view *v, const char *device) {
     for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation); i++) {
         lar_tool_info tool;
         size_t used = strlen(known);
-        if (!lar_simulation_tool(v->simulation, i, &tool, NULL))
+        if (!lar_simulation_tool(v->simulation, i, &tool, NULL) && tool.shape != LAR_TOOL_NONE)
             snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", tool.name);
     }
     return cli_complain(&cli_view, CLI_USAGE, "--device %s: there is no such tool; there are: %s",
@@ -291,7 +292,8 @@ static void note_tools(view *v) {
          i++) {
         view_tool *tool = &r->tool[r->tools];
         lar_tool_info info;
-        if (lar_simulation_tool(v->simulation, i, &info, NULL) || info.shape == LAR_TOOL_HAND ||
+        if (lar_session_tool_info(v->session, i, &info, NULL) || info.shape == LAR_TOOL_HAND ||
+            info.shape == LAR_TOOL_NONE ||
             lar_session_tool_load(v->session, i, &tool->load, NULL))
             continue;
         tool->name = info.name;

@@ -8,7 +8,7 @@
 #include "lariat.h"
 #include "study/parallel.h"
 
-enum { VIEW_DEVICES = 16, VIEW_TOOLS = 16 };
+enum { VIEW_DEVICES = 20, VIEW_TOOLS = 20 };
 
 /* A tool that is no hand, and what it had to bear. */
 typedef struct view_tool {

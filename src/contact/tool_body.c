@@ -271,7 +271,7 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         lar_tool_follower *follower = &tools->follower[i];
         lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
-        if (list->tool[i].shape == LAR_TOOL_HAND || !(limits->drag > 0)) continue;
+        if (!lar_tool_touches(&list->tool[i]) || !(limits->drag > 0)) continue;
         bool closes = follower->hand.to.opening < 1 || tools->motion[i].to.opening < 1;
         mean_load mean = mean_of(&felt, limits, closes, need, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);

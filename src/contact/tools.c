@@ -3,22 +3,28 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/spares.h"
+
 static const char *const hand_name[] = {"hand", "hand 2", "hand 3", "hand 4"};
 enum { HANDS_MOST = sizeof hand_name / sizeof hand_name[0] };
 
 /* How far a hand reaches: about a finger's breadth. */
 static const double HAND_RADIUS = 0.008;
 
-lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_list *list,
-                                lar_error *error) {
+lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t spares,
+                                lar_tool_list *list, lar_error *error) {
     if (hands < 0 || hands > HANDS_MOST)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld hands; there can be 0 to %d", (long)hands,
                         (int)HANDS_MOST);
-    if (model->tool_count + hands > LAR_TOOLS_MOST)
+    if (spares < 0 || spares > LAR_SPARES_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld spare tools; there can be 0 to %d",
+                        (long)spares, LAR_SPARES_MOST);
+    const int most = LAR_TOOLS_MOST - LAR_SPARES_MOST;
+    if (model->tool_count + hands > most)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: %d tools and %ld hands; there can be %d together",
-                        lar_model_source(model), model->tool_count, (long)hands, LAR_TOOLS_MOST);
-    *list = (lar_tool_list){.count = model->tool_count + hands};
+                        lar_model_source(model), model->tool_count, (long)hands, most);
+    *list = (lar_tool_list){.count = model->tool_count + hands + spares, .spares = spares};
     if (model->tool_count)
         memcpy(list->tool, model->tool, (size_t)model->tool_count * sizeof *list->tool);
     for (int32_t i = 0; i < hands; i++)
@@ -27,12 +33,15 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_
                        .shape = LAR_TOOL_HAND,
                        .radius = HAND_RADIUS,
                        .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+    lar_spares_name(list);
     return LAR_OK;
 }
 
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
-    *tools = (lar_tools){.count = list->count,
-                         .division = {.parts = 1, .before = 1, .hardness = 1, .base = 1}};
+    lar_tools fresh = {.count = list->count,
+                       .division = {.parts = 1, .before = 1, .hardness = 1, .base = 1}};
+    memcpy(fresh.spare, tools->spare, sizeof fresh.spare);
+    *tools = fresh;
     lar_settings_reset(&tools->settings);
     for (int32_t i = 0; i < list->count; i++) {
         tools->motion[i] = (lar_tool_motion){.from = list->tool[i].rest, .to = list->tool[i].rest};

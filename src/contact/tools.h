@@ -19,7 +19,7 @@
 
 #include "model/settings.h"
 
-enum { LAR_TOOLS_MOST = 16, LAR_HOLDS_MOST = 256 };
+enum { LAR_SPARES_MOST = 4, LAR_TOOLS_MOST = 16 + LAR_SPARES_MOST, LAR_HOLDS_MOST = 256 };
 
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
@@ -78,10 +78,20 @@ typedef struct lar_tool_follower {
     int32_t padding;
 } lar_tool_follower;
 
+/* A place for a tool that is added while the simulation runs (spares.h). Zero: free. */
+typedef struct lar_spare_tool {
+    int32_t placed, shape; /* 0 or 1; lar_tool_shape */
+    int32_t serial;        /* how many have been placed here: tells one from the one before */
+    int32_t padding;
+    double radius, length, spread;
+    lar_tool_pose rest;
+} lar_spare_tool;
+
 typedef struct lar_tools {
     int32_t count, hold_count;
     lar_step_division division;
     lar_settings settings;
+    lar_spare_tool spare[LAR_SPARES_MOST];
     lar_tool_motion motion[LAR_TOOLS_MOST]; /* where tools really go */
     lar_hold hold[LAR_HOLDS_MOST];
     lar_tool_follower follower[LAR_TOOLS_MOST]; /* of processor zero only */
@@ -98,18 +108,25 @@ typedef struct lar_tool_limits {
     double drag;   /* of a tool on its own way [N s/m] */
 } lar_tool_limits;
 
-/* What a tool is, of the model's or a hand: the same on all processors, constant. */
+/* What a tool is: the model's, then hands, then spares. The same on all processors; constant but
+ * for the spares, which follow lar_tools.spare. */
 typedef struct lar_tool_list {
-    int32_t count;
-    lar_tool tool[LAR_TOOLS_MOST]; /* names are borrowed from the model, or static */
+    int32_t count, spares;
+    lar_tool tool[LAR_TOOLS_MOST]; /* names are borrowed from the model, static, or `name` */
     lar_tool_limits limits[LAR_TOOLS_MOST];
+    char name[LAR_SPARES_MOST][LAR_TOOL_HAND][LAR_TOOL_NAME_MOST + 1]; /* by place and shape */
 } lar_tool_list;
 
-/* The model's tools and so many hands; too many are an error. */
-lar_status lar_tool_list_create(const lar_model *model, int32_t hands, lar_tool_list *list,
-                                lar_error *error);
-/* All at rest, holding nothing. */
+/* The model's tools, so many hands and so many spares; too many are an error. */
+lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t spares,
+                                lar_tool_list *list, lar_error *error);
+/* All at rest, holding nothing. What was added stays. */
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools);
+
+/* Whether tissue can touch it: it is there, and no hand. */
+static inline bool lar_tool_touches(const lar_tool *tool) {
+    return tool->shape != LAR_TOOL_HAND && tool->shape != LAR_TOOL_NONE;
+}
 
 /* Bytes of the used part, from the beginning on: what travels. */
 static inline size_t lar_tools_bytes(const lar_tools *tools) {

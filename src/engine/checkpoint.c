@@ -15,14 +15,16 @@
 
 #include "base/folder.h"
 #include "base/hash.h"
+#include "contact/spares.h"
 #include "contact/tool_body.h"
 #include "engine/identity.h"
 
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
 static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-/* Version 3 had no settings: neither them nor what they take of a step. */
-enum { VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
+/* Version 3 had no settings: neither them nor what they take of a step. A state with tools that were
+ * added is version 5, any other one version 4. */
+enum { ADDED_TOOLS = 5, VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
     char magic[8];
@@ -43,16 +45,26 @@ _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until the
 _Static_assert(sizeof(lar_settings) == 552, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
+_Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MOST == 4, "the format");
+
+/* What its size follows from, besides the nodes. */
+typedef struct file_shape {
+    uint32_t version;
+    int32_t tools, holds;
+} file_shape;
 
 typedef double node_vector[3];
 
 static size_t settings_bytes(uint32_t version) {
-    return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
-                                      : sizeof(lar_step_division) + sizeof(lar_settings);
+    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MOST * sizeof(lar_spare_tool) : 0;
+    return version == BEFORE_SETTINGS
+               ? offsetof(lar_step_division, base)
+               : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
 }
 
-static size_t file_bytes(uint32_t version, size_t tools, size_t holds, size_t nodes) {
-    return sizeof(file_head) + settings_bytes(version) +
+static size_t file_bytes(const file_shape *shape, size_t nodes) {
+    size_t tools = (size_t)shape->tools, holds = (size_t)shape->holds;
+    return sizeof(file_head) + settings_bytes(shape->version) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
            sizeof(uint64_t);
@@ -104,22 +116,33 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
     return at + bytes;
 }
 
+/* What a file has of the tools: spares up to the last one that is there. */
+static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
+    const lar_tool_list *list = whole->acting.touch.list;
+    int32_t spares = lar_spares_needed(tools->spare);
+    return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
+                        .tools = (list ? lar_spares_first(list) : 0) + spares,
+                        .holds = tools->hold_count};
+}
+
 /* Returns where the nodes begin. */
-static unsigned char *fill_tools(unsigned char *at, const lar_tools *tools) {
-    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
+                                 const lar_tools *tools) {
+    size_t count = (size_t)shape->tools, holds = (size_t)shape->holds;
     at = append(at, &tools->division, sizeof tools->division);
     at = append(at, &tools->settings, sizeof tools->settings);
+    if (shape->version == ADDED_TOOLS) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->hold, holds * sizeof tools->hold[0]);
 }
 
 static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
-                           size_t bytes) {
+                           const file_shape *shape, size_t bytes) {
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), tools);
+    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
     node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
     for (lar_gid g = 0; g < nodes; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
@@ -127,7 +150,7 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
         memcpy(u[g], state->u + there, sizeof u[g]);
         memcpy(v[g], state->v + there, sizeof v[g]);
     }
-    file_head head = {.version = VERSION,
+    file_head head = {.version = shape->version,
                       .byte_order = BYTE_ORDER_MARK,
                       .bytes = bytes,
                       .step = state->step,
@@ -136,8 +159,8 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .contact = state->contact,
                       .hash = hash_state(state->step, level, (const node_vector *)u,
                                          (const node_vector *)v, nodes),
-                      .tools = tools->count,
-                      .holds = tools->hold_count};
+                      .tools = shape->tools,
+                      .holds = shape->holds};
     memcpy(head.magic, MAGIC, sizeof MAGIC);
     lar_model_identify(whole, &head.identity);
     memcpy(data, &head, sizeof head);
@@ -246,9 +269,9 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
                                const lar_tools *tools, lar_bytes *bytes, lar_error *error) {
     lar_status status = check_finite(path, whole, state, error);
     if (status) return status;
-    lar_bytes made = {.size = file_bytes(VERSION, (size_t)tools->count, (size_t)tools->hold_count,
-                                         (size_t)whole->model->mesh.node_count)};
-    made.data = fill(whole, state, tools, made.size);
+    const file_shape shape = shape_of(whole, tools);
+    lar_bytes made = {.size = file_bytes(&shape, (size_t)whole->model->mesh.node_count)};
+    made.data = fill(whole, state, tools, &shape, made.size);
     if (!made.data) return lar_fail_memory(error, made.size, path);
     *bytes = made;
     return LAR_OK;
@@ -281,11 +304,11 @@ static lar_status check_file(const char *path, const lar_bytes *bytes, file_head
         return refuse(error, path,
                       "was saved on a machine with another order of bytes; load it on one like "
                       "that");
-    if (bytes->size >= 16 && head->version != VERSION && head->version != BEFORE_SETTINGS)
+    if (bytes->size >= 16 && (head->version < BEFORE_SETTINGS || head->version > ADDED_TOOLS))
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
-                        "%s: is a checkpoint of version %lu, this Lariat reads versions %d and %d; "
+                        "%s: is a checkpoint of version %lu, this Lariat reads versions %d to %d; "
                         "save it anew with this one",
-                        path, (unsigned long)head->version, BEFORE_SETTINGS, VERSION);
+                        path, (unsigned long)head->version, BEFORE_SETTINGS, ADDED_TOOLS);
     if (bytes->size < sizeof *head || bytes->size < head->bytes)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: is cut off after %zu bytes; take another checkpoint", path,
@@ -317,6 +340,14 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
     return lar_bytes_read(path, bytes, error);
 }
 
+/* They stand behind the settings. */
+static void look_at_spares(const file_head *head, const lar_bytes *bytes,
+                           lar_spare_tool spare[LAR_SPARES_MOST]) {
+    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MOST * sizeof *spare;
+    if (head->version == ADDED_TOOLS && bytes->size >= at + size)
+        memcpy(spare, bytes->data + at, size);
+}
+
 lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, lar_error *error) {
     lar_bytes bytes = {0};
     file_head head;
@@ -325,18 +356,22 @@ lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, l
             error, LAR_ERROR_ARGUMENT,
             "lar_checkpoint_inspect needs the path of a saved state and a place for the "
             "answer");
+    lar_spare_tool spare[LAR_SPARES_MOST] = {{0}};
     lar_status status = lar_checkpoint_read(path, &bytes, error);
     if (!status) status = check_file(path, &bytes, &head, error);
+    if (!status) look_at_spares(&head, &bytes, spare);
     lar_bytes_free(&bytes);
     if (status) return status;
-    if (head.identity.element_kind > 2 || head.tools < 0)
+    int32_t spares = lar_spares_needed(spare);
+    if (head.identity.element_kind > 2 || head.tools < spares)
         return refuse(error, path, "has elements or tools that cannot be; take another checkpoint");
     *info = (lar_checkpoint_info){.element = (lar_element_kind)head.identity.element_kind,
                                   .nodes = (int32_t)head.identity.nodes,
                                   .elements = (int32_t)head.identity.elements,
-                                  .tools = head.tools,
+                                  .tools = head.tools - spares,
                                   .time_step = head.identity.time_step,
-                                  .step = head.step};
+                                  .step = head.step,
+                                  .spares = spares};
     return LAR_OK;
 }
 
@@ -454,6 +489,16 @@ static bool good_follower(const lar_tool *tool, const lar_tool_follower *followe
            follower->lagging >= 0 && follower->lagging <= lagging_most && follower->padding == 0;
 }
 
+/* Those that a file does not have rest, and are nothing. */
+static void fill_up(const lar_tool_list *list, lar_tools *tools) {
+    static const lar_tool_pose nowhere = {.orientation = {1, 0, 0, 0}, .opening = 1};
+    while (list && tools->count < list->count) {
+        lar_tool_motion *motion = &tools->motion[tools->count];
+        *motion = (lar_tool_motion){.from = nowhere, .to = nowhere};
+        tools->follower[tools->count++].hand = *motion;
+    }
+}
+
 static const unsigned char *extract(const unsigned char *at, void *to, size_t bytes) {
     memcpy(to, at, bytes);
     return at + bytes;
@@ -470,17 +515,22 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
     *at = extract(*at, &tools->division,
                   settings ? sizeof tools->division : offsetof(lar_step_division, base));
     if (settings) *at = extract(*at, &tools->settings, sizeof tools->settings);
+    if (head->version == ADDED_TOOLS) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
     bool good = good_division(&tools->division, head) &&
-                lar_settings_good(&tools->settings, whole->time_step);
-    for (int32_t i = 0; i < tools->count; i++)
-        good = good && good_motion(&tools->motion[i]) &&
-               near_enough(&list->tool[i], &tools->motion[i]) &&
-               good_follower(&list->tool[i], &tools->follower[i]);
-    for (int32_t i = 0; i < tools->hold_count; i++)
-        good = good && good_hold(&tools->hold[i], head, whole->model);
+                lar_settings_good(&tools->settings, whole->time_step) &&
+                lar_spares_good(tools->spare, list ? list->spares : 0);
+    for (int32_t i = 0; good && i < tools->count; i++) {
+        const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
+        good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
+               good_follower(&tool, &tools->follower[i]);
+    }
+    for (int32_t i = 0; good && i < tools->hold_count; i++)
+        good = good_hold(&tools->hold[i], head, whole->model) &&
+               lar_spare_tool_of(list, tools->spare, tools->hold[i].tool).shape != LAR_TOOL_NONE;
+    fill_up(list, tools);
     return good;
 }
 
@@ -493,9 +543,16 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     lar_status status = check_file(path, bytes, &head, error);
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
-    if (head.tools != (list ? list->count : 0) || head.holds < 0 || head.holds > LAR_HOLDS_MOST ||
-        bytes->size != file_bytes(head.version, (size_t)head.tools, (size_t)head.holds, nodes))
+    const file_shape shape = {head.version, head.tools, head.holds};
+    int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
+    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MOST : 0) ||
+        head.holds < 0 || head.holds > LAR_HOLDS_MOST || bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
+    if (spares > 0 && spares > list->spares)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: tools were added to what it was saved from, and this simulation has "
+                        "%s places for them; create it with options.spares = %ld",
+                        path, list->spares ? "too few" : "no", (long)spares);
     lar_checkpoint found = {.step = head.step,
                             .external = head.external,
                             .damped = head.damped,

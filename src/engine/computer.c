@@ -174,7 +174,8 @@ static lar_status open_processors(lar_computer *computer, bool *met, lar_error *
 }
 
 lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
-                               const lar_options *options, lar_computer **out, lar_error *error) {
+                               lar_tool_list *list, const lar_options *options, lar_computer **out,
+                               lar_error *error) {
     lar_computer *computer = lar_calloc(1, sizeof *computer);
     lar_status status = LAR_OK;
     bool met = false;
@@ -185,6 +186,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
         computer->whole = whole;
         computer->state = state;
         computer->tools = tools;
+        computer->list = list;
         status = prepare(computer, error);
         if (!status) status = open_processors(computer, &met, error);
         lar_schedule_set_clear(&computer->division.schedules);
@@ -315,6 +317,8 @@ static void stiffen_seat(void *context, int32_t number) {
 static void take_settings(lar_computer *computer) {
     const lar_settings *settings = &computer->tools->settings;
     const lar_domain *domain = &computer->processor[0].domain;
+    uint64_t interval = lar_interval_length(computer->whole, computer->tools);
+    for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].domain.interval = interval;
     if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
         lar_crew_run(computer->crew, stiffen_seat, computer);
 }
@@ -443,8 +447,11 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     bool fits = tools->count == count && tools->hold_count >= 0 &&
                 tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
                 holds_fit(computer, tools) &&
-                lar_settings_good(&tools->settings, computer->whole->time_step);
-    return fits ? LAR_OK : refuse_order(error);
+                lar_settings_good(&tools->settings, computer->whole->time_step) &&
+                lar_spares_good(tools->spare, computer->list->spares);
+    if (!fits) return refuse_order(error);
+    lar_spares_take(tools, computer->list);
+    return LAR_OK;
 }
 
 static lar_status obey(lar_computer *computer, const lar_order *order, const void *payload,

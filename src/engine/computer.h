@@ -68,6 +68,7 @@ typedef struct lar_computer {
     lar_report report; /* of the last advance; at processor zero, of all processors */
     lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
     lar_tools *tools;  /* of this process: zero's are those that count */
+    lar_tool_list *list; /* of this process: its spares follow `tools` */
     lar_interval interval;
     bool tools_sent; /* to the other processes, as they are */
     bool broken;     /* a processor failed: nothing goes on */
@@ -79,11 +80,11 @@ typedef struct lar_computer {
 } lar_computer;
 
 /* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
- * the whole model at the start; they and `tools` must outlive the computer. Takes options->listener
+ * the whole model at the start; they, `tools` and `list` must outlive the computer. Takes options->listener
  * over, whatever it returns. */
 lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
-                               const lar_options *options, lar_computer **computer,
-                               lar_error *error);
+                               lar_tool_list *list, const lar_options *options,
+                               lar_computer **computer, lar_error *error);
 /* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
  * Accepts NULL. */
 void lar_computer_destroy(lar_computer *computer);

@@ -372,7 +372,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = copy_materials(domain, error);
     if (!status) status = choose_step(domain, options, error);
-    domain->interval = LAR_INTERVAL_MOST; /* those with tools decide more often: simulation.c */
+    domain->interval = LAR_INTERVAL_MOST; /* with tools: lar_interval_length */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);

@@ -109,7 +109,7 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
         tools->hold[i].stiffness = (hand ? HAND_STIFFNESS : JAWS_STIFFNESS) / taken;
 }
 
-static void let_go(int32_t tool, lar_tools *tools) {
+void lar_hold_drop(int32_t tool, lar_tools *tools) {
     int32_t kept = 0;
     for (int32_t i = 0; i < tools->hold_count; i++)
         if (tools->hold[i].tool != tool) tools->hold[kept++] = tools->hold[i];
@@ -125,7 +125,7 @@ lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
     lar_tool_motion *motion = &tools->motion[tool];
     if (shape != LAR_TOOL_HAND && shape != LAR_TOOL_GRASPER) return LAR_OK;
     if (motion->holding && pose->opening > OPEN) {
-        let_go(tool, tools);
+        lar_hold_drop(tool, tools);
         motion->holding = 0;
     } else if (!motion->holding && pose->opening < CLOSED) {
         take(whole, state, list, tool, pose, tools);

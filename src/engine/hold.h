@@ -29,6 +29,9 @@ lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
 /* Whether that is asked for: only then the state is looked at. */
 bool lar_hold_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening);
 
+/* Lets go of everything at once. */
+void lar_hold_drop(int32_t tool, lar_tools *tools);
+
 /* How many points a tool holds. */
 int32_t lar_hold_count(const lar_tools *tools, int32_t tool);
 

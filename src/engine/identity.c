@@ -119,9 +119,11 @@ static uint64_t hash_contacts(const lar_model *model) {
     return hash;
 }
 
+/* Spares come and go. */
 static uint64_t hash_tools(const lar_tool_list *list) {
-    uint64_t hash = lar_hash_word(5, list ? (uint64_t)list->count : 0);
-    for (int32_t i = 0; list && i < list->count; i++) {
+    int32_t count = list ? lar_spares_first(list) : 0;
+    uint64_t hash = lar_hash_word(5, (uint64_t)count);
+    for (int32_t i = 0; i < count; i++) {
         const lar_tool *t = &list->tool[i];
         hash = lar_hash_word(hash, (uint64_t)t->shape);
         hash = hash_doubles(hash, (const double[]){t->radius, t->length, t->spread}, 3);
@@ -155,7 +157,9 @@ uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t 
     hash = hash_doubles(hash, &whole->time_step, 1);
     hash = hash_motion(hash, model);
     hash = lar_hash_word(hash, hash_contacts(model));
-    hash = lar_hash_word(hash, hash_tools(whole->acting.touch.list));
+    const lar_tool_list *list = whole->acting.touch.list;
+    hash = lar_hash_word(hash, hash_tools(list));
+    if (list && list->spares > 0) hash = lar_hash_word(hash, (uint64_t)list->spares);
     hash = hash_doubles(hash, whole->push, nodes);
     hash = hash_doubles(hash, start->u, 4 * nodes);
     hash = hash_doubles(hash, start->v, 4 * nodes);

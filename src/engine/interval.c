@@ -43,6 +43,11 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
     }
 }
 
+uint64_t lar_interval_length(const lar_domain *whole, const lar_tools *tools) {
+    bool tools_there = whole->model->tool_count > 0 || lar_spares_needed(tools->spare) > 0;
+    return tools_there ? lar_tool_interval(whole->time_step) : LAR_INTERVAL_MOST;
+}
+
 uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,
                           uint64_t step) {
     if (lar_division_is_close(division)) return step + 1;

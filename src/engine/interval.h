@@ -34,6 +34,9 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
  * lar_tools has changed. */
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools);
 
+/* Steps of an interval: those with tools decide more often. */
+uint64_t lar_interval_length(const lar_domain *whole, const lar_tools *tools);
+
 /* The step before which the interval that `step` belongs to ends: domain.interval steps, or one
  * while elements are strained. */
 uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,

@@ -106,9 +106,15 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
     lar_tool_limits_set(&scale, list);
 }
 
+void lar_simulation_limit_tools(lar_simulation *simulation) {
+    set_tool_limits(&simulation->domain, &simulation->list);
+    simulation->domain.interval = lar_interval_length(&simulation->domain, &simulation->tools);
+}
+
 void lar_simulation_settle(lar_simulation *simulation) {
-    if (lar_domain_stiffen(&simulation->domain, &simulation->tools.settings))
-        set_tool_limits(&simulation->domain, &simulation->list);
+    bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings);
+    bool tools = lar_spares_take(&simulation->tools, &simulation->list);
+    if (tissue || tools) lar_simulation_limit_tools(simulation);
 }
 
 void lar_simulation_set_start(lar_simulation *simulation) {
@@ -134,12 +140,13 @@ void lar_simulation_set_start(lar_simulation *simulation) {
 static lar_status compile(const lar_model *model, const lar_options *options,
                           lar_simulation *simulation, lar_error *error) {
     lar_domain *domain = &simulation->domain;
-    lar_status status = lar_tool_list_create(model, options->hands, &simulation->list, error);
+    lar_status status = lar_tool_list_create(model, options->hands, options->spares,
+                                             &simulation->list, error);
     if (!status) status = lar_domain_create(model, options, domain, error);
     if (status) return status;
-    if (model->tool_count > 0) domain->interval = lar_tool_interval(domain->time_step);
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
+    domain->interval = lar_interval_length(domain, &simulation->tools);
     status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
                               &simulation->tools, &domain->acting.touch, error);
     domain->acting.touch.always = options->search_always != 0;
@@ -168,8 +175,8 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);
     if (!status && lar_division_asked(&chosen))
-        status = lar_computer_create(&made->domain, &made->state, &made->tools, &chosen,
-                                     &made->computer, error);
+        status = lar_computer_create(&made->domain, &made->state, &made->tools, &made->list,
+                                     &chosen, &made->computer, error);
     else if (chosen.listener >= 0)
         close(chosen.listener); /* taken over, and nobody to use it */
     if (status)

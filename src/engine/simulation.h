@@ -47,14 +47,28 @@ void lar_simulation_hold_here(const lar_simulation *simulation);
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error);
 
+/* The same, and what has lost a processor: for calls that change something. */
+lar_status lar_simulation_check_change(const lar_simulation *simulation, const char *call,
+                                       lar_error *error);
+
 /* Where a tool's hand asks it to be now; lar_simulation_tool_pose says where it is. */
 void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, lar_tool_pose *pose);
 
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 
-/* Materials become as stiff as simulation->tools say, and tools bear what these tissues bear. */
+/* Materials become as stiff as simulation->tools say, spares what these say, and tools bear what
+ * the tissues bear. */
 void lar_simulation_settle(lar_simulation *simulation);
+
+/* What every tool bears, and how often is decided about tools: after these have changed. */
+void lar_simulation_limit_tools(lar_simulation *simulation);
+
+/* lar_simulation_add_tool in a place of the spares, and the first one that is free; their number:
+ * none is. */
+lar_status lar_simulation_add_tool_at(lar_simulation *simulation, const lar_tool_info *wanted,
+                                      int32_t place, lar_error *error);
+int32_t lar_simulation_free_place(const lar_simulation *simulation);
 
 /* All processors go on from simulation->state and ->tools as they are now; what tripped and what
  * was felt is forgotten. */

@@ -34,6 +34,14 @@ lar_status lar_simulation_check_zero(const lar_simulation *simulation, const cha
         call);
 }
 
+lar_status lar_simulation_check_change(const lar_simulation *simulation, const char *call,
+                                       lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, call, error);
+    if (!status && simulation->computer && simulation->computer->broken)
+        status = lar_computer_refuse(error);
+    return status;
+}
+
 static lar_status check_tool(const lar_simulation *simulation, int32_t tool, const void *place,
                              lar_error *error) {
     if (!simulation || !place)
@@ -127,6 +135,9 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     if (!status) status = lar_simulation_check_zero(simulation, "lar_simulation_tool_move", error);
     if (status) return status;
     const lar_tool *tool = &simulation->list.tool[index];
+    if (tool->shape == LAR_TOOL_NONE)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %ld is not there; add one with lar_simulation_add_tool", (long)index);
     lar_tools *tools = &simulation->tools;
     lar_tool_motion *motion = &tools->motion[index];
     lar_tool_pose now, wanted;
@@ -162,7 +173,7 @@ static const lar_interval *interval_of(const lar_simulation *simulation) {
 }
 
 static double limit_of(const lar_tool_list *list, int32_t tool) {
-    return list->tool[tool].shape == LAR_TOOL_HAND ? 0 : list->limits[tool].force;
+    return lar_tool_touches(&list->tool[tool]) ? list->limits[tool].force : 0;
 }
 
 /* What both jaws have in common; what one of them is pushed with besides is a force on the tool. */

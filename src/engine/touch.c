@@ -352,6 +352,9 @@ static void apply_tool(lar_touch *touch, const lar_condition_context *context,
                        const lar_contact_law *law) {
     const lar_tool *tool = &touch->list->tool[t];
     lar_tool_watch *watch = &touch->watch[t];
+    int32_t serial = lar_spare_serial(touch->list, touch->tools, t);
+    if (watch->serial != serial) watch->known = watch->rests = false;
+    watch->serial = serial;
     double came = follow(watch, tool, &touch->tools->motion[t], state, context->whole_step);
     watch->path += travel + came;
     if (touch->always || !watch->known || !(watch->path < watch->limit))
@@ -393,7 +396,7 @@ void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar
     if (touch->travel > 1) forget_groups(touch); /* short sums keep the smallest steps */
     for (int32_t t = 0; t < touch->list->count; t++) {
         touch->sum[t].touching = touch->sum[t].held = 0;
-        if (touch->list->tool[t].shape != LAR_TOOL_HAND)
+        if (lar_tool_touches(&touch->list->tool[t]))
             apply_tool(touch, context, state, t, known ? travel : 0, &tool_law);
     }
     apply_holds(touch, context, state, &law);

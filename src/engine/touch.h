@@ -18,8 +18,8 @@
 #ifndef LAR_ENGINE_TOUCH_H
 #define LAR_ENGINE_TOUCH_H
 
+#include "contact/spares.h"
 #include "engine/planes.h"
-#include "contact/tools.h"
 #include "mechanics/contact.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
@@ -77,6 +77,7 @@ typedef struct lar_tool_body {
 /* What this thread knows of the surroundings of one tool. */
 typedef struct lar_tool_watch {
     lar_tool_body body;
+    int32_t serial;    /* of the tool, where it can be another one (contact/spares.h) */
     bool rests, known; /* `body` is for good; `near` belongs to the state */
     double path;       /* since the search [m] */
     double limit;      /* of the path, up to which `near` is complete */

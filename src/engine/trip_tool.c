@@ -61,6 +61,7 @@ void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
         const lar_tool *tool = &touch->list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
+        if (tool->shape == LAR_TOOL_NONE) continue;
         lar_tool_at(&touch->tools->motion[t], trip->step, domain->time_step, &pose, velocity);
         double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
         const lar_tool_motion *motion = &touch->tools->motion[t];

@@ -134,7 +134,7 @@ bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]) {
     return true;
 }
 
-static const char *size_fault(const lar_tool *tool) {
+const char *lar_tool_size_fault(const lar_tool *tool) {
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
     const double *q = tool->rest.orientation;
     double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
@@ -157,7 +157,7 @@ static const char *size_fault(const lar_tool *tool) {
 }
 
 bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]) {
-    const char *wrong = size_fault(tool);
+    const char *wrong = lar_tool_size_fault(tool);
     if (wrong) {
         snprintf(fault, LAR_FAULT_SIZE, "%s", wrong);
         return true;

@@ -24,6 +24,8 @@ bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
                        char fault[LAR_FAULT_SIZE]);
 bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]);
 bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]);
+/* Of its shape, size and pose alone; NULL: nothing. */
+const char *lar_tool_size_fault(const lar_tool *tool);
 
 /* What lies on or at something may be inside it by so much, from rounding [m]. */
 double lar_overlap_rounding(const lar_mesh *mesh);

@@ -132,13 +132,15 @@ lar_status lar_session_record(lar_session *session, const char *path, lar_error 
     return status ? status : closed;
 }
 
-static lar_status set(lar_session *session, lar_setting setting, lar_error *error) {
+static lar_status set(lar_session *session, lar_setting setting, int32_t *tool, lar_error *error) {
     lar_request_answer answer = {0};
     lar_status status = check_session(session, error);
-    if (status) return status;
-    return ask_and_wait(
-        session, (lar_request){.kind = LAR_REQUEST_SET, .setting = setting, .answer = &answer},
-        error);
+    if (!status)
+        status = ask_and_wait(
+            session, (lar_request){.kind = LAR_REQUEST_SET, .setting = setting, .answer = &answer},
+            error);
+    if (!status && tool) *tool = answer.tool;
+    return status;
 }
 
 lar_status lar_session_set_gravity(lar_session *session, const double gravity[3],
@@ -147,30 +149,49 @@ lar_status lar_session_set_gravity(lar_session *session, const double gravity[3]
     if (gravity)
         setting = (lar_setting){.kind = LAR_SETTING_GRAVITY,
                                 .value = {gravity[0], gravity[1], gravity[2]}};
-    return set(session, setting, error);
+    return set(session, setting, NULL, error);
 }
 
 lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error) {
-    return set(session, (lar_setting){.kind = LAR_SETTING_DAMPING, .value = {damping}}, error);
+    return set(session, (lar_setting){.kind = LAR_SETTING_DAMPING, .value = {damping}}, NULL,
+               error);
 }
 
 lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                      lar_error *error) {
     return set(
         session,
-        (lar_setting){.kind = LAR_SETTING_STIFFNESS, .material = material, .value = {factor}},
+        (lar_setting){.kind = LAR_SETTING_STIFFNESS, .of = material, .value = {factor}}, NULL,
         error);
+}
+
+lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted, int32_t *tool,
+                                lar_error *error) {
+    if (!wanted || (unsigned)wanted->shape >= LAR_TOOL_HAND)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_session_add_tool needs a sphere, a capsule or a grasper, and its size");
+    return set(session,
+               (lar_setting){.kind = LAR_SETTING_ADD_TOOL,
+                             .of = (int32_t)wanted->shape,
+                             .value = {wanted->radius, wanted->length, wanted->spread}},
+               tool, error);
+}
+
+lar_status lar_session_remove_tool(lar_session *session, int32_t tool, lar_error *error) {
+    return set(session, (lar_setting){.kind = LAR_SETTING_REMOVE_TOOL, .of = tool}, NULL, error);
 }
 
 lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                               lar_error *error) {
     lar_request_answer answer = {0};
     lar_device *opened = NULL;
+    lar_tool_info info;
     lar_status status = lar_session_check_tool(session, tool, error);
     if (!status && (!device || !*device))
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
                           "lar_session_attach needs a device, such as \"udp:127.0.0.1:9000\"");
-    if (!status) status = lar_device_open(device, &session->tool[tool].info, &opened, error);
+    if (!status) status = lar_session_tool_info(session, tool, &info, error);
+    if (!status) status = lar_device_open(device, &info, &opened, error);
     if (status) return status;
     status = ask_and_wait(
         session,

@@ -17,6 +17,35 @@ lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_
                     (long)session->tools);
 }
 
+/* Reading takes a letter out of the box, which changes nothing that callers see. */
+static const lar_session_view *look_at_view(const lar_session *session) {
+    lar_mailbox *box = &((lar_session *)session)->view;
+    lar_mailbox_lock(box);
+    return lar_mailbox_newest(box, NULL);
+}
+
+static void end_look(const lar_session *session) {
+    lar_mailbox_unlock(&((lar_session *)session)->view);
+}
+
+int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info) {
+    const lar_session_view *view = look_at_view(session);
+    int32_t serial = view->tool[tool].serial;
+    *info = view->tool[tool].info;
+    end_look(session);
+    return serial;
+}
+
+/* Spares are, once they have been added. */
+static lar_status check_there(const lar_session *session, int32_t tool, lar_error *error) {
+    lar_tool_info info;
+    if (lar_spare_of(&session->simulation->list, tool) < 0) return LAR_OK;
+    lar_session_look_at_tool(session, tool, &info);
+    if (info.shape != LAR_TOOL_NONE) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "tool %ld is not there; add one with lar_session_add_tool", (long)tool);
+}
+
 /* A pose as a device gives it: the quaternion may be off unit length by rounding. */
 static lar_status clean_pose(const lar_tool_pose *pose, lar_tool_pose *clean, lar_error *error) {
     double square = 0, sum = pose->opening;
@@ -42,6 +71,7 @@ lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_t
     if (!status && !pose)
         status = lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_tool_move needs a pose");
     if (!status) status = clean_pose(pose, &clean, error);
+    if (!status) status = check_there(session, tool, error);
     if (status) return status;
     lar_mailbox *box = &session->tool[tool].hand;
     lar_mailbox_lock(box);
@@ -51,15 +81,14 @@ lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_t
     return LAR_OK;
 }
 
-/* Reading takes a letter out of the box, which changes nothing that callers see. */
-static const lar_session_view *look_at_view(const lar_session *session) {
-    lar_mailbox *box = &((lar_session *)session)->view;
-    lar_mailbox_lock(box);
-    return lar_mailbox_newest(box, NULL);
-}
-
-static void end_look(const lar_session *session) {
-    lar_mailbox_unlock(&((lar_session *)session)->view);
+lar_status lar_session_tool_info(const lar_session *session, int32_t tool, lar_tool_info *info,
+                                 lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !info)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_tool_info needs a place for the answer");
+    if (!status) lar_session_look_at_tool(session, tool, info);
+    return status;
 }
 
 lar_status lar_session_tool_force(const lar_session *session, int32_t tool, lar_tool_pose *pose,

@@ -103,6 +103,10 @@ static lar_status load(lar_session *session, const lar_request *request, lar_err
 
 static lar_status attach(lar_session *session, const lar_request *request, lar_error *error) {
     lar_session_tool *tool = &session->tool[request->tool];
+    if (tool->info.shape == LAR_TOOL_NONE)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %ld is not there; add one before a device is connected with it",
+                        (long)request->tool);
     if (tool->device)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "tool %ld, '%s', has a device already, and keeps it until the session ends",
@@ -137,23 +141,46 @@ static lar_status change_player(lar_session *session, const lar_request *request
     return LAR_OK;
 }
 
+lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error) {
+    lar_status status = lar_setting_apply(setting, session->simulation, error);
+    if (status) return status;
+    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_SET,
+                                            .step = lar_simulation_steps(session->simulation),
+                                            .setting = *setting});
+    lar_session_look_at_spares(session);
+    lar_session_publish(session, false);
+    return LAR_OK;
+}
+
+/* A device keeps its tool until the session ends. */
+static lar_status check_device(const lar_session *session, const lar_setting *setting,
+                               lar_error *error) {
+    int32_t tool = setting->of;
+    if (setting->kind != LAR_SETTING_REMOVE_TOOL || tool < 0 || tool >= session->tools ||
+        !session->tool[tool].device)
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s has a device, and keeps it until the session ends; it cannot be removed",
+                    session->tool[tool].info.name);
+}
+
 static lar_status set(lar_session *session, const lar_request *request, lar_error *error) {
     if (session->player)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "a recording is being played; leave it to change gravity, damping and "
-                        "stiffness");
+                        "a recording is being played; leave it to change gravity, damping, "
+                        "stiffness and tools");
     if (session->status.state == LAR_SESSION_STOPPED)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "the run has broken off; reset it or load a state before gravity, damping "
-                        "and stiffness are changed");
-    lar_status status = lar_setting_apply(&request->setting, session->simulation, error);
-    if (!status) {
-        lar_session_note(session, &(lar_record){.kind = LAR_RECORD_SET,
-                                                .step = lar_simulation_steps(session->simulation),
-                                                .setting = request->setting});
-        lar_session_publish(session, false);
+                        "the run has broken off; reset it or load a state before gravity, damping, "
+                        "stiffness and tools are changed");
+    lar_setting setting = request->setting;
+    lar_status status = check_device(session, &setting, error);
+    if (!status && setting.kind == LAR_SETTING_ADD_TOOL) {
+        int32_t place = lar_simulation_free_place(session->simulation);
+        setting.of = lar_setting_of_tool(setting.of, place);
+        request->answer->tool = lar_spares_first(&session->simulation->list) + place;
     }
-    return status;
+    return status ? status : lar_session_apply(session, &setting, error);
 }
 
 static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {

@@ -23,9 +23,10 @@
 typedef struct lar_recording_header {
     lar_element_kind element;
     int32_t nodes, elements; /* of the model */
-    int32_t tools, hands;    /* hands are the last ones of the tools */
+    int32_t tools, hands;    /* without spares; hands are the last ones of the tools */
     double time_step;        /* [s] */
     uint64_t tick_steps, hash_every;
+    int32_t spares; /* tools that could be added, behind all others */
 } lar_recording_header;
 
 typedef enum lar_record_kind {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "contact/tools.h"
 #include "session/recording_words.h"
 
 /* Sums of two numbers of steps do not overflow. */
@@ -44,7 +45,8 @@ static lar_status check_header(const lar_recording_reader *reader, const uint64_
     bool good = word[1] <= LAR_ELEMENT_HEX8_MATRIX && word[2] > 0 && word[2] <= INT32_MAX &&
                 word[3] > 0 && word[3] <= INT32_MAX && word[4] <= INT16_MAX && word[5] <= word[4] &&
                 time_step > 0 && isfinite(time_step) && word[7] > 0 && word[7] <= STEPS_MOST &&
-                word[8] > 0;
+                word[8] > 0 &&
+                (word[0] <= LAR_RECORDING_WITHOUT_SPARES || word[9] <= LAR_SPARES_MOST);
     if (good) return LAR_OK;
     return lar_fail(error, LAR_ERROR_FORMAT,
                     "%s: the header of the recording holds numbers that no recording has; take an "
@@ -86,7 +88,8 @@ static lar_status read_header(lar_recording_reader *reader, lar_error *error) {
                                             .hands = (int32_t)word[5],
                                             .time_step = lar_double_of(word[6]),
                                             .tick_steps = word[7],
-                                            .hash_every = word[8]};
+                                            .hash_every = word[8],
+                                            .spares = word[0] > LAR_RECORDING_WITHOUT_SPARES ? (int32_t)word[9] : 0};
     reader->at = 8 * (2 + LAR_RECORDING_HEADER_WORDS);
     return LAR_OK;
 }
@@ -122,7 +125,7 @@ void lar_recording_close(lar_recording_reader *reader) {
 static lar_status take_move(const lar_recording_reader *reader, const uint64_t *word,
                             lar_record *record, lar_error *error) {
     double sum = 0, square = 0;
-    if (word[1] >= (uint64_t)reader->header.tools)
+    if (word[1] >= (uint64_t)(reader->header.tools + reader->header.spares))
         return lar_recording_refuse(
             reader, error, "moves a tool that the recording does not have; it was altered");
     record->tool = (int32_t)word[1];
@@ -141,12 +144,12 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
 /* Whether the values make sense is said where they are set. */
 static lar_status take_setting(const lar_recording_reader *reader, const uint64_t *word,
                                lar_record *record, lar_error *error) {
-    int64_t material = (int64_t)word[2];
-    if (word[1] >= LAR_SETTING_KINDS || material < -1 || material > INT32_MAX)
+    int64_t of = (int64_t)word[2];
+    if (word[1] >= LAR_SETTING_KINDS || of < -1 || of > INT32_MAX)
         return lar_recording_refuse(reader, error, "sets what cannot be set; it was altered");
     record->setting = (lar_setting){
         .kind = (lar_setting_kind)word[1],
-        .material = (int32_t)material,
+        .of = (int32_t)of,
         .value = {lar_double_of(word[3]), lar_double_of(word[4]), lar_double_of(word[5])}};
     return LAR_OK;
 }

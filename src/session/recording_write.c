@@ -48,8 +48,10 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
         return lar_fail(error, LAR_ERROR_IO,
                         "%s: cannot be written: %s; check the folder and its permissions", path,
                         strerror(errno));
+    uint64_t version =
+        header->spares > 0 ? LAR_RECORDING_VERSION : LAR_RECORDING_WITHOUT_SPARES;
     uint64_t words[1 + LAR_RECORDING_HEADER_WORDS] = {0,
-                                                      LAR_RECORDING_VERSION,
+                                                      version,
                                                       (uint64_t)header->element,
                                                       (uint64_t)header->nodes,
                                                       (uint64_t)header->elements,
@@ -58,7 +60,7 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
                                                       lar_word_of(header->time_step),
                                                       header->tick_steps,
                                                       header->hash_every,
-                                                      0};
+                                                      (uint64_t)header->spares};
     memcpy(words, LAR_RECORDING_MAGIC, sizeof words[0]);
     words[0] = le64toh(words[0]);
     put_words(writer, words, 1 + LAR_RECORDING_HEADER_WORDS);
@@ -80,7 +82,7 @@ void lar_recording_put(lar_recording_writer *writer, const lar_record *record) {
     }
     if (record->kind == LAR_RECORD_SET) {
         word[3] = (uint64_t)record->setting.kind;
-        word[4] = (uint64_t)(int64_t)record->setting.material;
+        word[4] = (uint64_t)(int64_t)record->setting.of;
         for (int i = 0; i < 3; i++) word[5 + i] = lar_word_of(record->setting.value[i]);
     }
     put_words(writer, word, 2 + (size_t)words);

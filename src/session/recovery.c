@@ -133,9 +133,39 @@ static void open_hands(const lar_session *session, lar_tools *tools) {
     }
 }
 
+static bool is_same_tool(const lar_spare_tool *a, const lar_spare_tool *b) {
+    return a->placed == b->placed && (!a->placed || a->serial == b->serial);
+}
+
+/* What somebody has added or removed since the state was kept stays so: instruments do not vanish
+ * from a hand. They come to stand where there is room beside the body as it is now. */
+static lar_status keep_spares(lar_session *session, const lar_spare_tool *wanted,
+                              lar_error *error) {
+    const lar_simulation *simulation = session->simulation;
+    int32_t first = lar_spares_first(&simulation->list);
+    lar_status status = LAR_OK;
+    for (int32_t k = 0; k < simulation->list.spares && !status; k++) {
+        const lar_spare_tool *now = &simulation->tools.spare[k], *then = &wanted[k];
+        if (is_same_tool(now, then)) continue;
+        if (now->placed)
+            status = lar_session_apply(
+                session, &(lar_setting){.kind = LAR_SETTING_REMOVE_TOOL, .of = first + k}, error);
+        if (then->placed && !status)
+            status = lar_session_apply(
+                session,
+                &(lar_setting){.kind = LAR_SETTING_ADD_TOOL,
+                               .of = lar_setting_of_tool(then->shape, k),
+                               .value = {then->radius, then->length, then->spread}},
+                error);
+    }
+    return status;
+}
+
 /* A replay does not go back by itself: the recording says where to. */
 static lar_status go_back(lar_session *session, lar_kept_state *kept, lar_error *error) {
+    lar_spare_tool spare[LAR_SPARES_MOST];
     lar_status status;
+    memcpy(spare, session->simulation->tools.spare, sizeof spare);
     if (!kept) {
         status = lar_simulation_reset(session->simulation, error);
         if (!status)
@@ -145,7 +175,8 @@ static lar_status go_back(lar_session *session, lar_kept_state *kept, lar_error 
     }
     open_hands(session, &kept->tools);
     status = lar_simulation_go_back(session->simulation, &kept->state, &kept->tools, error);
-    return status ? status : lar_session_note_state(session, error);
+    if (!status) status = lar_session_note_state(session, error);
+    return status ? status : keep_spares(session, spare, error);
 }
 
 /* Tools where the simulation has them, slow from now on. */

@@ -31,7 +31,7 @@ static lar_status check_counts(const char *path, const lar_recording_header *hea
 lar_status lar_recording_check_simulation(const char *path, const lar_recording_header *header,
                                           const lar_simulation *simulation, lar_error *error) {
     const lar_domain *domain = &simulation->domain;
-    int32_t tools = lar_simulation_tool_count(simulation);
+    int32_t spares = simulation->list.spares, tools = lar_spares_first(&simulation->list);
     lar_status status = check_counts(path, header, &domain->model->mesh, error);
     if (status) return status;
     if (header->time_step != domain->time_step)
@@ -50,6 +50,11 @@ lar_status lar_recording_check_simulation(const char *path, const lar_recording_
                         "simulation has %ld tools; create it with options.hands = %ld",
                         path, (long)header->tools, (long)header->hands, (long)tools,
                         (long)header->hands);
+    if (header->spares > spares)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: was recorded where %ld tools could be added, and this simulation has "
+                        "places for %ld; create it with options.spares = %ld",
+                        path, (long)header->spares, (long)spares, (long)header->spares);
     return LAR_OK;
 }
 
@@ -195,7 +200,8 @@ lar_status lar_recording_inspect(const char *path, lar_recording_info *info, lar
                                  .tools = reader.header.tools,
                                  .hands = reader.header.hands,
                                  .time_step = reader.header.time_step,
-                                 .tick_steps = reader.header.tick_steps};
+                                 .tick_steps = reader.header.tick_steps,
+                                 .spares = reader.header.spares};
     lar_recording_close(&reader);
     return LAR_OK;
 }

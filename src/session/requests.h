@@ -42,6 +42,7 @@ typedef struct lar_request_answer {
     lar_bytes state;        /* SAVE: the caller writes and frees it */
     lar_recorder *recorder; /* RECORD: what the engine has let go of; the caller closes it */
     lar_player *player;     /* REPLAY, RESET, LOAD: likewise */
+    int32_t tool;           /* SET: that was added */
 } lar_request_answer;
 
 /* Files are opened, read and written by whoever asks: the engine only gets and gives what is in

@@ -36,9 +36,11 @@ static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST +
 
 static void take_status(lar_server *server) {
     lar_session_status_get(server->session, &server->status);
-    for (int32_t i = 0; i < server->session->tools; i++)
+    for (int32_t i = 0; i < server->session->tools; i++) {
+        lar_session_look_at_tool(server->session, i, &server->tool[i].info);
         lar_session_tool_force(server->session, i, &server->tool[i].pose, &server->tool[i].force,
                                NULL);
+    }
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next)
         if (viewer->closing == LAR_CLOSE_NOT) lar_viewer_wants(viewer, LAR_DUE_STATUS);
 }

@@ -106,6 +106,15 @@ static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what,
     if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
 }
 
+static void tell_added(lar_server *server, lar_viewer *viewer, int32_t tool) {
+    lar_json *json = &server->json;
+    lar_json_begin(json);
+    lar_json_text(json, "kind", "added");
+    lar_json_integer(json, "tool", tool);
+    lar_json_end(json);
+    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+}
+
 void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
     if (end->job.kind == LAR_WISH_INSPECT) return lar_server_tell_reading(server, end);
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
@@ -117,6 +126,8 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
         if (viewer) tell_saved(server, viewer, CHECKPOINT, end->job.name);
     } else if (end->job.kind == LAR_WISH_RECORD && end->job.on) {
         snprintf(server->recording, sizeof server->recording, "%s", end->job.name);
+    } else if (end->job.kind == LAR_WISH_ADD_TOOL) {
+        if (viewer) tell_added(server, viewer, end->job.setting.tool);
     } else if (end->job.kind == LAR_WISH_REPLAY) {
         snprintf(server->played, sizeof server->played, "%s", end->job.name);
     } else if (end->job.kind == LAR_WISH_RECORD && server->recording[0]) {
@@ -173,6 +184,14 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wi
     if (is_played(server, viewer, wish)) return;
     if (lar_hands_move(&server->hands, viewer->number, wish, lar_clock_ns(), &error))
         lar_viewer_note(server, viewer, error.message);
+}
+
+static void remove_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_error error;
+    if (lar_hands_may_remove(&server->hands, viewer->number, wish->tool, lar_clock_ns(), &error))
+        lar_viewer_note(server, viewer, error.message);
+    else
+        ask_setting(server, viewer, wish);
 }
 
 /* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
@@ -244,7 +263,11 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish
     case LAR_WISH_GRAVITY:
     case LAR_WISH_DAMPING:
     case LAR_WISH_STIFFNESS:
+    case LAR_WISH_ADD_TOOL:
         ask_setting(server, viewer, wish);
+        break;
+    case LAR_WISH_REMOVE_TOOL:
+        remove_tool(server, viewer, wish);
         break;
     }
 }

@@ -19,9 +19,10 @@ enum { TICKS_TO_HOLD = 3 };
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context) {
     *hands = (lar_hands){.session = session, .tell = tell, .context = context};
     for (int32_t i = 0; i < session->tools; i++) {
-        if (session->tool[i].info.shape == LAR_TOOL_HAND)
-            hands->hand[hands->count++] = (lar_hand){.tool = i};
-        hands->owner[i].pose = session->tool[i].info.rest;
+        lar_tool_info info;
+        hands->owner[i].serial = lar_session_look_at_tool(session, i, &info);
+        if (info.shape == LAR_TOOL_HAND) hands->hand[hands->count++] = (lar_hand){.tool = i};
+        hands->owner[i].pose = info.rest;
     }
 }
 
@@ -32,7 +33,20 @@ static void look_where_it_is(lar_hands *hands, const lar_session_status *status,
     for (int32_t i = 0; i < hands->session->tools; i++) {
         lar_owner *owner = &hands->owner[i];
         if (owner->viewer == 0) continue;
-        *owner = (lar_owner){.deaf_to = owner->viewer, .deaf_until = now + ON_ITS_WAY};
+        *owner = (lar_owner){.serial = owner->serial,
+                             .deaf_to = owner->viewer,
+                             .deaf_until = now + ON_ITS_WAY};
+    }
+}
+
+/* A tool that was added is nobody's yet. */
+static void look_at_tools(lar_hands *hands) {
+    const lar_session *session = hands->session;
+    for (int32_t i = lar_spares_first(&session->simulation->list); i < session->tools; i++) {
+        lar_tool_info info;
+        int32_t serial = lar_session_look_at_tool(session, i, &info);
+        if (hands->owner[i].serial != serial)
+            hands->owner[i] = (lar_owner){.serial = serial, .pose = info.rest};
     }
 }
 
@@ -40,6 +54,7 @@ static void look_again(lar_hands *hands, int64_t now) {
     lar_session_status status;
     lar_session_status_get(hands->session, &status);
     look_where_it_is(hands, &status, now);
+    look_at_tools(hands);
 }
 
 /* ---- hands ---------------------------------------------------------------------------------- */
@@ -152,6 +167,7 @@ void lar_hands_look(lar_hands *hands, int64_t now) {
     lar_session_status status;
     lar_session_status_get(hands->session, &status);
     look_where_it_is(hands, &status, now);
+    look_at_tools(hands);
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status, now);
 }
@@ -175,23 +191,39 @@ const char *lar_hands_by(const lar_hands *hands, int32_t tool, uint64_t viewer, 
     return who == 0 ? "nobody" : who == viewer ? "you" : "other";
 }
 
+static lar_status check_owner(const lar_hands *hands, uint64_t viewer, int32_t tool, int64_t now,
+                              lar_error *error) {
+    const char *by = lar_hands_by(hands, tool, viewer, now);
+    lar_tool_info info;
+    lar_session_look_at_tool(hands->session, tool, &info);
+    if (strcmp(by, "device") == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s is moved by a device", info.name);
+    if (strcmp(by, "other") == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is moved by another viewer; try again when it rests", info.name);
+    return LAR_OK;
+}
+
+lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool, int64_t now,
+                                lar_error *error) {
+    look_again(hands, now);
+    return check_owner(hands, viewer, tool, now, error);
+}
+
 lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
                           lar_error *error) {
     lar_owner *owner = &hands->owner[wish->tool];
-    const lar_tool_info *info = &hands->session->tool[wish->tool].info;
-    if (info->shape == LAR_TOOL_HAND)
+    lar_tool_info info;
+    lar_session_look_at_tool(hands->session, wish->tool, &info);
+    if (info.shape == LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s is a hand; take hold of the surface with grab", info->name);
+                        "%s is a hand; take hold of the surface with grab", info.name);
+    if (info.shape == LAR_TOOL_NONE) return LAR_OK; /* it was removed by somebody else just now */
     look_again(hands, now);
     if (owner->deaf_to == viewer && now < owner->deaf_until) return LAR_OK;
-    const char *by = lar_hands_by(hands, wish->tool, viewer, now);
-    if (strcmp(by, "device") == 0)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s is moved by a device", info->name);
-    if (strcmp(by, "other") == 0)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s is moved by another viewer; try again when it rests", info->name);
     lar_tool_pose pose;
-    lar_status status = lar_session_tool_force(hands->session, wish->tool, &pose, NULL, error);
+    lar_status status = check_owner(hands, viewer, wish->tool, now, error);
+    if (!status) status = lar_session_tool_force(hands->session, wish->tool, &pose, NULL, error);
     if (status) return status;
     if (owner->viewer == viewer && now - owner->moved < OWNED) pose = owner->pose;
     memcpy(pose.position, wish->point, sizeof pose.position);
@@ -214,7 +246,9 @@ void lar_hands_leave(lar_hands *hands, uint64_t viewer) {
         lar_owner *owner = &hands->owner[tool];
         if (owner->viewer != viewer) continue;
         owner->viewer = 0;
-        if (hands->session->tool[tool].info.shape != LAR_TOOL_GRASPER) continue;
+        lar_tool_info info;
+        lar_session_look_at_tool(hands->session, tool, &info);
+        if (info.shape != LAR_TOOL_GRASPER) continue;
         owner->pose.opening = 1;
         lar_session_tool_move(hands->session, tool, &owner->pose, NULL);
     }

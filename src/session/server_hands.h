@@ -35,6 +35,7 @@ typedef struct lar_hand {
 /* Who moves a tool that is no hand. */
 typedef struct lar_owner {
     uint64_t viewer; /* 0: nobody */
+    int32_t serial;  /* of the tool: one that is added later is another's */
     int64_t moved;   /* [ns] */
     lar_tool_pose pose;
     uint64_t deaf_to; /* who moved it when the run was put somewhere else: until then [ns] what was
@@ -63,6 +64,9 @@ void lar_hands_wish(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int
 /* Moves an instrument; an error when it is another's, with who it is. */
 lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
                           lar_error *error);
+/* Whether it may be taken away: nobody else moves it. */
+lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool, int64_t now,
+                                lar_error *error);
 /* The viewer is gone: it lets go of everything. */
 void lar_hands_leave(lar_hands *hands, uint64_t viewer);
 

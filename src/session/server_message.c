@@ -16,6 +16,9 @@ const lar_field_name lar_field_names[LAR_FIELDS] = {
     {"energy", "strain energy density", "J/m³", LAR_FIELD_ENERGY},
     {"processor", "processor", "", LAR_FIELD_PROCESSOR}};
 
+const char *const lar_shape_names[LAR_TOOL_NONE + 1] = {"sphere", "capsule", "grasper", "hand",
+                                                        "none"};
+
 int lar_field_index(lar_field field) {
     for (int i = 0; i < LAR_FIELDS; i++)
         if (lar_field_names[i].field == field) return i;
@@ -46,6 +49,9 @@ typedef enum key_id {
     KEY_AXIS,
     KEY_INDEX,
     KEY_MATERIAL,
+    KEY_SHAPE,
+    KEY_RADIUS,
+    KEY_LENGTH,
     KEYS
 } key_id;
 
@@ -79,7 +85,10 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_ENERGY] = {"energy", IS_BOOLEAN, 0, 0, 0},
                                         [KEY_AXIS] = {"axis", IS_WHOLE, 0, 2, 0},
                                         [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0},
-                                        [KEY_MATERIAL] = {"material", IS_WHOLE, 0, INT32_MAX, 0}};
+                                        [KEY_MATERIAL] = {"material", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_SHAPE] = {"shape", IS_STRING, 0, 0, 0},
+                                        [KEY_RADIUS] = {"radius", IS_REAL, -1000, 1000, 0},
+                                        [KEY_LENGTH] = {"length", IS_REAL, -1000, 1000, 0}};
 
 #define BIT(key) (1u << KEY_##key)
 
@@ -108,7 +117,9 @@ static const struct {
     [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0},
     [LAR_WISH_GRAVITY] = {"gravity", 0, BIT(TO)},
     [LAR_WISH_DAMPING] = {"damping", 0, BIT(VALUE)},
-    [LAR_WISH_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)}};
+    [LAR_WISH_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)},
+    [LAR_WISH_ADD_TOOL] = {"add_tool", BIT(SHAPE) | BIT(RADIUS), BIT(LENGTH)},
+    [LAR_WISH_REMOVE_TOOL] = {"remove_tool", BIT(TOOL), 0}};
 enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
 
 /* ---- reading ---------------------------------------------------------------------------- */
@@ -324,6 +335,18 @@ static bool set_field(reader *r, lar_wish *wish) {
     return refuse(r, LAR_CLOSE_POLICY, "field has a value that is none of ours");
 }
 
+static bool set_shape(reader *r, lar_wish *wish) {
+    wish->radius = r->number[KEY_RADIUS][0];
+    wish->length = r->number[KEY_LENGTH][0];
+    if (!(r->seen & BIT(SHAPE))) return true;
+    for (int i = 0; i < LAR_TOOL_HAND; i++)
+        if (strcmp(lar_shape_names[i], r->text[KEY_SHAPE]) == 0) {
+            wish->shape = (lar_tool_shape)i;
+            return true;
+        }
+    return refuse(r, LAR_CLOSE_POLICY, "shape has a value that is none of ours");
+}
+
 static bool set_tool(reader *r, int32_t tools, lar_wish *wish) {
     if (!(r->seen & BIT(TOOL))) return true;
     if (r->number[KEY_TOOL][0] >= tools)
@@ -384,8 +407,8 @@ lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish
         i += (size_t)bytes;
     }
     bool good = r.close == LAR_CLOSE_NOT && read_object(&r) && check_keys(&r, &found.kind) &&
-                set_field(&r, &found) && set_tool(&r, tools, &found) && set_pace(&r, &found) &&
-                set_rest(&r, &found);
+                set_field(&r, &found) && set_shape(&r, &found) && set_tool(&r, tools, &found) &&
+                set_pace(&r, &found) && set_rest(&r, &found);
     if (good) *wish = found;
     return r.close;
 }

@@ -54,14 +54,16 @@ typedef enum lar_wish_kind {
     LAR_WISH_SLICE,
     LAR_WISH_GRAVITY,
     LAR_WISH_DAMPING,
-    LAR_WISH_STIFFNESS
+    LAR_WISH_STIFFNESS,
+    LAR_WISH_ADD_TOOL,
+    LAR_WISH_REMOVE_TOOL
 } lar_wish_kind;
 
 /* One message. What its kind does not have is zero. */
 typedef struct lar_wish {
     lar_wish_kind kind;
     lar_field field; /* frame; 0: none */
-    int32_t tool;    /* forces, tool */
+    int32_t tool;    /* forces, tool, remove_tool */
     int32_t hand;    /* grab, pull, release: 0..LAR_VIEWER_HANDS-1 */
     uint64_t after;  /* forces */
     uint64_t steps;  /* step */
@@ -78,6 +80,8 @@ typedef struct lar_wish {
     int32_t axis, index;          /* slice */
     int32_t node, face;           /* inspect: of the surface; -1: none */
     bool energy;                  /* inspect */
+    lar_tool_shape shape;         /* add_tool, as the next two [m] */
+    double radius, length;
     char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
 } lar_wish;
 
@@ -91,6 +95,9 @@ typedef struct lar_field_name {
     const char *name, *title, *unit;
     lar_field field;
 } lar_field_name;
+
+/* Words of lar_tool_shape. */
+extern const char *const lar_shape_names[LAR_TOOL_NONE + 1];
 
 enum { LAR_FIELDS = 6 }; /* the first is "none" */
 extern const lar_field_name lar_field_names[LAR_FIELDS];

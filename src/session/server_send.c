@@ -32,26 +32,37 @@ static void write_pose(lar_json *json, const lar_tool_pose *pose) {
     lar_json_number(json, "opening", pose->opening);
 }
 
+/* What status says of spares is what they are. */
+static const lar_tool_info no_tool = {
+    .name = "", .shape = LAR_TOOL_NONE, .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+
+static void write_tool(lar_json *json, const lar_tool_info *info) {
+    lar_json_text(json, "name", info->name);
+    lar_json_text(json, "shape", lar_shape_names[info->shape]);
+    lar_json_number(json, "radius", info->radius);
+    lar_json_number(json, "length", info->length);
+    lar_json_number(json, "spread", info->spread);
+}
+
 static void write_tools(lar_json *json, const lar_session *session) {
-    static const char *const shape[] = {"sphere", "capsule", "grasper", "hand"};
+    int32_t first = lar_spares_first(&session->simulation->list);
     lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < session->tools; i++) {
-        const lar_tool_info *info = &session->tool[i].info;
+        const lar_tool_info info = i < first ? session->tool[i].info : no_tool;
         lar_json_open(json, NULL, '{');
-        lar_json_text(json, "name", info->name);
-        lar_json_text(json, "shape", shape[info->shape]);
-        lar_json_number(json, "radius", info->radius);
-        lar_json_number(json, "length", info->length);
-        lar_json_number(json, "spread", info->spread);
+        write_tool(json, &info);
         lar_json_open(json, "rest", '{');
-        write_pose(json, &info->rest);
+        write_pose(json, &info.rest);
         lar_json_close(json, '}');
         lar_json_close(json, '}');
     }
     lar_json_close(json, ']');
     lar_json_open(json, "hands", '[');
-    for (int32_t i = 0; i < session->tools; i++)
+    for (int32_t i = 0; i < first; i++)
         if (session->tool[i].info.shape == LAR_TOOL_HAND) lar_json_integer(json, NULL, i);
+    lar_json_close(json, ']');
+    lar_json_open(json, "spares", '[');
+    for (int32_t i = first; i < session->tools; i++) lar_json_integer(json, NULL, i);
     lar_json_close(json, ']');
 }
 
@@ -236,6 +247,7 @@ static void write_replay(const lar_server *server, lar_json *json) {
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
     int64_t now = lar_clock_ns();
+    int32_t spares = lar_spares_first(&server->session->simulation->list);
     lar_json_begin(json);
     lar_json_text(json, "kind", "status");
     write_progress(json, &server->status);
@@ -255,6 +267,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     for (int32_t i = 0; i < server->session->tools; i++) {
         const lar_tool_force *force = &server->tool[i].force;
         lar_json_open(json, NULL, '{');
+        if (i >= spares) write_tool(json, &server->tool[i].info);
         write_pose(json, &server->tool[i].pose);
         lar_json_vector(json, "force", force->force, 3);
         lar_json_vector(json, "torque", force->torque, 3);

@@ -132,6 +132,7 @@ struct lar_server {
     lar_blob forces;
     lar_session_status status;
     struct {
+        lar_tool_info info;
         lar_tool_pose pose;
         lar_tool_force force;
     } tool[LAR_TOOLS_MOST];

@@ -17,6 +17,13 @@ static void inspect(lar_work *work, lar_job_end *end) {
                          &end->reading, &end->error);
 }
 
+/* The wish is told which tool that is. */
+static void add_tool(lar_work *work, lar_wish *wish, lar_error *error) {
+    const lar_tool_info wanted = {
+        .shape = wish->shape, .radius = wish->radius, .length = wish->length};
+    lar_session_add_tool(work->session, &wanted, &wish->tool, error);
+}
+
 static void set(lar_work *work, const lar_wish *wish, lar_error *error) {
     lar_session *session = work->session;
     double damping = lar_model_damping(work->model);
@@ -29,7 +36,7 @@ static void set(lar_work *work, const lar_wish *wish, lar_error *error) {
 }
 
 static void do_job(lar_work *work, lar_job_end *end) {
-    const lar_job *job = &end->job;
+    lar_job *job = &end->job;
     lar_error *error = &end->error;
     error->status = LAR_OK;
     switch (job->kind) {
@@ -55,6 +62,12 @@ static void do_job(lar_work *work, lar_job_end *end) {
     case LAR_WISH_DAMPING:
     case LAR_WISH_STIFFNESS:
         set(work, &job->setting, error);
+        break;
+    case LAR_WISH_ADD_TOOL:
+        add_tool(work, &job->setting, error);
+        break;
+    case LAR_WISH_REMOVE_TOOL:
+        lar_session_remove_tool(work->session, job->setting.tool, error);
         break;
     default:
         break;

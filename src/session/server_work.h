@@ -22,7 +22,7 @@ typedef struct lar_job {
     uint64_t viewer;
     bool on;                      /* record */
     lar_question question;        /* inspect */
-    lar_wish setting;             /* gravity, damping, stiffness */
+    lar_wish setting;             /* gravity, damping, stiffness, add_tool, remove_tool */
     char name[LAR_NAME_MOST + 1]; /* of the file, without its folder */
     char path[LAR_PATH_MOST];
 } lar_job;

@@ -45,16 +45,12 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
 }
 
 static lar_status make_tools(lar_session *session, lar_error *error) {
-    const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
-                                        .hand_force = session->options.hand_force,
-                                        .seconds = (double)session->tick_steps * session->time_step,
-                                        .time_step = session->time_step};
     lar_status status = LAR_OK;
     session->tools = lar_simulation_tool_count(session->simulation);
     for (int32_t i = 0; i < session->tools && !status; i++) {
         lar_session_tool *tool = &session->tool[i];
         status = lar_simulation_tool(session->simulation, i, &tool->info, error);
-        lar_coupling_create(&tool->coupling, &tool->info, &limits);
+        lar_session_couple(session, i);
         if (!status)
             status = lar_mailbox_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
     }
@@ -84,14 +80,16 @@ static lar_status make_recovery(lar_session *session, lar_error *error) {
 lar_recording_header lar_session_recording_header(const lar_session *session) {
     const lar_simulation *simulation = session->simulation;
     const lar_model *model = simulation->domain.model;
+    int32_t tools = lar_spares_first(&simulation->list);
     return (lar_recording_header){.element = simulation->domain.kind,
                                   .nodes = model->mesh.node_count,
                                   .elements = model->mesh.element_count,
-                                  .tools = session->tools,
-                                  .hands = session->tools - lar_model_tool_count(model),
+                                  .tools = tools,
+                                  .hands = tools - lar_model_tool_count(model),
                                   .time_step = session->time_step,
                                   .tick_steps = session->tick_steps,
-                                  .hash_every = session->options.hash_every};
+                                  .hash_every = session->options.hash_every,
+                                  .spares = simulation->list.spares};
 }
 
 static lar_status record_from_start(lar_session *session, lar_error *error) {

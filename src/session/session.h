@@ -38,6 +38,8 @@ typedef struct lar_session_view {
     double gravity[3], damping;      /* [m/s^2] [1/s] */
     double factor[LAR_FACTORS_MOST]; /* of the stiffness of materials */
     struct {
+        lar_tool_info info;
+        int32_t serial; /* of a spare: one more for each that was added there */
         lar_tool_pose pose;
         lar_tool_force force;
         lar_tool_load load;
@@ -48,7 +50,8 @@ typedef struct lar_session_view {
 /* A tool and whoever moves it: the engine's. */
 typedef struct lar_session_tool {
     lar_mailbox hand;   /* lar_tool_pose, from tool_move */
-    lar_tool_info info; /* constant */
+    lar_tool_info info; /* constant, but for spares: then the engine's, others ask the view */
+    int32_t serial;     /* as in the view */
     lar_device *device; /* NULL: it listens to tool_move */
     bool led;           /* somebody has moved it since the start, or since the simulation was last
                            put somewhere else */
@@ -120,12 +123,21 @@ lar_status lar_session_begin_states(lar_session *session, lar_error *error);
 bool lar_session_follows(lar_session *session, int32_t tool);
 /* Tells everybody how it stands; with `quantiles` also what has to be summed up. */
 void lar_session_publish(lar_session *session, bool quantiles);
+/* Sets it now, and in the recording. */
+lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error);
 /* Into the recording, when there is one. */
 void lar_session_note(lar_session *session, const lar_record *record);
 /* The hash of this moment; the state that the simulation was put into; the end. */
 void lar_session_note_hash(lar_session *session);
 lar_status lar_session_note_state(lar_session *session, lar_error *error);
 void lar_session_note_end(lar_session *session);
+
+/* A hand and a tool come together anew: the tool is another one. */
+void lar_session_couple(lar_session *session, int32_t tool);
+/* Spares that have been added or removed since: they are where the simulation has them. */
+void lar_session_look_at_spares(lar_session *session);
+/* From any thread: what a tool is, as of the last tick; returns its serial. */
+int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info);
 
 /* The tools are where the simulation has them, and nobody leads them. */
 void lar_session_take_tools(lar_session *session);

@@ -1,5 +1,5 @@
-/* One change of gravity, damping or stiffness: what is asked of a session, recorded and replayed.
- */
+/* One change of gravity, damping, stiffness or tools: what is asked of a session, recorded and
+ * replayed. */
 #ifndef LAR_SESSION_SETTING_H
 #define LAR_SESSION_SETTING_H
 
@@ -10,15 +10,22 @@ typedef enum lar_setting_kind {
     LAR_SETTING_GRAVITY = 0,   /* value[0..2] */
     LAR_SETTING_MODEL_GRAVITY, /* as the model says */
     LAR_SETTING_DAMPING,       /* value[0] */
-    LAR_SETTING_STIFFNESS,     /* value[0], of `material`; -1: all */
+    LAR_SETTING_STIFFNESS,     /* value[0], of material `of`; -1: all */
+    LAR_SETTING_ADD_TOOL,      /* of = lar_setting_of_tool: radius, length, spread */
+    LAR_SETTING_REMOVE_TOOL,   /* tool `of` */
     LAR_SETTING_KINDS
 } lar_setting_kind;
 
 typedef struct lar_setting {
     lar_setting_kind kind;
-    int32_t material;
+    int32_t of;
     double value[3];
 } lar_setting;
+
+/* Shape and place among the spares of a tool that is added, as one number. */
+static inline int32_t lar_setting_of_tool(int32_t shape, int32_t place) {
+    return LAR_TOOL_HAND * place + shape;
+}
 
 lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
                              lar_error *error);

@@ -14,23 +14,58 @@ static lar_device_tick tick_of(const lar_session *session) {
                              .paused = session->status.state != LAR_SESSION_PLAYING};
 }
 
+static void take_tool(lar_session *session, int32_t i) {
+    lar_session_tool *tool = &session->tool[i];
+    lar_tool_force now;
+    lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
+    lar_simulation_tool_asked(session->simulation, i, &tool->pose);
+    lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
+    tool->sent = tool->target = tool->pose;
+    tool->force = tool->felt = (lar_tool_force){0};
+    lar_simulation_tool_force(session->simulation, i, &now, NULL);
+    tool->force.limit = tool->load.limit = now.limit;
+    tool->force.apart = now.apart;
+    tool->force.limited = now.limited;
+    tool->led = false;
+    lar_coupling_reset(&tool->coupling, &tool->pose);
+    if (tool->device) lar_device_reset(tool->device);
+}
+
 void lar_session_take_tools(lar_session *session) {
     session->status.placed++;
-    for (int32_t i = 0; i < session->tools; i++) {
+    lar_session_look_at_spares(session);
+    for (int32_t i = 0; i < session->tools; i++) take_tool(session, i);
+}
+
+void lar_session_couple(lar_session *session, int32_t tool) {
+    const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
+                                        .hand_force = session->options.hand_force,
+                                        .seconds = (double)session->tick_steps * session->time_step,
+                                        .time_step = session->time_step};
+    lar_coupling_create(&session->tool[tool].coupling, &session->tool[tool].info, &limits);
+}
+
+/* Names and shapes go together. */
+static bool is_another(const lar_session_tool *tool, const lar_tool_info *now, int32_t serial) {
+    const lar_tool_info *was = &tool->info;
+    return tool->serial != serial || was->shape != now->shape || was->radius != now->radius ||
+           was->length != now->length || was->spread != now->spread ||
+           memcmp(&was->rest, &now->rest, sizeof was->rest) != 0;
+}
+
+void lar_session_look_at_spares(lar_session *session) {
+    const lar_simulation *simulation = session->simulation;
+    for (int32_t i = lar_spares_first(&simulation->list); i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
-        lar_tool_force now;
-        lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
-        lar_simulation_tool_asked(session->simulation, i, &tool->pose);
-        lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
-        tool->sent = tool->target = tool->pose;
-        tool->force = tool->felt = (lar_tool_force){0};
-        lar_simulation_tool_force(session->simulation, i, &now, NULL);
-        tool->force.limit = tool->load.limit = now.limit;
-        tool->force.apart = now.apart;
-        tool->force.limited = now.limited;
-        tool->led = false;
-        lar_coupling_reset(&tool->coupling, &tool->pose);
-        if (tool->device) lar_device_reset(tool->device);
+        lar_tool_info now;
+        int32_t serial = lar_spare_serial(&simulation->list, &simulation->tools, i);
+        if (lar_simulation_tool(simulation, i, &now, NULL) || !is_another(tool, &now, serial))
+            continue;
+        tool->info = now;
+        tool->serial = serial;
+        tool->load = (lar_tool_load){0};
+        lar_session_couple(session, i);
+        take_tool(session, i);
     }
 }
 
@@ -45,6 +80,7 @@ static void look_at_hands(lar_session *session) {
             fresh = lar_device_poll(tool->device, &now, &tool->target);
         else if (fresh)
             tool->target = *hand;
+        if (tool->info.shape == LAR_TOOL_NONE) continue;
         tool->led = tool->led || (fresh && lar_session_follows(session, i));
     }
 }
@@ -101,6 +137,7 @@ static void note_load(lar_session_tool *tool) {
 }
 
 void lar_session_feel_tools(lar_session *session) {
+    lar_session_look_at_spares(session); /* a recording that is played adds and removes, too */
     lar_history_begin(&session->history);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
