@@ -1,0 +1,30 @@
+#include "session/setting.h"
+
+#include "engine/simulation.h"
+
+static lar_status add_tool(const lar_setting *setting, lar_simulation *simulation,
+                           lar_error *error) {
+    const lar_tool_info wanted = {.shape = (lar_tool_shape)(setting->of % LAR_TOOL_HAND),
+                                  .radius = setting->value[0],
+                                  .length = setting->value[1],
+                                  .spread = setting->value[2]};
+    return lar_simulation_add_tool_at(simulation, &wanted, setting->of / LAR_TOOL_HAND, error);
+}
+
+lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
+                             lar_error *error) {
+    switch (setting->kind) {
+    case LAR_SETTING_GRAVITY:
+        return lar_simulation_set_gravity(simulation, setting->value, error);
+    case LAR_SETTING_MODEL_GRAVITY:
+        return lar_simulation_set_gravity(simulation, NULL, error);
+    case LAR_SETTING_DAMPING:
+        return lar_simulation_set_damping(simulation, setting->value[0], error);
+    case LAR_SETTING_ADD_TOOL:
+        return add_tool(setting, simulation, error);
+    case LAR_SETTING_REMOVE_TOOL:
+        return lar_simulation_remove_tool(simulation, setting->of, error);
+    default:
+        return lar_simulation_set_stiffness(simulation, setting->of, setting->value[0], error);
+    }
+}
