@@ -8,6 +8,7 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
   lar_test(session/test_server_refused.c)
   lar_test(session/test_server_riding.c)
   lar_test(session/test_server_scan.c)
+  lar_test(session/test_server_tools.c)
   lar_test(session/test_server_many.c slow)
 else() # the preset tsan names them
   add_custom_target(test_session_server)

@@ -70,6 +70,13 @@ static void examples_of_the_page_are_understood(void **unused) {
     assert_int_equal(wish.material, 2);
     wish = good("{\"do\":\"stiffness\"}");
     assert_true(!wish.valued && wish.material == -1);
+    wish = good("{\"do\":\"add_tool\",\"shape\":\"grasper\",\"radius\":0.003,\"length\":0.02}");
+    assert_true(wish.kind == LAR_WISH_ADD_TOOL && wish.shape == LAR_TOOL_GRASPER);
+    assert_true(wish.radius == 0.003 && wish.length == 0.02);
+    wish = good("{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0.003}");
+    assert_true(wish.shape == LAR_TOOL_SPHERE && wish.length == 0);
+    wish = good("{\"do\":\"remove_tool\",\"tool\":4}");
+    assert_true(wish.kind == LAR_WISH_REMOVE_TOOL && wish.tool == 4);
     /* Escapes are characters like others. */
     assert_int_equal(good("{\"\\u0064o\":\"pl\\u0061y\"}").kind, LAR_WISH_PLAY);
 }
@@ -103,6 +110,11 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_POLICY, "{\"do\":1}", "do must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":\"velocity\"}", "field has a value"},
         {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":null}", "field must be a string"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\"}", "needs the key radius"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"radius\":1}", "needs the key shape"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"hand\",\"radius\":1}", "shape has a"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":2000}", "between"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"remove_tool\",\"tool\":5}", "there are 5 tools"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\"}", "step needs the key steps"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\",\"steps\":0}", "between 1 and 100000"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\",\"steps\":1.5}", "whole"},

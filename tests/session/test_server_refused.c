@@ -96,6 +96,8 @@ static void who_may_only_watch_does_nothing_else(void **unused) {
                                        "{\"do\":\"gravity\"}",
                                        "{\"do\":\"damping\",\"value\":1}",
                                        "{\"do\":\"stiffness\",\"value\":1}",
+                                       "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0.01}",
+                                       "{\"do\":\"remove_tool\",\"tool\":0}",
                                        "{\"do\":\"tool\",\"tool\":0,\"position\":[5,5,5]}",
                                        "{\"do\":\"grab\",\"hand\":0,\"point\":[0,0,0]}"};
     static const char *const paths[] = {"/socket?token=for-the-public",
