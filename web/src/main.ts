@@ -1,4 +1,5 @@
 /* The viewer: puts the parts together and runs the loop of animation frames. */
+import { AddTool } from './cards/addtool';
 import { BodyCard } from './cards/bodycard';
 import { Colours } from './cards/colours';
 import { element } from './dom';
@@ -57,6 +58,7 @@ function start(): void {
             scan.setHello(hello);
             view.instruments.set(hello.tools, hello.hands);
             toolCard.setHello(hello);
+            addTool.setHello(hello);
             hand.forget();
             element('watching').hidden = !hello.watches;
             force.clear();
@@ -97,11 +99,21 @@ function start(): void {
             plots.update(status);
             line.update(status);
             toolCard.update(status);
+            addTool.update(status);
             showStop(status);
             showRecovery(status);
         showRecordingLost(status);
             dropPlaced(status);
         },
+        tools(tools) {
+            view.instruments.set(tools, session.hello!.hands);
+            toolCard.setTools(tools);
+            if (instrument.changed()) pointer.drop();
+            addTool.show();
+            chooseForce();
+            view.changed();
+        },
+        added: (tool) => addTool.added(tool, session.tools),
         hand(news) {
             hand.news(news);
             chooseForce();
@@ -142,9 +154,11 @@ function start(): void {
     const hand = new Hand(session, view, note);
     const instrument = new Instrument(session, view, (tool) => {
         toolCard.show(tool);
+        addTool.show();
         chooseForce();
     });
     const toolCard = new ToolCard(instrument);
+    const addTool = new AddTool(session, instrument, note);
     const saved = new SavedCard(session);
     const body = new BodyCard(session, note);
     const replay = new ReplayBar(session);
@@ -157,7 +171,7 @@ function start(): void {
     const colours = new Colours(view, (field) => (session.field = field));
     const pointer = new Pointer(view, hand, instrument, measure, used);
     listenToKeys({
-        view, hand, instrument, transport, replay, saved, body, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
+        view, hand, instrument, transport, replay, saved, body, addTool, colours, panel, inside, measure, capture, plots, scan, used, help, say: note,
     });
 
     const edges = element<HTMLInputElement>('edges');
@@ -180,7 +194,7 @@ function start(): void {
         const tool = pulling ? (hand.tool >= 0 ? hand.tool : (hello.hands[0] ?? -1)) : instrument.chosen;
         if (tool !== session.forceTool) force.history.clear();
         session.showForcesOf(tool);
-        force.name(pulling ? 'Your pull' : (hello.tools[tool]?.name ?? 'Force'));
+        force.name(pulling ? 'Your pull' : (session.tools[tool]?.name || 'Force'));
     }
 
     let stopped = ''; // why, as shown

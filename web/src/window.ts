@@ -25,6 +25,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get peak() { return force.history.peak(); },
         get displacement() { return view.displacement(); },
         get tools() { return session.status?.tools.map((tool) => [...tool.position, tool.opening]) ?? []; },
+        get names() { return session.tools.map((tool) => tool.name); },
         get press() { return measure.press; },
         get reading() { return { node: measure.node, element: measure.elementNumber }; },
         get measured() { return measure.distance; },

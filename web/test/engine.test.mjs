@@ -380,6 +380,61 @@ test('instruments are chosen, moved and closed', async () => {
     assert.equal(await v.page.locator('#opening-row').isVisible(), false);
 });
 
+test('a tool is added by keyboard, presses the organ, is felt, and is removed', async () => {
+    await fresh();
+    const keys = v.page.keyboard;
+    await v.page.locator('#picture').focus();
+    await keys.press('Insert');
+    await keys.press('Tab');
+    await keys.press('Control+A');
+    await keys.type('8');
+    await keys.press('Enter');
+    await v.until(() => window.lariat.names.includes('sphere 1'));
+    const tool = (await v.get('names')).indexOf('sphere 1');
+    await v.until(() => document.activeElement.id === 'picture');
+    assert.equal(await v.page.locator('#force-name').innerText(), 'sphere 1');
+    assert.ok((await v.get('displacement')) < 1e-3, 'it touches nothing yet');
+    const second = await openPage(browser, engine.url);
+    await second.until(() => window.lariat.names.includes('sphere 1'));
+    await second.page.getByRole('radio', { name: 'sphere 1' }).waitFor({ timeout: 3000 });
+    await second.close();
+    await v.page.bringToFront();
+    // Down into the organ: its force and its limit are shown, and the tissue gives way.
+    await keys.press('p');
+    for (let i = 0; i < 14 && (await v.get('force')) < 0.05; i++) {
+        await keys.press('ArrowDown');
+        await v.page.waitForTimeout(120);
+    }
+    await v.until(() => window.lariat.force > 0.05 && window.lariat.displacement > 2e-3);
+    assert.match(await v.page.getByRole('radio', { name: 'sphere 1' }).innerText(), /of \d+\.\d\d N/);
+    await v.shot('tool-pressed');
+    // A size that cannot be is said by the engine.
+    await keys.press('Escape');
+    await keys.press('Insert');
+    await v.page.locator('#add-radius').fill('4000');
+    await keys.press('Enter');
+    await v.page.getByText('too large for a body').waitFor({ timeout: 3000 });
+    // A reset keeps it, above the body.
+    await v.page.locator('#picture').focus();
+    await fresh();
+    assert.ok((await v.get('names')).includes('sphere 1'));
+    await v.page.waitForTimeout(300);
+    assert.ok((await v.get('displacement')) < 1e-3);
+    for (const [width, height] of [[390, 780], [800, 700], [1600, 900]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.locator('#add-tool').scrollIntoViewIfNeeded();
+        await v.page.waitForTimeout(400);
+        await v.shot(`tool-added-${width}`);
+    }
+    await v.page.setViewportSize({ width: 1000, height: 640 });
+    await v.page.getByRole('radio', { name: 'sphere 1' }).click();
+    await v.page.locator('#picture').focus();
+    await keys.press('Delete');
+    await v.until(() => !window.lariat.names.includes('sphere 1'));
+    assert.equal((await v.get('names'))[tool], '');
+    assert.equal(await v.page.locator('#force-name').innerText(), 'Your pull');
+});
+
 test('after a reset an instrument is where the scene has it, and stays there', async () => {
     await fresh();
     const grasper = async () => (await v.get('tools'))[1].slice(0, 3);

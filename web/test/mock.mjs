@@ -100,13 +100,16 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         slices: 0, // that were asked for
         late: 0, energies: 0, // answers that were; questions for energies
         body: { gravity: [0, 0, -9.81], damping: 4, stiffness: Array(materials).fill(1) }, settings: 0, // and how often they were set
+        asked: [], // for tools to be added and removed
         refused: [], // what those who may only watch have asked for
     };
     const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
-    const tools = [tool, hand('hand 1'), hand('hand 2')];
+    const none = { name: '', shape: 'none', radius: 0, length: 0, spread: 0, rest: { position: [0, 0, 0], orientation: [1, 0, 0, 0], opening: 1 } };
+    const tools = [tool, hand('hand 1'), hand('hand 2'), none, none];
+    const spares = [3, 4];
     const poses = tools.map((t) => structuredClone(t.rest));
-    const forces = [[], []].map(() => []).concat([[]]);
+    const forces = tools.map(() => []);
     let held = null; // { client, hand, node, target }
 
     function hand(name) {
@@ -177,7 +180,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
             name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),
-        tools, hands: [1, 2],
+        tools: tools.map((t, i) => (spares.includes(i) ? none : t)), hands: [1, 2], spares,
         fields: [
             { name: 'displacement', number: 1, title: 'displacement', unit: 'm' },
             { name: 'von_mises', number: 4, title: 'von Mises stress', unit: 'Pa' },
@@ -203,6 +206,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true, grasp: 0 }
                 : { depth: 0, apart: 0, limited: false, grasp: 0 }),
+            ...(spares.includes(i) ? { ...tools[i], rest: undefined } : {}),
             limit: tools[i].shape === 'hand' ? 0 : 1.76, touching: 0, held: 0, by: 'nobody' })),
     });
 
@@ -390,6 +394,20 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 tool() {
                     poses[m.tool].position = m.position;
                     if (m.opening !== undefined) poses[m.tool].opening = m.opening;
+                },
+                add_tool() {
+                    state.asked.push(m);
+                    const i = spares.find((k) => tools[k] === none);
+                    if (i === undefined) return say({ kind: 'note', text: 'no place is left: 2 tools were added, which is the most; remove one of them' });
+                    tools[i] = { ...none, name: `${m.shape} ${i - 2}`, shape: m.shape, radius: m.radius, length: m.length ?? 0, spread: m.shape === 'grasper' ? 1 : 0,
+                        rest: { ...none.rest, position: [0.02 * (i - 3), 0, 0.11] } };
+                    poses[i] = structuredClone(tools[i].rest);
+                    say({ kind: 'added', tool: i });
+                },
+                remove_tool() {
+                    state.asked.push(m);
+                    tools[m.tool] = none;
+                    poses[m.tool] = structuredClone(none.rest);
                 },
                 play: () => (state.state = 'playing'),
                 pause: () => (state.state = 'paused'),

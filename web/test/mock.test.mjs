@@ -154,6 +154,7 @@ test('who may only watch sees everything and is offered nothing that the engine 
         for (const id of ['play', 'step', 'reset', 'record', 'save', 'load', 'pace', 'gravity', 'gravity-direction', 'damping', 'stiffness', 'body-reset'])
             assert.equal(await v.page.locator(`#${id}`).isDisabled(), true, id);
         assert.equal(await v.page.locator('#ask').isDisabled(), false);
+        assert.equal(await v.page.locator('#tool-more').isVisible(), false);
         assert.equal(await v.page.locator('#hint').innerText(), 'Drag to look around, wheel to zoom');
         // A drag on the organ turns the picture; keys that act on the run say why they do not.
         const pictures = await v.get('pictures');
@@ -162,7 +163,7 @@ test('who may only watch sees everything and is offered nothing that the engine 
         await v.until((n) => window.lariat.pictures > n + 2, pictures);
         assert.equal(await v.get('hand'), 'free');
         await v.page.locator('#picture').focus();
-        for (const key of ['Space', '.', 'r', 'j', 'c', 's', 'v', 'p', '[', 'x', ',', '0']) await v.page.keyboard.press(key);
+        for (const key of ['Space', '.', 'r', 'j', 'c', 's', 'v', 'p', '[', 'x', ',', '0', 'Insert', 'Delete']) await v.page.keyboard.press(key);
         await v.page.getByText('This page may only watch').first().waitFor({ timeout: 3000 });
         await v.page.locator('#saved').evaluate((card) => (card.open = true));
         assert.equal(await v.page.locator('#saved-states button').first().isDisabled(), true);
@@ -367,6 +368,73 @@ async function laidOut(v, parts, name) {
         if ([390, 800, 1024, 1600].includes(width) && height > 500) await v.shot(`layout-${name}-${width}`);
     }
 }
+
+test('tools are added and removed, by mouse and by keys, and what cannot be is said', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const [v, other] = [await openPage(browser, own.url), await openPage(browser, own.url)];
+    const radio = (page, name) => page.getByRole('radio', { name });
+    await v.page.bringToFront();
+    // By mouse: sizes that fit the body are there already, in millimetres.
+    await v.page.getByText('Add a tool').click();
+    assert.equal(await v.page.locator('#add-length-row').isVisible(), false);
+    assert.ok(Number(await v.page.locator('#add-radius').inputValue()) > 0);
+    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in millimetres']]) {
+        await v.page.locator('#add-radius').fill(radius);
+        await v.page.getByRole('button', { name: 'Add', exact: true }).click();
+        await v.page.locator('#add-trouble').getByText(because).waitFor({ timeout: 3000 });
+    }
+    assert.deepEqual(own.state.asked, [], 'and is not asked for');
+    await v.page.locator('#add-radius').fill('6.5');
+    await v.page.getByRole('button', { name: 'Add', exact: true }).click();
+    await radio(v.page, 'sphere 1').waitFor({ timeout: 3000 });
+    assert.deepEqual(own.state.asked, [{ do: 'add_tool', shape: 'sphere', radius: 0.0065 }]);
+    assert.equal(await v.page.locator('#add-trouble').innerText(), '');
+    await v.page.getByText('stands above the body').waitFor({ timeout: 3000 });
+    assert.equal(await radio(v.page, 'sphere 1').getAttribute('aria-checked'), 'true');
+    assert.equal(await v.page.locator('#force-name').innerText(), 'sphere 1');
+    await other.until(() => window.lariat.names.includes('sphere 1'));
+    assert.equal(await radio(other.page, 'hand').getAttribute('aria-checked'), 'true', 'others go on with theirs');
+    // By keys alone.
+    const keys = v.page.keyboard;
+    await v.page.locator('#picture').focus();
+    await keys.press('Insert');
+    assert.equal(await v.page.evaluate(() => document.activeElement.id), 'add-shape');
+    await keys.press('s'); // shaft: the second of that letter
+    await keys.press('s');
+    await v.page.locator('#add-shape').selectOption('capsule');
+    await keys.press('Tab');
+    await keys.press('Tab');
+    await keys.press('Control+A');
+    await keys.type('80');
+    await keys.press('Enter');
+    await radio(v.page, 'capsule 2').waitFor({ timeout: 3000 });
+    assert.equal(own.state.asked[1].length, 0.08);
+    await v.until(() => document.activeElement.id === 'picture');
+    await keys.press('p');
+    for (let i = 0; i < 4; i++) await keys.press('ArrowRight');
+    await v.until(() => Math.hypot(window.lariat.tools[4][0] - 0.02, window.lariat.tools[4][1]) > 0.003);
+    await keys.press('Escape');
+    await v.shot('tools-added');
+    // No place is left, and says so; one that is removed leaves the lists of both pages.
+    await keys.press('*');
+    await v.page.getByRole('button', { name: 'Add', exact: true }).click();
+    await v.page.getByText('no place is left').waitFor({ timeout: 3000 });
+    await v.page.locator('#picture').focus();
+    await keys.press('Delete');
+    await v.until(() => !window.lariat.names.includes('capsule 2'));
+    assert.equal(await radio(v.page, 'hand').getAttribute('aria-checked'), 'true');
+    await other.until(() => !window.lariat.names.includes('capsule 2'));
+    await keys.press('Delete');
+    await v.page.getByText('those of the scene stay').waitFor({ timeout: 3000 });
+    await radio(v.page, 'sphere 1').click();
+    await v.page.getByRole('button', { name: 'Remove sphere 1' }).click();
+    await v.until(() => !window.lariat.names.includes('sphere 1'));
+    assert.equal(await v.page.locator('#remove-tool').isVisible(), false);
+    assert.deepEqual(own.state.asked.slice(-2), [{ do: 'remove_tool', tool: 4 }, { do: 'remove_tool', tool: 3 }]);
+    await v.close();
+    await other.close();
+});
 
 test('where nothing rides there is no switch for it, and its key says so', async () => {
     const v = await openPage(browser, server.url);

@@ -14,7 +14,7 @@ const parts = {};
 before(async () => {
     const files = [
         'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
-        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'link/protocol', 'dom',
+        'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'cards/addtool', 'link/protocol', 'dom',
     ];
     await build({
         entryPoints: files.map((file) => join(source, `${file}.ts`)),
@@ -391,4 +391,15 @@ test('sliders of the body: what they say is what they show, and nothing is lost 
     assert.equal(directionOf([1, 0, -1], [2, 0, -2]), 'scene');
     assert.equal(directionOf([1, 0, -1], [0, 0, -2]), 'other');
     assert.equal(directionOf([1, 0, -1], [0, 0, 0]), 'other');
+});
+
+test('sizes of tools fit the body, and what is no size is said', () => {
+    const { usual, fault } = parts.addtool;
+    assert.deepEqual(usual('sphere', 0.2), { radius: 6, length: 0 });
+    assert.deepEqual(usual('capsule', 0.2), { radius: 4, length: 100 });
+    assert.deepEqual(usual('grasper', 0.2), { radius: 2, length: 20 });
+    assert.equal(fault('radius', 0.1), '');
+    assert.match(fault('radius', 0), /more than zero/);
+    assert.match(fault('length', -1), /length must be more/);
+    assert.match(fault('length', NaN), /in millimetres/);
 });

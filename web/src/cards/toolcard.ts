@@ -1,8 +1,8 @@
-/* The list of tools: the hand and the scene's instruments. */
+/* The list of tools: the hand, the scene's instruments, and those that were added. */
 import { check, radios } from './colours';
 import { element, withUnit, write } from '../dom';
 import type { Instrument } from '../hands/instrument';
-import type { Hello, Status, ToolStatus } from '../link/protocol';
+import type { Hello, Status, ToolInfo, ToolStatus } from '../link/protocol';
 
 /* What a tool bears: its force of its limit, how hard its jaws grasp, and how deep the tissue is in
  * it. */
@@ -30,6 +30,7 @@ function addLoad(entry: Element): HTMLElement {
 }
 
 export class ToolCard {
+    private hello: Hello | null = null;
     private tools: number[] = []; // behind each entry; -1: the hand
     private readonly list = element('tool-list');
     private loads: (HTMLElement | null)[] = []; // one in each entry; null: the hand's
@@ -41,12 +42,21 @@ export class ToolCard {
 
     setHello(hello: Hello): void {
         this.opening.disabled = hello.watches;
-        const instruments = hello.tools.map((_, i) => i).filter((i) => !hello.hands.includes(i));
+        this.hello = hello;
+        this.setTools(hello.tools);
+    }
+
+    setTools(tools: readonly ToolInfo[]): void {
+        const { hands, spares, watches } = this.hello!;
+        const focused = this.list.contains(document.activeElement);
+        const instruments = tools.map((_, i) => i).filter((i) => !hands.includes(i) && tools[i]!.shape !== 'none');
         this.tools = [-1, ...instruments];
-        element('tools').hidden = instruments.length === 0;
-        const names = this.tools.map((i) => (i < 0 ? 'hand' : hello.tools[i]!.name));
+        element('tools').hidden = instruments.length === 0 && (!spares?.length || watches);
+        const names = this.tools.map((i) => (i < 0 ? 'hand' : tools[i]!.name));
         radios(this.list, names, (i) => this.instrument.choose(this.tools[i]!));
         this.loads = [...this.list.children].map((entry, i) => (this.tools[i]! < 0 ? null : addLoad(entry)));
+        this.show(this.instrument.chosen);
+        if (focused) this.list.querySelector<HTMLElement>('[aria-checked="true"]')?.focus();
     }
 
     show(tool: number): void {

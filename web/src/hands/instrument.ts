@@ -24,7 +24,7 @@ export class Instrument {
     ) {}
 
     get info() {
-        return this.chosen < 0 ? null : (this.session.hello?.tools[this.chosen] ?? null);
+        return this.chosen < 0 ? null : (this.session.tools[this.chosen] ?? null);
     }
 
     choose(tool: number): void {
@@ -40,8 +40,8 @@ export class Instrument {
     next(): void {
         const hello = this.session.hello;
         if (!hello) return;
-        for (let tool = this.chosen + 1; tool < hello.tools.length; tool++)
-            if (!hello.hands.includes(tool)) return this.choose(tool);
+        for (let tool = this.chosen + 1; tool < this.session.tools.length; tool++)
+            if (!hello.hands.includes(tool) && this.session.tools[tool]!.shape !== 'none') return this.choose(tool);
         this.choose(-1);
     }
 
@@ -54,6 +54,14 @@ export class Instrument {
         this.setPlane();
         this.offset.set(0, 0, 0);
         if (ray?.intersectPlane(this.plane, this.offset)) this.offset.sub(tip);
+    }
+
+    /* Some were added or removed: true when the chosen one is gone, and the hand is chosen. */
+    changed(): boolean {
+        this.view.instruments.choose(this.chosen);
+        if (this.info?.shape !== 'none') return false;
+        this.choose(-1);
+        return true;
     }
 
     /* The run was put somewhere else, and the instrument with it. True when it was held. */

@@ -1,5 +1,6 @@
 /* The keyboard: everything that the mouse can do. The list for people is in index.html (#help). */
 import { element } from '../dom';
+import type { AddTool } from '../cards/addtool';
 import type { BodyCard } from '../cards/bodycard';
 import type { Colours } from '../cards/colours';
 import type { Hand } from './hand';
@@ -24,6 +25,7 @@ export interface Served {
     replay: ReplayBar;
     saved: SavedCard;
     body: BodyCard;
+    addTool: AddTool;
     colours: Colours;
     panel: Panel;
     inside: InsideCard;
@@ -72,6 +74,9 @@ function press(s: Served, event: KeyboardEvent): boolean {
         v: () => s.transport.loadLast(),
         o: () => s.saved.toggle(),
         0: () => s.body.open(),
+        Insert: () => s.addTool.open(),
+        '*': () => s.addTool.open(),
+        Delete: () => s.addTool.remove(),
         x: () => s.replay.leave(),
         ',': () => s.replay.seekBy(-0.25),
         ';': () => s.replay.seekBy(0.25),

@@ -8,7 +8,7 @@ export interface Pose {
 
 export interface ToolInfo {
     name: string;
-    shape: 'sphere' | 'capsule' | 'grasper' | 'hand';
+    shape: 'sphere' | 'capsule' | 'grasper' | 'hand' | 'none'; // none: a place for one that is added
     radius: number;
     length: number;
     spread: number;
@@ -40,6 +40,9 @@ export interface Hello {
     materials: { name: string; law: string; elements: number; shear_modulus: number }[];
     tools: ToolInfo[];
     hands: number[];
+    spares?: number[]; // tools that can be added: status says what they are
+    lower: [number, number, number]; // of the body at rest [m]
+    upper: [number, number, number];
     fields: FieldInfo[];
     saves: boolean;
     hand_force: number;
@@ -62,7 +65,8 @@ export interface Percentiles {
     max: number | null;
 }
 
-export interface ToolStatus extends Pose {
+/* Of a spare also what it is, as in `hello`. */
+export interface ToolStatus extends Pose, Partial<Omit<ToolInfo, 'rest'>> {
     force: [number, number, number];
     torque: [number, number, number];
     touching: number;
@@ -148,6 +152,7 @@ export type Text =
     | Status
     | HandNews
     | { kind: 'saved'; what: string; name: string }
+    | { kind: 'added'; tool: number }
     | { kind: 'no_frame' | 'note' | 'error'; text: string };
 
 export interface SurfaceMessage {
@@ -348,4 +353,6 @@ export type Request =
     | { do: 'seek'; time: number }
     | { do: 'gravity'; to?: Point }
     | { do: 'damping'; value?: number }
-    | { do: 'stiffness'; value?: number; material?: number };
+    | { do: 'stiffness'; value?: number; material?: number }
+    | { do: 'add_tool'; shape: 'sphere' | 'capsule' | 'grasper'; radius: number; length?: number }
+    | { do: 'remove_tool'; tool: number };

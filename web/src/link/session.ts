@@ -4,7 +4,7 @@ import { Connection, type Loss } from './connection';
 import {
     KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SLICE, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
     readSlice, readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
-    type Slice, type Status, type SurfaceMessage, type Text, type Values,
+    type Slice, type Status, type SurfaceMessage, type Text, type ToolInfo, type Values,
 } from './protocol';
 
 const FRAME_MS = 1000 / 100; // displays faster than that get by with this
@@ -22,6 +22,8 @@ export interface Events {
     frame(frame: Frame): void;
     forces(forces: Forces): void;
     status(status: Status): void;
+    tools(tools: ToolInfo[]): void; // some were added or removed
+    added(tool: number): void; // what this page has asked for
     hand(news: HandNews): void;
     values(values: Values): void;
     slice(slice: Slice): void;
@@ -32,6 +34,7 @@ export interface Events {
 export class Session {
     hello: Hello | null = null;
     status: Status | null = null;
+    tools: ToolInfo[] = []; // as they are now: those of hello, and what was added since
     readonly frame: Frame = emptyFrame();
     frames = 0;
     torn = 0; // frames whose positions were not those that the engine hashed: always 0
@@ -116,10 +119,15 @@ export class Session {
                 this.forcesAfter = this.lastTick = 0;
                 this.forceTool = -1;
                 this.frame.step = 0;
+                this.tools = [...message.tools];
                 return this.events.hello(message);
             case 'status':
                 this.status = message;
+                this.takeTools(message);
                 return this.events.status(message);
+            case 'added':
+                this.wanted = message.tool;
+                return this.tellAdded();
             case 'values':
                 this.valuesWaiting = false;
                 return this.events.values(message);
@@ -139,6 +147,31 @@ export class Session {
             default: // of a later version, or the last word before the end, which `lost` repeats
                 return;
         }
+    }
+
+    private wanted = -1; // a tool that this page has added, until status has it
+
+    private tellAdded(): void {
+        const tool = this.wanted;
+        if (tool < 0 || (this.tools[tool]?.shape ?? 'none') === 'none') return;
+        this.wanted = -1;
+        this.events.added(tool);
+    }
+
+    /* What the spares are now. A tool that did not change stays the same object. */
+    private takeTools(status: Status): void {
+        let changed = false;
+        for (const i of this.hello?.spares ?? []) {
+            const now = status.tools[i];
+            const was = this.tools[i];
+            if (!now?.shape || !was) continue;
+            const { name = '', shape, radius = 0, length = 0, spread = 0 } = now;
+            if (was.name === name && was.shape === shape && was.radius === radius && was.length === length) continue;
+            this.tools[i] = { name, shape, radius, length, spread, rest: was.rest };
+            changed = true;
+        }
+        if (changed) this.events.tools(this.tools);
+        this.tellAdded();
     }
 
     private binary(data: ArrayBuffer): void {

@@ -22,15 +22,23 @@ export class Instruments {
     private readonly drawn: (Drawn | null)[] = [];
     private readonly center = new THREE.Vector3();
 
-    set(tools: ToolInfo[], hands: number[]): void {
-        this.group.clear();
-        this.drawn.length = 0;
+    /* Those that are drawn already stay. */
+    set(tools: readonly ToolInfo[], hands: number[]): void {
+        const before = this.drawn.splice(0);
         tools.forEach((info, i) => {
-            const hand = hands.includes(i) || info.shape === 'hand';
-            const one = hand ? null : draw(info);
+            const was = before[i];
+            const unseen = hands.includes(i) || info.shape === 'hand' || info.shape === 'none';
+            const one = unseen ? null : was?.info === info ? was : draw(info);
             this.drawn.push(one);
-            if (one) this.group.add(one.group);
+            if (one && one !== was) this.group.add(one.group);
         });
+        for (const was of before) if (was && !this.drawn.includes(was)) this.forget(was);
+    }
+
+    private forget(one: Drawn): void {
+        this.group.remove(one.group);
+        one.group.traverse((part) => part instanceof THREE.Mesh && part.geometry.dispose());
+        one.material.dispose();
     }
 
     update(frame: Frame): void {
