@@ -376,7 +376,7 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
     const radio = (page, name) => page.getByRole('radio', { name });
     await v.page.bringToFront();
     // By mouse: sizes that fit the body are there already, in millimetres.
-    await v.page.getByText('Add a tool').click();
+    await v.page.getByText('Add a tool', { exact: true }).click();
     assert.equal(await v.page.locator('#add-length-row').isVisible(), false);
     assert.ok(Number(await v.page.locator('#add-radius').inputValue()) > 0);
     for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in millimetres']]) {
