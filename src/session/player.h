@@ -11,7 +11,7 @@
 #ifndef LAR_SESSION_PLAYER_H
 #define LAR_SESSION_PLAYER_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/recording_file.h"
 
 enum { LAR_KEYS_MOST = 64 };

@@ -12,7 +12,7 @@
 
 #include <pthread.h>
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/recording_file.h"
 
 typedef struct lar_recorder lar_recorder;

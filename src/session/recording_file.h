@@ -62,7 +62,7 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
                                 lar_recording_writer *writer, lar_error *error);
 /* Adds a record that is no state. A failure is kept and told by lar_recording_finish. */
 void lar_recording_put(lar_recording_writer *writer, const lar_record *record);
-/* Adds a state: the bytes of a checkpoint (engine/checkpoint.h). */
+/* Adds a state: the bytes of a checkpoint (simulation/checkpoint.h). */
 void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, const lar_bytes *state);
 /* Hands over to the system what has been put so far: it outlives this process. */
 void lar_recording_flush(lar_recording_writer *writer);

@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "engine/field.h"
+#include "simulation/field.h"
 
 static const lar_field value_table[LAR_READ_VALUES] = {LAR_FIELD_VON_MISES, LAR_FIELD_PRESSURE,
                                                        LAR_FIELD_ENERGY};

@@ -19,7 +19,7 @@
 #ifndef LAR_SESSION_SESSION_H
 #define LAR_SESSION_SESSION_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/advice.h"
 #include "session/coupling.h"
 #include "session/device.h"

@@ -19,7 +19,7 @@
 #ifndef LAR_STUDY_BENCH_IMPLICIT_H
 #define LAR_STUDY_BENCH_IMPLICIT_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "study/implicit.h"
 
 typedef enum lar_implicit_case {

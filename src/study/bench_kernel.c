@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "model/model.h"
 #include "study/fma_peak.h"
 

@@ -11,7 +11,7 @@
 #include "base/thread.h"
 #include "comm/comm.h"
 #include "comm/mpi_world.h"
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "study/bench_step.h"
 #include "study/linear_solver.h"
 #include "study/real_time.h"

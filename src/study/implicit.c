@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "engine/conditions.h"
+#include "contact/conditions.h"
 #include "study/tangent.h"
 
 /* Newmark's parameters: the trapezoidal rule, which neither damps nor gains (for linear bodies). */

@@ -2,7 +2,7 @@
 #ifndef LAR_STUDY_PRECISION_CASES_H
 #define LAR_STUDY_PRECISION_CASES_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "study/precision.h"
 
 /* The block of a case, which the caller destroys; `duration`: what its load path is made for. */

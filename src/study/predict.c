@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "engine/division.h"
+#include "parallel/division.h"
 #include "model/model.h"
 #include "study/bench_kernel.h"
 

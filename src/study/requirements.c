@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "divide/distribution.h"
 #include "divide/schedule.h"
-#include "engine/layout.h"
+#include "layout/layout.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
 #include "model/demo/demo.h"

@@ -2,7 +2,7 @@
 #ifndef LAR_STUDY_SINGLE_DOMAIN_H
 #define LAR_STUDY_SINGLE_DOMAIN_H
 
-#include "engine/domain.h"
+#include "step/domain.h"
 
 typedef struct lar_single_domain {
     lar_kernels kernels;

@@ -2,7 +2,7 @@
  *
  *     schedules   proved from what stands in them, before anything runs (divide/schedule_proof.h)
  *     lists       the real program passes lists of elements instead of forces, with random delays:
- *                 every force arrives at every node once (engine/verification.h)
+ *                 every force arrives at every node once (parallel/verification.h)
  *     forces      the real program with forces: its state is one processor's, bit for bit
  *
  * Each step is a function, so that whoever calls can tell how far it got. Processor zero calls

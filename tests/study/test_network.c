@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "engine/division.h"
+#include "parallel/division.h"
 #include "model/model.h"
 #include "study/bench_kernel.h"
 #include "study/network_trace.h"

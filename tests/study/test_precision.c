@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "study/precision.h"
 #include "study/precision_cases.h"
 #include "study/single.h"

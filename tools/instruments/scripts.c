@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/vector.h"
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/device.h"
 #include "tool.h"
 
