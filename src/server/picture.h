@@ -5,11 +5,11 @@
  *     snapshot of one step ---> positions, their hash   (once for all viewers)
  *                         '---> values of a field       (once for all viewers that want this field)
  */
-#ifndef LAR_SESSION_SERVER_PICTURE_H
-#define LAR_SESSION_SERVER_PICTURE_H
+#ifndef LAR_SERVER_PICTURE_H
+#define LAR_SERVER_PICTURE_H
 
-#include "session/server_message.h"
-#include "session/server_riding.h"
+#include "server/message.h"
+#include "server/riding.h"
 #include "session/session.h"
 
 enum {

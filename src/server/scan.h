@@ -5,11 +5,11 @@
  *
  * The scan is read once, when the server opens, and stays as it is: it shows the body at rest.
  */
-#ifndef LAR_SESSION_SERVER_SCAN_H
-#define LAR_SESSION_SERVER_SCAN_H
+#ifndef LAR_SERVER_SCAN_H
+#define LAR_SERVER_SCAN_H
 
 #include "meshing/image.h"
-#include "session/server_blob.h"
+#include "server/blob.h"
 
 enum { LAR_SLICE_HEADER = 72 };
 

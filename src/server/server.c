@@ -1,5 +1,5 @@
 /* The viewers' server: its life, its thread, and its beat. */
-#include "session/server_state.h"
+#include "server/state.h"
 
 #include <arpa/inet.h>
 #include <ctype.h>

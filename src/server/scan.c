@@ -1,4 +1,4 @@
-#include "session/server_scan.h"
+#include "server/scan.h"
 
 #include <stdlib.h>
 #include <string.h>

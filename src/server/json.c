@@ -1,4 +1,4 @@
-#include "session/server_json.h"
+#include "server/json.h"
 
 #include <inttypes.h>
 #include <math.h>

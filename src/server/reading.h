@@ -7,8 +7,8 @@
  *
  * The worker makes it (server_work.h): the whole takes as long as a picture of one field.
  */
-#ifndef LAR_SESSION_SERVER_READING_H
-#define LAR_SESSION_SERVER_READING_H
+#ifndef LAR_SERVER_READING_H
+#define LAR_SERVER_READING_H
 
 #include <stdbool.h>
 #include <stdint.h>

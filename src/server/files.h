@@ -1,7 +1,7 @@
 /* The viewer's files, read once into memory. A request is looked up among the names that were found
  * then, so nothing else on the disk can be reached, whatever the request says. */
-#ifndef LAR_SESSION_SERVER_FILES_H
-#define LAR_SESSION_SERVER_FILES_H
+#ifndef LAR_SERVER_FILES_H
+#define LAR_SERVER_FILES_H
 
 #include <stdbool.h>
 #include <stddef.h>

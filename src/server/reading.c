@@ -1,4 +1,4 @@
-#include "session/server_reading.h"
+#include "server/reading.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "session/server_state.h"
+#include "server/state.h"
 
 static const char *const value_names[LAR_READ_VALUES] = {"von_mises", "pressure", "energy"};
 

@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "session/server_state.h"
+#include "server/state.h"
 
 /* ---- who is let in --------------------------------------------------------------------------- */
 

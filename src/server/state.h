@@ -11,17 +11,17 @@
  * what takes time. Nothing is queued for a viewer but its newest picture and some notes: a slow one
  * misses pictures, and is closed when it takes nothing for a while.
  */
-#ifndef LAR_SESSION_SERVER_STATE_H
-#define LAR_SESSION_SERVER_STATE_H
+#ifndef LAR_SERVER_STATE_H
+#define LAR_SERVER_STATE_H
 
 #include <libwebsockets.h>
 
 #include "base/clock.h"
-#include "session/server_files.h"
-#include "session/server_hands.h"
-#include "session/server_json.h"
-#include "session/server_scan.h"
-#include "session/server_work.h"
+#include "server/files.h"
+#include "server/hands.h"
+#include "server/json.h"
+#include "server/scan.h"
+#include "server/work.h"
 
 _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
 

@@ -1,4 +1,4 @@
-#include "session/server_work.h"
+#include "server/work.h"
 
 #include <string.h>
 #include <sys/resource.h>

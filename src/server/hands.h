@@ -8,10 +8,10 @@
  * has it at its point. All of this is the server's thread's; lar_hands_look moves it on, every few
  * milliseconds while lar_hands_busy.
  */
-#ifndef LAR_SESSION_SERVER_HANDS_H
-#define LAR_SESSION_SERVER_HANDS_H
+#ifndef LAR_SERVER_HANDS_H
+#define LAR_SERVER_HANDS_H
 
-#include "session/server_message.h"
+#include "server/message.h"
 #include "session/session.h"
 
 typedef enum lar_hand_state {

@@ -9,8 +9,8 @@
  * The memory is kept from one text to the next. Inside an array names are NULL. Numbers are written
  * so that they read the same; one that is not finite becomes null.
  */
-#ifndef LAR_SESSION_SERVER_JSON_H
-#define LAR_SESSION_SERVER_JSON_H
+#ifndef LAR_SERVER_JSON_H
+#define LAR_SERVER_JSON_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -4,8 +4,8 @@
  * table, and what is not there is refused: the connection ends, with a sentence for whoever writes
  * viewers. Pure functions; nothing is allocated.
  */
-#ifndef LAR_SESSION_SERVER_MESSAGE_H
-#define LAR_SESSION_SERVER_MESSAGE_H
+#ifndef LAR_SERVER_MESSAGE_H
+#define LAR_SERVER_MESSAGE_H
 
 #include <stdbool.h>
 #include <stddef.h>

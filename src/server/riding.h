@@ -3,11 +3,11 @@
  *
  *     surface's nodes 0 .. n-1 | further nodes n .. n+s-1, of the elements that carry vertices
  */
-#ifndef LAR_SESSION_SERVER_RIDING_H
-#define LAR_SESSION_SERVER_RIDING_H
+#ifndef LAR_SERVER_RIDING_H
+#define LAR_SERVER_RIDING_H
 
 #include "base/memory.h"
-#include "session/server_blob.h"
+#include "server/blob.h"
 
 /* More than a browser moves thirty times a second. */
 enum { LAR_RIDING_MOST = 1000000 };

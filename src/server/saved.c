@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "base/folder.h"
-#include "session/server_state.h"
+#include "server/state.h"
 
 void lar_saved_add(lar_saved_list *list, const char *name) {
     if (list->count == LAR_SAVES_MOST) {

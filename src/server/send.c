@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "session/server_state.h"
+#include "server/state.h"
 
 /* ---- hello ------------------------------------------------------------------------------------
  */

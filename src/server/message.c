@@ -1,4 +1,4 @@
-#include "session/server_message.h"
+#include "server/message.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "session/server_json.h"
+#include "server/json.h"
 
 const lar_field_name lar_field_names[LAR_FIELDS] = {
     {"none", "", "", 0},

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "session/server_state.h"
+#include "server/state.h"
 
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
     lar_viewer *viewer = server->first;

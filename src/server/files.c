@@ -1,4 +1,4 @@
-#include "session/server_files.h"
+#include "server/files.h"
 
 #include <dirent.h>
 #include <dlfcn.h>

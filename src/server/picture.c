@@ -1,4 +1,4 @@
-#include "session/server_picture.h"
+#include "server/picture.h"
 
 #include <math.h>
 #include <stdlib.h>

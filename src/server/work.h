@@ -7,13 +7,13 @@
  * One picture is made for all who want one. Both threads run below the engine's priority, and
  * pictures are made no faster than server.c allows: the engine has the machine first.
  */
-#ifndef LAR_SESSION_SERVER_WORK_H
-#define LAR_SESSION_SERVER_WORK_H
+#ifndef LAR_SERVER_WORK_H
+#define LAR_SERVER_WORK_H
 
 #include <pthread.h>
 
-#include "session/server_picture.h"
-#include "session/server_reading.h"
+#include "server/picture.h"
+#include "server/reading.h"
 
 enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/socket.h>
 
-#include "session/server_state.h"
+#include "server/state.h"
 
 /* For the end of whoever does not listen [s]. */
 enum { CLOSE_SECONDS = 2 };

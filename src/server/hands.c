@@ -1,4 +1,4 @@
-#include "session/server_hands.h"
+#include "server/hands.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* A binary message in memory, as it is sent, with room before it for the sender's header. */
-#ifndef LAR_SESSION_SERVER_BLOB_H
-#define LAR_SESSION_SERVER_BLOB_H
+#ifndef LAR_SERVER_BLOB_H
+#define LAR_SERVER_BLOB_H
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "session/server_riding.h"
+#include "server/riding.h"
 
 #include <stdlib.h>
 #include <string.h>
