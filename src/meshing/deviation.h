@@ -2,7 +2,7 @@
 #ifndef LAR_MESHING_DEVIATION_H
 #define LAR_MESHING_DEVIATION_H
 
-#include "meshing/boundary.h"
+#include "meshing/boundary/boundary.h"
 #include "model/mesh.h"
 
 /* Distances between two surfaces [m]. */

@@ -10,8 +10,8 @@
 #define LAR_MESHING_MESHING_H
 
 #include "lariat.h"
-#include "meshing/boundary.h"
-#include "meshing/tissue.h"
+#include "meshing/boundary/boundary.h"
+#include "meshing/starter/tissue.h"
 #include "model/mesh.h"
 
 /* What holds the body, and where the starter scene pulls at it. */

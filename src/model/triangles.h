@@ -1,7 +1,7 @@
 /* A surface of triangles: what scans and modelling programs give, and what people see.
  *
  *     .stl .obj .vtk .vtp --> lar_triangles --> the true boundary that meshing fits
- * (meshing/boundary.h)
+ * (meshing/boundary/boundary.h)
  *                                          '--> the fine surface that rides on a mesh
  * (model/embedding.h)
  *

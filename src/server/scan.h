@@ -8,7 +8,7 @@
 #ifndef LAR_SERVER_SCAN_H
 #define LAR_SERVER_SCAN_H
 
-#include "meshing/image.h"
+#include "meshing/image/image.h"
 #include "server/blob.h"
 
 enum { LAR_SLICE_HEADER = 72 };

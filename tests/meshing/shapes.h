@@ -9,7 +9,7 @@
 
 #include "testing.h"
 
-#include "meshing/image.h"
+#include "meshing/image/image.h"
 #include "model/triangles.h"
 
 #define SHAPE_PI 3.14159265358979323846

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "base/vector.h"
-#include "meshing/boundary.h"
+#include "meshing/boundary/boundary.h"
 #include "model/triangle_tree.h"
 
 static const shape *const shapes[] = {&shape_ellipsoid, &shape_torus, &shape_balls, &shape_sheet,

@@ -2,7 +2,7 @@
 #include "testing.h"
 
 #include "base/memory.h"
-#include "meshing/crossing.h"
+#include "meshing/fit/crossing.h"
 #include "meshing/meshing.h"
 #include "model/triangles.h"
 

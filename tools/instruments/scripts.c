@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/vector.h"
 #include "simulation/simulation.h"
-#include "session/device.h"
+#include "session/device/device.h"
 #include "tool.h"
 
 static const char usage[] =
