@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/mesh_faces.h"
+#include "model/mesh/faces.h"
 
 lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_error *error) {
     size_t faces = 6 * (size_t)mesh->element_count;

@@ -2,7 +2,7 @@
 #ifndef LAR_LAYOUT_ROWS_H
 #define LAR_LAYOUT_ROWS_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* neighbour[6 e + f]: the face (element * 6 + face) on the other side of face f of element e, or
  * -1: on the boundary, and between more than two elements. The caller frees *neighbour. */

@@ -3,7 +3,7 @@
 #define LAR_MESHING_DEVIATION_H
 
 #include "meshing/boundary/boundary.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Distances between two surfaces [m]. */
 typedef struct lar_deviation {

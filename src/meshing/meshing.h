@@ -12,7 +12,7 @@
 #include "lariat.h"
 #include "meshing/boundary/boundary.h"
 #include "meshing/starter/tissue.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* What holds the body, and where the starter scene pulls at it. */
 typedef struct lar_support {

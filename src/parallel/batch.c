@@ -1,5 +1,5 @@
 /* The step of one thread over its batches (T 6.6.1, fig. 6.15): recover, wait, receive, positions,
- * send. See divide/schedule.h for what makes this order safe. */
+ * send. See divide/schedule/schedule.h for what makes this order safe. */
 #include <sched.h>
 #include <string.h>
 #include <time.h>

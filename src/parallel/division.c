@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "divide/genetic.h"
-#include "divide/schedule_file.h"
-#include "divide/schedule_proof.h"
+#include "divide/schedule/file.h"
+#include "divide/proof/schedule_proof.h"
 #include "model/model.h"
 
 /* ---- the distribution --------------------------------------------------------------------- */

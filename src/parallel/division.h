@@ -6,7 +6,7 @@
 #ifndef LAR_PARALLEL_DIVISION_H
 #define LAR_PARALLEL_DIVISION_H
 
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "lariat.h"
 
 typedef struct lar_division {

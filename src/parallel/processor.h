@@ -7,13 +7,13 @@
  *     move 5 6 ...                          ---->   a range of local nodes
  *
  * u and v belong to the processor: every thread reads them, the thread that owns a node writes it.
- * Force sums belong to the threads, one array each (divide/schedule.h, "sums").
+ * Force sums belong to the threads, one array each (divide/schedule/schedule.h, "sums").
  */
 #ifndef LAR_PARALLEL_PROCESSOR_H
 #define LAR_PARALLEL_PROCESSOR_H
 
 #include "comm/comm.h"
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "step/step.h"
 #include "parallel/verification.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/surface.h"
+#include "model/mesh/surface.h"
 #include "study/bench_implicit.h"
 #include "study/bench_kernel.h"
 

@@ -19,7 +19,7 @@
 #ifndef LAR_STUDY_NETWORK_H
 #define LAR_STUDY_NETWORK_H
 
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "study/cluster.h"
 
 enum { LAR_NETWORK_SLICES = 20, LAR_NETWORK_PROCESSORS_MOST = 100000 };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "mechanics/hex8_block.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 const char *const lar_kernel_kind_name[LAR_KERNEL_KINDS] = {"hex8", "hex8 box", "hex8-full",
                                                             "hex8-matrix"};

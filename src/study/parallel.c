@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "comm/comm.h"
-#include "divide/schedule_file.h"
+#include "divide/schedule/file.h"
 #include "parallel/division.h"
 #include "model/model.h"
 

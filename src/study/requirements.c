@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "divide/distribution.h"
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "layout/layout.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"

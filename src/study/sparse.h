@@ -10,7 +10,7 @@
 #ifndef LAR_STUDY_SPARSE_H
 #define LAR_STUDY_SPARSE_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 typedef struct lar_sparse {
     int32_t rows;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Derivatives of w(I1, I2, J). */
 typedef struct law_slopes {

@@ -11,7 +11,7 @@
 #include "mechanics/hex8_block.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "study/operations.h"
 
 enum { NODES = 64 };

@@ -6,7 +6,7 @@
 
 #include "base/vector.h"
 #include "meshing/grid/lattice.h"
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 void lar_boundary_clear(lar_boundary *boundary) {
     lar_triangles_clear(&boundary->triangles);

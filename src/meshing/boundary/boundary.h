@@ -20,7 +20,7 @@
 #define LAR_MESHING_BOUNDARY_BOUNDARY_H
 
 #include "meshing/image/image.h"
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 enum {
     LAR_REGIONS_MOST = 255,

@@ -1,7 +1,7 @@
 /* The boundary of the regions of a mesh of any solids.
  *
  *     solids, collapsed --> faces, sorted by their corners --> one closed surface per region
- *     (model/mesh.h)          once: outside                      (boundary.h; they share what lies
+ *     (model/mesh/mesh.h)          once: outside                      (boundary.h; they share what lies
  *                             twice: inside, or between two       between them)
  *                             more often: refused
  *

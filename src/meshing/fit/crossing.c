@@ -8,7 +8,7 @@
 #include "base/share.h"
 #include "base/vector.h"
 #include "meshing/fit/face_boxes.h"
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 /* Corners of a face's triangles: two for each of its diagonals. */
 static const uint8_t half[4][3] = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {1, 3, 0}};

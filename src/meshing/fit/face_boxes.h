@@ -2,7 +2,7 @@
 #ifndef LAR_MESHING_FIT_FACE_BOXES_H
 #define LAR_MESHING_FIT_FACE_BOXES_H
 
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 typedef struct lar_face_boxes {
     lar_triangles ends; /* of face f: a triangle that is but the diagonal of its box */

@@ -3,7 +3,7 @@
 
 #include "base/vector.h"
 #include "meshing/fit/work.h"
-#include "model/mesh_faces.h"
+#include "model/mesh/faces.h"
 
 /* ---- which elements and faces are around each node ------------------------------------------ */
 

@@ -7,7 +7,7 @@
 #define LAR_MESHING_FIT_FIT_H
 
 #include "meshing/grid/lattice.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* A mesh on the lattice, and what meets at each of its nodes. */
 typedef struct lar_draft_mesh {

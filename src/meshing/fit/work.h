@@ -14,7 +14,7 @@
 
 #include "meshing/fit/fit.h"
 #include "meshing/fit/quality.h"
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 /* A plane that a point of the mesh shall lie on, or by the pair's offset before it: normal * x =
  * level + offset. Weight 0: none. */

@@ -12,7 +12,7 @@
 #define LAR_MESHING_GRID_DRAFT_CUTS_H
 
 #include "meshing/grid/lattice.h"
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 typedef struct lar_draft_cuts {
     const lar_boundary *boundary;

@@ -5,7 +5,7 @@
 
 #include "base/vector.h"
 #include "meshing/fit/fit.h"
-#include "model/mesh_faces.h"
+#include "model/mesh/faces.h"
 
 /* Interfaces that get a set: of a model with hundreds of regions the larger ones. */
 enum { INTERFACES_MOST = 2048, NAME_MOST = 200 };

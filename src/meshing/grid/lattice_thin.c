@@ -6,7 +6,7 @@
 
 #include "base/share.h"
 #include "base/vector.h"
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 /* All in cells. What is wider than REACH beside something thin has room enough. */
 static const double REACH = 1.5;

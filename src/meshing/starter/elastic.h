@@ -14,7 +14,7 @@
 #ifndef LAR_MESHING_STARTER_ELASTIC_H
 #define LAR_MESHING_STARTER_ELASTIC_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 enum { LAR_LOADS = 4 };
 #define LAR_EACH_LOAD for (int l = 0; l < LAR_LOADS; l++)

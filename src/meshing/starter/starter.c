@@ -9,7 +9,7 @@
 #include "base/vector.h"
 #include "meshing/fit/quality.h"
 #include "meshing/meshing.h"
-#include "model/format/vtk_xml_write.h"
+#include "model/format/vtk/vtk_xml_write.h"
 
 /* ---- words -------------------------------------------------------------------------------- */
 

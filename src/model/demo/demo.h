@@ -12,7 +12,7 @@
 #ifndef LAR_MODEL_DEMO_H
 #define LAR_MODEL_DEMO_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 enum { LAR_DEMO_ELEMENTS = 1840 };
 

@@ -13,7 +13,7 @@
 #define LAR_MODEL_MSH_READER_H
 
 #include "base/text.h"
-#include "model/mesh_builder.h"
+#include "model/mesh/builder.h"
 
 /* A physical group with a name. */
 typedef struct msh_group {

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 typedef struct lar_triangle_builder {
     const char *path; /* for messages */

@@ -18,7 +18,7 @@
 #ifndef LAR_MODEL_SCENE_H
 #define LAR_MODEL_SCENE_H
 
-#include "model/id_map.h"
+#include "model/mesh/id_map.h"
 #include "model/model.h"
 #include "model/scene/yaml_tree.h"
 
