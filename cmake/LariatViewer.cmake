@@ -5,7 +5,7 @@
 # network and all build folders share web/dist; `make` has it on.
 option(LARIAT_VIEWER "Build the viewer's page with npm when web/ has changed" OFF)
 
-target_sources(lariat PRIVATE cli/view.c cli/view_report.c)
+target_sources(lariat PRIVATE cli/view.c cli/report/view.c)
 target_sources(lariat_core PRIVATE server/json.c server/message.c)
 if(LARIAT_HAVE_LIBWEBSOCKETS)
   target_sources(lariat_core PRIVATE

@@ -7,9 +7,9 @@
 
 #include "cli/commands.h"
 #include "cli/parallel.h"
-#include "cli/predict_report.h"
-#include "study/bench_kernel.h"
-#include "study/network_trace.h"
+#include "cli/report/predict.h"
+#include "study/bench/kernel.h"
+#include "study/predict/network_trace.h"
 
 enum { ROWS_MOST = 16, MACHINES_MOST = 16, CRITICAL_EDGE = 40 };
 

@@ -12,7 +12,7 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
 #include "model/mesh/mesh.h"
-#include "study/operations.h"
+#include "study/requirements/operations.h"
 
 enum { NODES = 64 };
 
