@@ -5,27 +5,13 @@
 # network and all build folders share web/dist; `make` has it on.
 option(LARIAT_VIEWER "Build the viewer's page with npm when web/ has changed" OFF)
 
-target_sources(lariat PRIVATE cli/view.c cli/report/view.c)
-target_sources(lariat_core PRIVATE server/json.c server/message.c)
 if(LARIAT_HAVE_LIBWEBSOCKETS)
-  target_sources(lariat_core PRIVATE
-    server/server.c
-    server/act.c
-    server/files.c
-    server/hands.c
-    server/http.c
-    server/inspect.c
-    server/picture.c
-    server/reading.c
-    server/riding.c
-    server/saved.c
-    server/scan.c
-    server/send.c
-    server/socket.c
-    server/work.c)
+  lariat_sources(sources server)
+  list(REMOVE_ITEM sources server/absent.c)
+  target_sources(lariat_core PRIVATE ${sources})
   target_link_libraries(lariat_core PRIVATE PkgConfig::LWS)
 else()
-  target_sources(lariat_core PRIVATE server/absent.c)
+  target_sources(lariat_core PRIVATE server/absent.c server/json.c server/message.c)
 endif()
 set(LARIAT_VIEWER_BELOW_PREFIX ${CMAKE_INSTALL_DATADIR}/lariat/viewer)
 set_property(SOURCE server/files.c APPEND PROPERTY COMPILE_DEFINITIONS

@@ -249,8 +249,7 @@ static int check_mode(const predict_settings *s) {
                             "--measure, --trace, --svg, --grid, --distribution and --schedules "
                             "need a scene");
     if (without && !s->scale && s->steps)
-        return cli_complain(&cli_predict, CLI_USAGE,
-                            "--steps belongs to a scene or to --scale-to");
+        return cli_complain(&cli_predict, CLI_USAGE, "--steps belongs to a scene or to --scale-to");
     if (!s->scene && !s->scale && s->parallel.scheme >= 0)
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--scheme belongs to a scene or to --scale-to; --critical tries all");

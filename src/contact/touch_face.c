@@ -40,6 +40,16 @@ static double facing(const lar_touched_face *patch, const double normal[3]) {
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
+/* A face that comes into a hard tool from the side, or turns round in it, is deep in it at once.
+ * What leaves the tool faster than any hand moves is pushed no further: contact brings out, and
+ * does not throw [m/s]. */
+static const double LEAVES = 0.5, THROWN = 1.5;
+
+static double not_thrown(double rate) {
+    double away = -rate - LEAVES;
+    return away <= 0 ? 1 : fmax(0, 1 - away / (THROWN - LEAVES));
+}
+
 /* A point of the face is pushed along the normal of segment s. */
 static void push_point(lar_touched_face *patch, const lar_contact_law *law, int32_t s, double along,
                        const double weight[4], const double normal[3], double mass, double depth) {
@@ -50,7 +60,7 @@ static void push_point(lar_touched_face *patch, const lar_contact_law *law, int3
         double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
         rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
     }
-    double force = lar_contact_force(law, mass, depth, rate);
+    double force = not_thrown(rate) * lar_contact_force(law, mass, depth, rate);
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
     if (patch->body->count == 2) {

@@ -5,7 +5,7 @@
  *              |----> element: its own stress and energy
  *              '-v--> kinetic energy;  u --> what all elements store
  *
- * The worker makes it (server_work.h): the whole takes as long as a picture of one field.
+ * The worker makes it (work.h): the whole takes as long as a picture of one field.
  */
 #ifndef LAR_SERVER_READING_H
 #define LAR_SERVER_READING_H

@@ -1,13 +1,13 @@
 /* The viewers' server from inside.
  *
- *     listener --accept--> connection --+--> GET: server_http.c, from memory
+ *     listener --accept--> connection --+--> GET: http.c, from memory
  *                        (checked: Host,|
- *                         Origin, path) '--> upgrade: server_socket.c, a viewer
+ *                         Origin, path) '--> upgrade: socket.c, a viewer
  *
- *     viewers --wishes--> hands, session, work        server_socket.c: what comes in
- *     viewers <-- hello, surface, status, frames --   server_send.c: what goes out
+ *     viewers --wishes--> hands, session, work        socket.c: what comes in
+ *     viewers <-- hello, surface, status, frames --   send.c: what goes out
  *
- * One thread serves all connections (libwebsockets' loop); server_work.h has the second one, for
+ * One thread serves all connections (libwebsockets' loop); work.h has the second one, for
  * what takes time. Nothing is queued for a viewer but its newest picture and some notes: a slow one
  * misses pictures, and is closed when it takes nothing for a while.
  */
@@ -151,7 +151,7 @@ struct lar_server {
 /* What the worker has done. */
 void lar_server_collect(lar_server *server);
 
-/* ---- server_http.c ---- */
+/* ---- http.c ----------- */
 
 typedef struct lar_download {
     const lar_file *file;
@@ -168,7 +168,7 @@ int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *use
 /* Whether the Host and the Origin of a request are ours. */
 bool lar_server_trusts(const lar_server *server, struct lws *wsi);
 
-/* ---- server_socket.c ---- */
+/* ---- socket.c ----------- */
 
 int lar_server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                       size_t length);
@@ -176,7 +176,7 @@ int lar_server_socket(struct lws *wsi, enum lws_callback_reasons reason, void *u
 void lar_viewer_close(lar_viewer *viewer, lar_close code, const char *reason);
 void lar_viewer_wants(lar_viewer *viewer, unsigned due);
 
-/* ---- server_send.c ---- */
+/* ---- send.c ----------- */
 
 /* The part of `hello` that is the same for all viewers. */
 lar_status lar_server_make_hello(lar_server *server, lar_error *error);
@@ -190,7 +190,7 @@ void lar_viewer_text(lar_viewer *viewer, char *text);
 void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t tool,
                           const char *state);
 
-/* ---- server_saved.c ---- */
+/* ---- saved.c ----------- */
 
 /* What lies in the folder for saved states, and can be taken up or played here. */
 void lar_server_list_saved(lar_server *server);
@@ -198,13 +198,13 @@ void lar_saved_add(lar_saved_list *list, const char *name);
 /* The name, or the last one for ""; NULL: it is not in the list. */
 const char *lar_saved_find(const lar_saved_list *list, const char *name);
 
-/* ---- server_act.c ---- */
+/* ---- act.c ----------- */
 
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
 
-/* ---- server_inspect.c ---- */
+/* ---- inspect.c ----------- */
 
 /* A viewer's question for values, answered when its turn comes; it replaces one that waits. */
 void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish);

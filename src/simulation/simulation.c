@@ -415,7 +415,3 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
 #undef LAR_STATE_BYTES
     return bytes;
 }
-
-const char *lar_version(void) {
-    return LAR_VERSION;
-}

@@ -15,15 +15,15 @@ struct lar_simulation {
     lar_trip trip;
     lar_tool_list list;
     lar_tools tools;
-    lar_interval interval;        /* of an advance without a computer */
-    lar_computer *computer;       /* NULL: lar_step advances the whole model */
-    bool gathered;                /* `state` is what the computer has */
-    lar_report report;            /* of the last advance, of all processors */
-    uint64_t report_steps;        /* how many steps that was */
-    double measured;              /* the most energy of the bodies when that was asked [J] */
-    double taken;                 /* by contacts, as of the last report [J] */
-    int32_t sessions;             /* open on it: 0 or 1. Atomic */
-    int32_t held;                 /* by the thread of a session, which alone may change it. Atomic */
+    lar_interval interval;  /* of an advance without a computer */
+    lar_computer *computer; /* NULL: lar_step advances the whole model */
+    bool gathered;          /* `state` is what the computer has */
+    lar_report report;      /* of the last advance, of all processors */
+    uint64_t report_steps;  /* how many steps that was */
+    double measured;        /* the most energy of the bodies when that was asked [J] */
+    double taken;           /* by contacts, as of the last report [J] */
+    int32_t sessions;       /* open on it: 0 or 1. Atomic */
+    int32_t held;           /* by the thread of a session, which alone may change it. Atomic */
     struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
 };
 

@@ -40,7 +40,10 @@ static bool interval_ends(const lar_domain *domain, bool close, const lar_state 
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
                            lar_trip *trip) {
-    bool due = interval_ends(domain, state->close, state), watches = due || !state->listed;
+    /* Where elements are strained, listed in every part: in a step nodes that are thrown come from
+     * anywhere to the barrier and beyond. */
+    bool due = interval_ends(domain, state->close, state);
+    bool watches = due || state->close || !state->listed;
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
         lar_hex8_watch watch = {.limit = domain->corner_limit + place,

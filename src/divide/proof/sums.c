@@ -1,14 +1,14 @@
 /* Every node moves with the forces of exactly its elements.
  *
  * Per node, the forces of one processor's elements go everywhere together: they are one part (all
- * of them are recovered before the first send, proof_races.c). have[p][q] counts how often p has
+ * of them are recovered before the first send, races.c). have[p][q] counts how often p has
  * the part of q; stage after stage, parts travel:
  *
  *     added    have[to] += have[from] before the stage
  *     whole    have[to]  = have[from] before the stage
  *
  * and in the end everybody must have every part once. A part is exactly the elements that q
- * recovers at the node, each once (proof_shape.c), and that is E_k.
+ * recovers at the node, each once (shape.c), and that is E_k.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,13 +1,13 @@
-/* How a schedule comes about; only for schedule*.c.
+/* How a schedule comes about; only for the files beside it.
  *
- *     packets   who sends what to whom, from the scheme           schedule_packets.c
- *     plan      for one processor: batches in an order of time    schedule_plan.c
+ *     packets   who sends what to whom, from the scheme           packets.c
+ *     plan      for one processor: batches in an order of time    plan.c
  *                 units    a batch that sends to one peer what it has of its own
  *                 relays   a batch that receives first what it sends on
  *                 gaps     what is recovered before a relay, or before the last receives
- *     threads   who takes which unit (T 6.7)                      schedule_threads.c
- *     shares    gaps filled, elements handed to threads           schedule_shares.c
- *     waits     and the schedule written down                     schedule_waits.c, schedule_emit.c
+ *     threads   who takes which unit (T 6.7)                      threads.c
+ *     shares    gaps filled, elements handed to threads           shares.c
+ *     waits     and the schedule written down                     waits.c, emit.c
  *
  * A batch of the plan has a rank, its number. What it waits for has a lower one: units only wait
  * for units before them, a relay for the units and the gap before it. So there is no cycle within
@@ -74,7 +74,7 @@ typedef struct lar_plan_site {
 typedef struct lar_plan_batch {
     int32_t thread;
     int32_t elements;
-    int64_t finish; /* of a unit, as far as it is foreseen (schedule_threads.c) */
+    int64_t finish; /* of a unit, as far as it is foreseen (threads.c) */
 } lar_plan_batch;
 
 /* What all threads recover together, each in a batch of its own: before something is received, or

@@ -1,9 +1,8 @@
 /* The true boundary of what is to be meshed: triangles that know what lies on both sides.
  *
- *     label image --boundary_image.c--.
- *                                      +--> lar_boundary --> lattice, fit, deviation, fine surface
- *     closed surfaces --boundary.c----+
- *     mesh of solids --boundary_mesh.c'
+ *     label image --image.c---------.
+ *     closed surfaces --boundary.c--+--> lar_boundary --> grid, fit, deviation, fine surface
+ *     mesh of solids --mesh.c-------'
  *
  * Regions are numbered from 1, in the order they were asked for; 0 is outside. Where the image ends
  * in the middle of an organ the organ is cut off flat: what lies beyond counts as outside, but has
@@ -14,7 +13,7 @@
  * neighbouring voxels with different regions, corners first at the corners of voxels, then smoothed
  * within 0.7 voxel around their start (0.25 where a part is one voxel thick), then moved along the
  * normals until each region has again the volume of its voxels. Corners on a flat cut stay in its
- * plane, those on a line where three regions meet on a line. boundary_nets.h.
+ * plane, those on a line where three regions meet on a line. nets.h.
  */
 #ifndef LAR_MESHING_BOUNDARY_BOUNDARY_H
 #define LAR_MESHING_BOUNDARY_BOUNDARY_H

@@ -1,9 +1,8 @@
 /* The boundary of the regions of a mesh of any solids.
  *
  *     solids, collapsed --> faces, sorted by their corners --> one closed surface per region
- *     (model/mesh/mesh.h)          once: outside                      (boundary.h; they share what lies
- *                             twice: inside, or between two       between them)
- *                             more often: refused
+ *     (model/mesh/mesh.h)          once: outside                      (boundary.h; they share what
+ * lies twice: inside, or between two       between them) more often: refused
  *
  * Nodes at one place are one: parts that were never merged hang together then, and a region's
  * surface is closed.

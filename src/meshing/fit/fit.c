@@ -1,12 +1,12 @@
 /* The boundary of a staircase cannot simply be put onto a smooth surface: a cell at the edge of a
  * step has two faces there, three at its corner, and between faces in one plane its corner has no
  * volume. So faces are drawn to the boundary, in the mean over each, while an energy of the
- * elements' shape (fit_quality.h) holds against it, steeply where it would get bad.
+ * elements' shape (quality.h) holds against it, steeply where it would get bad.
  *
- *     planes at the true boundary, from where faces and nodes are    fit_target.c
- *     offsets of these planes, so that regions keep their volumes    fit_volume.c
- *     some sweeps of Newton steps, node by node                      fit_sweep.c
- *     the same again, watched, where outer faces cross               fit_apart.c
+ *     planes at the true boundary, from where faces and nodes are    target.c
+ *     offsets of these planes, so that regions keep their volumes    volume.c
+ *     some sweeps of Newton steps, node by node                      sweep.c
+ *     the same again, watched, where outer faces cross               apart.c
  *     ... and again, until the nodes are still
  */
 #include <math.h>

@@ -2,12 +2,12 @@
  * near 1, and a weight means the same for a mouse and for a man.
  *
  *     fit.c          the order of things
- *     fit_faces.c    which elements and faces are around each node
- *     fit_target.c   where faces and nodes shall lie: planes at the true boundary
- *     fit_volume.c   how far off the boundary they shall lie, so that regions keep their volumes
- *     fit_sweep.c    nodes move, one after the other
- *     fit_apart.c    no outer face goes through another one
- *     fit_quality.c  the energy of a corner
+ *     faces.c        which elements and faces are around each node
+ *     target.c       where faces and nodes shall lie: planes at the true boundary
+ *     volume.c       how far off the boundary they shall lie, so that regions keep their volumes
+ *     sweep.c        nodes move, one after the other
+ *     apart.c        no outer face goes through another one
+ *     quality.c      the energy of a corner
  */
 #ifndef LAR_MESHING_FIT_WORK_H
 #define LAR_MESHING_FIT_WORK_H
@@ -64,7 +64,7 @@ typedef struct lar_fit_near {
     int32_t face;
 } lar_fit_near;
 
-/* What keeps outer faces apart (fit_apart.c). */
+/* What keeps outer faces apart (apart.c). */
 typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
     int32_t *start, *around; /* per node: face * 4 + corner */

@@ -1,9 +1,8 @@
 /* Segmented images: one label per voxel, 0 for what is none.
  *
- *     .nii .nii.gz (NIfTI-1 and -2, image_nifti.c)  --.
- *     .nrrd .nhdr  (NRRD, image_nrrd.c)             --+--> lar_image, always in metres, in the
- *                                                     world of NIfTI: +x right, +y anterior
- *                                                     (front), +z superior (head)
+ *     .nii .nii.gz (NIfTI-1 and -2, nifti.c)  --.
+ *     .nrrd .nhdr  (NRRD, nrrd.c)             --+--> lar_image, always in metres, in the world of
+ *                                               NIfTI: +x right, +y anterior (front), +z superior
  *
  * Nothing is believed before it is checked: headers that claim more voxels than memory may hold or
  * than the file can have (deflate makes 1 byte of 1,032 at most), images that are no label maps

@@ -6,8 +6,8 @@
  * refuses with a sentence that says what to do. It fills
  * a zeroed lar_mesh; on failure the caller clears it.
  */
-#ifndef LAR_MODEL_MESH_IO_H
-#define LAR_MODEL_MESH_IO_H
+#ifndef LAR_MODEL_FORMAT_MESH_IO_H
+#define LAR_MODEL_FORMAT_MESH_IO_H
 
 #include "model/mesh/mesh.h"
 

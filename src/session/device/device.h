@@ -9,7 +9,7 @@
  * library) it does when it is opened. The coupling (coupling.h) is the session's, one for every
  * tool, also for tools without a device: the device only says where the hand is.
  *
- * Kinds of devices are the rows of one table (device.c); device_backend.h is what a new one fills.
+ * Kinds of devices are the rows of one table (device.c); backend.h is what a new one fills.
  */
 #ifndef LAR_SESSION_DEVICE_DEVICE_H
 #define LAR_SESSION_DEVICE_DEVICE_H

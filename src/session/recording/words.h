@@ -1,4 +1,4 @@
-/* What the writer and the reader of recordings share: words and their chain (recording_file.h). */
+/* What the writer and the reader of recordings share: words and their chain (file.h). */
 #ifndef LAR_SESSION_RECORDING_WORDS_H
 #define LAR_SESSION_RECORDING_WORDS_H
 

@@ -1,5 +1,5 @@
-/* The same slow loading, integrated explicitly by the engine and implicitly (study/implicit/implicit.h):
- * answers and costs beside each other (T 2.2.4, 2.2.5, table 2.1).
+/* The same slow loading, integrated explicitly by the engine and implicitly
+ * (study/implicit/implicit.h): answers and costs beside each other (T 2.2.4, 2.2.5, table 2.1).
  *
  * Both have the same mesh, materials, lumped masses, damping, supports, loads and curves. What the
  * implicit way does not know, contact and tools, is left out of both. The engine runs on one

@@ -1,5 +1,6 @@
-/* The hex8 kernels in single precision, for the study of what that loses (study/precision/precision.h): the
- * same source, hex8_kernel.c, compiled with floats (single_kernel.c). Production has none of it.
+/* The hex8 kernels in single precision, for the study of what that loses
+ * (study/precision/precision.h): the same source, hex8_kernel.c, compiled with floats
+ * (single_kernel.c). Production has none of it.
  *
  *     state in double    relative displacements of an element's nodes are formed in double, then
  *                        rounded; everything of the element is float

@@ -15,14 +15,15 @@ const char *const lar_cluster_number_name[LAR_CLUSTER_NUMBERS] = {
 
 /* The thesis's cluster. Its figures 7.6 to 7.8 are curves without numbers in the text: what is only
  * there is marked as an assumption. Link: half of the peak at 196 bytes (7.3) and 111 MB/s at its
- * mean packet of 424 bytes give 162 MB/s and 1.2 us, and 1.28 Gbit/s (5.2.3) are 160 MB/s. 6.5.3.1 says up to 120 MB/s. */
+ * mean packet of 424 bytes give 162 MB/s and 1.2 us, and 1.28 Gbit/s (5.2.3) are 160 MB/s. 6.5.3.1
+ * says up to 120 MB/s. */
 #define THESIS_NETWORK                                                                             \
     [LAR_CLUSTER_STEP] = 0, [LAR_CLUSTER_OVERHEAD] = 0.5e-6, [LAR_CLUSTER_BYTE] = 1 / 241.1e6,     \
     [LAR_CLUSTER_RECEIVE] = 0.2e-6, [LAR_CLUSTER_JOIN] = 0.5e-6, [LAR_CLUSTER_LATENCY] = 6e-6,     \
     [LAR_CLUSTER_GAP] = 196 / 160e6, [LAR_CLUSTER_BANDWIDTH] = 160e6
 #define THESIS_SOURCES(element)                                                                    \
     {                                                                                              \
-        element, "assumed: 20 operations at the 500 MFLOPS of thesis 6.10, scaled as the element",  \
+        element, "assumed: 20 operations at the 500 MFLOPS of thesis 6.10, scaled as the element", \
             "assumed: three additions and a part of a line of memory, scaled likewise", "assumed", \
             "assumed: two words written to the card, and the call",                                \
             "thesis table 7.3: 241.1 MByte/s written to the card",                                 \
@@ -30,7 +31,7 @@ const char *const lar_cluster_number_name[LAR_CLUSTER_NUMBERS] = {
             "assumed: memory latency is less than a microsecond (thesis 6.5.3.1)",                 \
             "assumed within the few microseconds of thesis 6.5.3.1",                               \
             "thesis 7.3: half of the peak bandwidth at 196 bytes",                                 \
-            "thesis 5.2.3: 1.28 GBit/s in each direction; 6.5.3.1 counts on 120 MByte/s at most"                                          \
+            "thesis 5.2.3: 1.28 GBit/s in each direction; 6.5.3.1 counts on 120 MByte/s at most"   \
     }
 
 /* Lariat's element on the machine that docs/performance.md names: 8.7 ns per element with its 1.2

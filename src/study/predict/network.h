@@ -4,10 +4,10 @@
  *     thread     recover | wait for threads | receive | positions | send        batch after batch
  *     packet     sender's link -> latency -> receiver's link -> seen            cluster.h
  *
- * Every thread of every processor goes through the batches of its schedule as parallel/batch.c does,
- * but that its work is a time of the machine instead of work. Links carry one packet after the
- * other, in the order in which packets come to them. Nobody begins together: processors run apart
- * as far as their packets allow, so several steps are simulated, and the later ones count.
+ * Every thread of every processor goes through the batches of its schedule as parallel/batch.c
+ * does, but that its work is a time of the machine instead of work. Links carry one packet after
+ * the other, in the order in which packets come to them. Nobody begins together: processors run
+ * apart as far as their packets allow, so several steps are simulated, and the later ones count.
  *
  * Larger grids than have schedules. In a body of equal blocks, one per processor, what a processor
  * does depends on its neighbours alone: whether it is at the lower end, the upper end or between

@@ -12,8 +12,8 @@
  * libxml2 runs without network, without entity substitution, without the limits lifted, and stops
  * at the first <!DOCTYPE: a deck has no use for entities, an attacker has.
  */
-#ifndef LAR_MODEL_FEB_H
-#define LAR_MODEL_FEB_H
+#ifndef LAR_MODEL_FORMAT_FEB_FEB_H
+#define LAR_MODEL_FORMAT_FEB_FEB_H
 
 #include <libxml/tree.h>
 
@@ -55,7 +55,7 @@ typedef struct lar_feb {
     lar_feb_controller *controller;
 } lar_feb;
 
-/* ---- feb_xml.c: the tree, its messages and its values --------------------------------------- */
+/* ---- xml.c: the tree, its messages and its values --------------------------------------- */
 
 /* Parses the bytes into feb->document and feb->root and checks the version. `feb` is zeroed
  * before and cleared by lar_feb_clear, also after a failure. */
@@ -106,7 +106,7 @@ lar_status lar_feb_ids(lar_feb *feb, const xmlNode *element, int64_t *id, int co
 lar_status lar_feb_flag(lar_feb *feb, const xmlNode *parent, const char *name, bool fallback,
                         bool *value);
 
-/* ---- feb_mesh.c ------------------------------------------------------------------------------ */
+/* ---- mesh.c ---------------------------------------------------------------------------------- */
 
 /* Reads <Mesh> into feb->mesh. Element tags are material ids, 0 where none is named. Needs the
  * material table. */
@@ -119,7 +119,7 @@ lar_status lar_feb_is_whole_mesh(lar_feb *feb, const xmlNode *at, const char *re
 /* The <Surface> of that name, NULL when there is none. */
 xmlNode *lar_feb_find_surface(lar_feb *feb, const char *name);
 
-/* ---- feb_material.c -------------------------------------------------------------------------- */
+/* ---- material.c ------------------------------------------------------------------------------ */
 
 /* Lists the <material> entries without reading their parameters. */
 lar_status lar_feb_list_materials(lar_feb *feb);
@@ -130,7 +130,7 @@ lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
 /* Reads the materials that elements use into the model and assigns them. */
 lar_status lar_feb_read_materials(lar_feb *feb);
 
-/* ---- feb_curve.c ----------------------------------------------------------------------------- */
+/* ---- curve.c --------------------------------------------------------------------------------- */
 
 /* Reads <LoadData>; the model's duration must be known. */
 lar_status lar_feb_read_curves(lar_feb *feb);
@@ -138,7 +138,7 @@ lar_status lar_feb_read_curves(lar_feb *feb);
  * expressions. */
 lar_status lar_feb_curve_of(lar_feb *feb, const xmlNode *value, int *curve);
 
-/* ---- feb_conditions.c ------------------------------------------------------------------------ */
+/* ---- conditions.c ---------------------------------------------------------------------------- */
 
 lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section);
 lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);

@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: amplitudes, supports, initial velocities. See inp_deck.h. */
+/* Abaqus and CalculiX decks: amplitudes, supports, initial velocities. See deck.h. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: contact pairs. See inp_deck.h.
+/* Abaqus and CalculiX decks: contact pairs. See deck.h.
  *
  * Lariat's contact has a stiffness of its own and no friction: what a deck says about the first is
  * named in a notice, what asks for more is refused.

@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: keywords, the step, entry points. See inp_deck.h. */
+/* Abaqus and CalculiX decks: keywords, the step, entry points. See deck.h. */
 #include "model/format/inp/deck.h"
 
 #include <math.h>

@@ -13,8 +13,8 @@
  * stands above. So supports are kept per node and axis while the deck is read, and made into lists
  * at its end.
  */
-#ifndef LAR_MODEL_INP_DECK_H
-#define LAR_MODEL_INP_DECK_H
+#ifndef LAR_MODEL_FORMAT_INP_DECK_H
+#define LAR_MODEL_FORMAT_INP_DECK_H
 
 #include "model/format/inp/reader.h"
 #include "model/mesh/id_map.h"
@@ -101,7 +101,7 @@ typedef struct inp_deck {
     int gravity_curve;
 } inp_deck;
 
-/* ---- inp_values.c: what every card needs ------------------------------------------------- */
+/* ---- values.c: what every card needs ------------------------------------------------- */
 
 /* FILE:LINE: and the sentence; a notice likewise. */
 lar_status inp_fail(const inp_deck *deck, int line, lar_status status, const char *format, ...)
@@ -141,7 +141,7 @@ lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve);
 /* Refuses a load that stands outside of a step. */
 lar_status inp_in_step(const inp_deck *deck, const inp_card *card);
 
-/* ---- inp_material.c ---------------------------------------------------------------------- */
+/* ---- material.c -------------------------------------------------------------------------- */
 
 lar_status inp_read_material(inp_deck *deck, const inp_card *card);
 lar_status inp_read_elastic(inp_deck *deck, const inp_card *card);
@@ -152,7 +152,7 @@ lar_status inp_read_section(inp_deck *deck, const inp_card *card);
 /* Densities, notices and the damping of what sections use. */
 lar_status inp_finish_materials(inp_deck *deck);
 
-/* ---- inp_conditions.c -------------------------------------------------------------------- */
+/* ---- conditions.c ------------------------------------------------------------------------ */
 
 lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card);
 lar_status inp_read_boundary(inp_deck *deck, const inp_card *card);
@@ -165,14 +165,14 @@ lar_status inp_sort_vectors(const inp_deck *deck, const double (*value)[3], inp_
 lar_status inp_take_run(const inp_deck *deck, const inp_vector *vector, int32_t count,
                         int32_t first, lar_node_list *nodes, int32_t *end);
 
-/* ---- inp_loads.c ------------------------------------------------------------------------- */
+/* ---- loads.c ----------------------------------------------------------------------------- */
 
 lar_status inp_read_cload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dsload(inp_deck *deck, const inp_card *card);
 lar_status inp_finish_loads(inp_deck *deck);
 
-/* ---- inp_contact.c ----------------------------------------------------------------------- */
+/* ---- contact.c --------------------------------------------------------------------------- */
 
 lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card);
 lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card);

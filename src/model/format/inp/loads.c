@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: forces, pressures, gravity. See inp_deck.h.
+/* Abaqus and CalculiX decks: forces, pressures, gravity. See deck.h.
  *
  * A positive pressure pushes on the face, in decks as in Lariat. Forces at the same node in the
  * same step add up, with a notice, since programs that write a deck face by face mean it so.

@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: materials and sections. See inp_deck.h.
+/* Abaqus and CalculiX decks: materials and sections. See deck.h.
  *
  * Their parameters and ours:
  *   *ELASTIC E, nu                  neo-Hookean with the same G and K: equal at small strain

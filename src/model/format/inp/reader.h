@@ -7,8 +7,8 @@
  * below), then surfaces (they may name any set). Keywords that say nothing about the mesh are
  * passed over.
  */
-#ifndef LAR_MODEL_INP_READER_H
-#define LAR_MODEL_INP_READER_H
+#ifndef LAR_MODEL_FORMAT_INP_READER_H
+#define LAR_MODEL_FORMAT_INP_READER_H
 
 #include "base/text.h"
 #include "model/mesh/builder.h"

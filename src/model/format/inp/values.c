@@ -1,4 +1,4 @@
-/* Abaqus and CalculiX decks: messages, fields, names. See inp_deck.h. */
+/* Abaqus and CalculiX decks: messages, fields, names. See deck.h. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

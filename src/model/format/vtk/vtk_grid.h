@@ -17,8 +17,8 @@
  *     0-based point indices, cell indices and cell * 6 + face (lar_mesh's face order); integer
  *     point and cell arrays "set_NAME" of zeros and ones are sets as well.
  */
-#ifndef LAR_MODEL_VTK_GRID_H
-#define LAR_MODEL_VTK_GRID_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_GRID_H
+#define LAR_MODEL_FORMAT_VTK_VTK_GRID_H
 
 #include "model/mesh/mesh.h"
 

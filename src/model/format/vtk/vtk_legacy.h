@@ -9,8 +9,8 @@
  * Data that is of no interest must still be walked over exactly. Which keywords there are besides
  * points and data depends on the kind: vtk.c has those of meshes, vtk_surface.c those of surfaces.
  */
-#ifndef LAR_MODEL_VTK_LEGACY_H
-#define LAR_MODEL_VTK_LEGACY_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_LEGACY_H
+#define LAR_MODEL_FORMAT_VTK_VTK_LEGACY_H
 
 #include "base/text.h"
 #include "model/format/vtk/vtk_grid.h"

@@ -8,8 +8,8 @@
  * passed over. The first of the well-known integer cell arrays (lar_vtk_wants) is the tag; it
  * counts the cells of all four lists, one list after the other.
  */
-#ifndef LAR_MODEL_VTK_POLYDATA_H
-#define LAR_MODEL_VTK_POLYDATA_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_POLYDATA_H
+#define LAR_MODEL_FORMAT_VTK_VTK_POLYDATA_H
 
 #include "model/format/vtk/vtk_grid.h"
 #include "model/triangles/triangles.h"

@@ -3,8 +3,8 @@
  * Both readers end up with bytes of a known type and byte order; everything behind them works
  * on double (coordinates) or int64_t (connectivity, tags, sets).
  */
-#ifndef LAR_MODEL_VTK_SCALAR_H
-#define LAR_MODEL_VTK_SCALAR_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_SCALAR_H
+#define LAR_MODEL_FORMAT_VTK_VTK_SCALAR_H
 
 #include "base/text.h"
 

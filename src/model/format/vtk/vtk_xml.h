@@ -5,8 +5,8 @@
  *
  * vtu.c reads meshes through it, vtp.c surfaces.
  */
-#ifndef LAR_MODEL_VTK_XML_H
-#define LAR_MODEL_VTK_XML_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_XML_H
+#define LAR_MODEL_FORMAT_VTK_VTK_XML_H
 
 #include <libxml/tree.h>
 

@@ -10,8 +10,8 @@
  * Files appear whole or not at all: written to PATH.part, renamed at the end. No fsync: a power
  * cut may cost the last frames, but not a run's speed.
  */
-#ifndef LAR_MODEL_VTK_XML_WRITE_H
-#define LAR_MODEL_VTK_XML_WRITE_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTK_XML_WRITE_H
+#define LAR_MODEL_FORMAT_VTK_VTK_XML_WRITE_H
 
 #include <stdio.h>
 

@@ -15,8 +15,8 @@
  * characters per ascii value, the full size for plain data, and at most 1032 bytes out of one
  * byte of zlib (the limit of deflate, RFC 1951: 258 bytes from a quarter byte).
  */
-#ifndef LAR_MODEL_VTU_ARRAY_H
-#define LAR_MODEL_VTU_ARRAY_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTU_ARRAY_H
+#define LAR_MODEL_FORMAT_VTK_VTU_ARRAY_H
 
 #include "model/format/vtk/vtk_scalar.h"
 

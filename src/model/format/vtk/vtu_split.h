@@ -11,8 +11,8 @@
  * left for the parser is a few kilobytes, and its protections stay on. Declarations (<!DOCTYPE,
  * <!ENTITY, <![CDATA[), which VTK never writes and bombs are made of, end the reading here.
  */
-#ifndef LAR_MODEL_VTU_SPLIT_H
-#define LAR_MODEL_VTU_SPLIT_H
+#ifndef LAR_MODEL_FORMAT_VTK_VTU_SPLIT_H
+#define LAR_MODEL_FORMAT_VTK_VTU_SPLIT_H
 
 #include "base/text.h"
 
