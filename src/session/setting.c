@@ -1,6 +1,6 @@
 #include "session/setting.h"
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 
 static lar_status add_tool(const lar_setting *setting, lar_simulation *simulation,
                            lar_error *error) {

@@ -1,11 +1,11 @@
 /* Tools that are added and removed while a simulation runs: what is not there changes nothing, what
  * is there is as a tool of the scene, the bits are the same on every grid, with every backend, and
  * through checkpoints, and what cannot be is refused with a sentence. */
-#include "engine/checkpoint.h"
 #include "engine/engine_test.h"
 #include "engine/fleet_test.h"
 #include "engine/tools_test.h"
 #include "model/contact_check.h"
+#include "simulation/checkpoint.h"
 
 #define PATH LAR_TEST_BUILD "/spares.checkpoint"
 

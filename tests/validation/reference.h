@@ -23,7 +23,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "model/model.h"
 
 /* ---- reference data ----------------------------------------------------------------------- */
