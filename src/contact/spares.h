@@ -35,6 +35,11 @@ static inline int32_t lar_spare_serial(const lar_tool_list *list, const lar_tool
 /* How many spares must be there for what is placed: those up to the last one. */
 int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MOST]);
 
+/* Whether there is a tool at all. */
+static inline bool lar_spares_any(const lar_tool_list *list, const lar_tools *tools) {
+    return lar_spares_first(list) > 0 || lar_spares_needed(tools->spare) > 0;
+}
+
 /* Names of all that can be placed: "sphere 1", the place counted from 1, or, when another tool has
  * that name, as many more as there can be spares. */
 void lar_spares_name(lar_tool_list *list);

@@ -424,7 +424,8 @@ void lar_touch_observe(lar_touch *touch, const lar_condition_context *context,
 void lar_touch_stop(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
     lar_planes_stop(&touch->planes, context, state, touch->always, &touch->seen);
     touch->moved = state->round + 1;
-    if (touch->planes.count > 0 || touch->face_count > 0) touch->seen.steps++;
+    bool tools = touch->face_count > 0 && lar_spares_any(touch->list, touch->tools);
+    if (touch->planes.count > 0 || tools) touch->seen.steps++;
 }
 
 void lar_touch_remember(const lar_touch *touch, lar_touch_note *note) {

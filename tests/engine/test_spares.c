@@ -70,6 +70,7 @@ static void spares_that_are_not_there_change_nothing(void **unused) {
             lar_options options = with_spares(i ? 4 : 0);
             options.grid = kind % 2 ? "2x1x1" : NULL;
             if (!with) options.time_step = 2e-4;
+            if (!with) options.hands = 0;
             lar_simulation *simulation = start_with(model, options);
             if (with) act(simulation, 0, 15);
             if (!with) advance(simulation, 150);

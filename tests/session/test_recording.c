@@ -331,9 +331,9 @@ static void forged_files_are_refused(void **unused) {
         refused(LAR_ERROR_FORMAT, forged[i].name);
     }
     reload();
-    *word_at(8) = 3;
+    *word_at(8) = 4;
     write_bad(file.size);
-    refused(LAR_ERROR_FORMAT, "version 3");
+    refused(LAR_ERROR_FORMAT, "version 4");
     reload();
     *word_at(8 * 7) = 0; /* time step */
     sign();
