@@ -293,8 +293,7 @@ static void note_tools(view *v) {
         view_tool *tool = &r->tool[r->tools];
         lar_tool_info info;
         if (lar_session_tool_info(v->session, i, &info, NULL) || info.shape == LAR_TOOL_HAND ||
-            info.shape == LAR_TOOL_NONE ||
-            lar_session_tool_load(v->session, i, &tool->load, NULL))
+            info.shape == LAR_TOOL_NONE || lar_session_tool_load(v->session, i, &tool->load, NULL))
             continue;
         tool->name = info.name;
         r->tools++;

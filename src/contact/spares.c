@@ -21,8 +21,9 @@ int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MOST]) {
     return needed;
 }
 
-static const lar_tool nothing = {
-    .name = (char *)"", .shape = LAR_TOOL_NONE, .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+static const lar_tool nothing = {.name = (char *)"",
+                                 .shape = LAR_TOOL_NONE,
+                                 .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
 
 void lar_spares_name(lar_tool_list *list) {
     for (int32_t k = 0; k < list->spares; k++) {

@@ -318,7 +318,8 @@ static void take_settings(lar_computer *computer) {
     const lar_settings *settings = &computer->tools->settings;
     const lar_domain *domain = &computer->processor[0].domain;
     uint64_t interval = lar_interval_length(computer->whole, computer->tools);
-    for (int32_t i = 0; i < computer->hosted; i++) computer->processor[i].domain.interval = interval;
+    for (int32_t i = 0; i < computer->hosted; i++)
+        computer->processor[i].domain.interval = interval;
     if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
         lar_crew_run(computer->crew, stiffen_seat, computer);
 }

@@ -64,10 +64,10 @@ typedef struct lar_computer {
     lar_computer_contact contact;
     lar_watch *watch;
     void *watch_context;
-    bool called_off;   /* by the watch */
-    lar_report report; /* of the last advance; at processor zero, of all processors */
-    lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
-    lar_tools *tools;  /* of this process: zero's are those that count */
+    bool called_off;     /* by the watch */
+    lar_report report;   /* of the last advance; at processor zero, of all processors */
+    lar_state *state;    /* of the whole model: gathered into at zero, scattered from elsewhere */
+    lar_tools *tools;    /* of this process: zero's are those that count */
     lar_tool_list *list; /* of this process: its spares follow `tools` */
     lar_interval interval;
     bool tools_sent; /* to the other processes, as they are */
@@ -80,8 +80,8 @@ typedef struct lar_computer {
 } lar_computer;
 
 /* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
- * the whole model at the start; they, `tools` and `list` must outlive the computer. Takes options->listener
- * over, whatever it returns. */
+ * the whole model at the start; they, `tools` and `list` must outlive the computer. Takes
+ * options->listener over, whatever it returns. */
 lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
                                lar_tool_list *list, const lar_options *options,
                                lar_computer **computer, lar_error *error);

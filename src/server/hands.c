@@ -33,9 +33,8 @@ static void look_where_it_is(lar_hands *hands, const lar_session_status *status,
     for (int32_t i = 0; i < hands->session->tools; i++) {
         lar_owner *owner = &hands->owner[i];
         if (owner->viewer == 0) continue;
-        *owner = (lar_owner){.serial = owner->serial,
-                             .deaf_to = owner->viewer,
-                             .deaf_until = now + ON_ITS_WAY};
+        *owner = (lar_owner){
+            .serial = owner->serial, .deaf_to = owner->viewer, .deaf_until = now + ON_ITS_WAY};
     }
 }
 

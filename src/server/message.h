@@ -75,12 +75,12 @@ typedef struct lar_wish {
     double point[3];  /* grab, pull, tool, gravity */
     double orientation[4];
     double opening;
-    bool turns, opens;            /* tool: orientation, opening were given */
-    bool on;                      /* record */
-    int32_t axis, index;          /* slice */
-    int32_t node, face;           /* inspect: of the surface; -1: none */
-    bool energy;                  /* inspect */
-    lar_tool_shape shape;         /* add_tool, as the next two [m] */
+    bool turns, opens;    /* tool: orientation, opening were given */
+    bool on;              /* record */
+    int32_t axis, index;  /* slice */
+    int32_t node, face;   /* inspect: of the surface; -1: none */
+    bool energy;          /* inspect */
+    lar_tool_shape shape; /* add_tool, as the next two [m] */
     double radius, length;
     char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
 } lar_wish;

@@ -159,17 +159,17 @@ lar_status lar_session_set_damping(lar_session *session, double damping, lar_err
 
 lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                      lar_error *error) {
-    return set(
-        session,
-        (lar_setting){.kind = LAR_SETTING_STIFFNESS, .of = material, .value = {factor}}, NULL,
-        error);
+    return set(session,
+               (lar_setting){.kind = LAR_SETTING_STIFFNESS, .of = material, .value = {factor}},
+               NULL, error);
 }
 
 lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted, int32_t *tool,
                                 lar_error *error) {
     if (!wanted || (unsigned)wanted->shape >= LAR_TOOL_HAND)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_session_add_tool needs a sphere, a capsule or a grasper, and its size");
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "lar_session_add_tool needs a sphere, a capsule or a grasper, and its size");
     return set(session,
                (lar_setting){.kind = LAR_SETTING_ADD_TOOL,
                              .of = (int32_t)wanted->shape,

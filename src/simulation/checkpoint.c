@@ -22,8 +22,8 @@
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
 static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-/* Version 3 had no settings: neither them nor what they take of a step. A state with tools that were
- * added is version 5, any other one version 4. */
+/* Version 3 had no settings: neither them nor what they take of a step. A state with tools that
+ * were added is version 5, any other one version 4. */
 enum { ADDED_TOOLS = 5, VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -57,9 +57,8 @@ typedef double node_vector[3];
 
 static size_t settings_bytes(uint32_t version) {
     size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MOST * sizeof(lar_spare_tool) : 0;
-    return version == BEFORE_SETTINGS
-               ? offsetof(lar_step_division, base)
-               : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
+    return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
+                                      : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
 }
 
 static size_t file_bytes(const file_shape *shape, size_t nodes) {

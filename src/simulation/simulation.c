@@ -140,8 +140,8 @@ void lar_simulation_set_start(lar_simulation *simulation) {
 static lar_status compile(const lar_model *model, const lar_options *options,
                           lar_simulation *simulation, lar_error *error) {
     lar_domain *domain = &simulation->domain;
-    lar_status status = lar_tool_list_create(model, options->hands, options->spares,
-                                             &simulation->list, error);
+    lar_status status =
+        lar_tool_list_create(model, options->hands, options->spares, &simulation->list, error);
     if (!status) status = lar_domain_create(model, options, domain, error);
     if (status) return status;
     set_tool_limits(domain, &simulation->list);

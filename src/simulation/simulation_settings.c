@@ -49,7 +49,8 @@ static double gravity_account(const lar_simulation *simulation, const lar_settin
 
 lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double gravity[3],
                                       lar_error *error) {
-    lar_status status = lar_simulation_check_change(simulation, "lar_simulation_set_gravity", error);
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_gravity", error);
     if (status) return status;
     lar_settings wanted = simulation->tools.settings;
     wanted.gravity_set = gravity != NULL;
@@ -80,7 +81,8 @@ void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3])
 
 lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping,
                                       lar_error *error) {
-    lar_status status = lar_simulation_check_change(simulation, "lar_simulation_set_damping", error);
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_damping", error);
     if (status) return status;
     double time_step = simulation->domain.time_step;
     if (!lar_damping_fits(damping, time_step))
@@ -164,7 +166,8 @@ static double stiffening(const lar_simulation *simulation, const lar_settings *w
 
 lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material, double factor,
                                         lar_error *error) {
-    lar_status status = lar_simulation_check_change(simulation, "lar_simulation_set_stiffness", error);
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_stiffness", error);
     if (status) return status;
     int32_t count = simulation->domain.model->material_count;
     if (material < -1 || material >= count)

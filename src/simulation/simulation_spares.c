@@ -53,8 +53,8 @@ static void find_place(const room *around, int32_t place, lar_tool *tool) {
     for (int i = 0; i < 2; i++)
         tool->rest.position[i] = 0.5 * (around->lower[i] + around->upper[i]);
     tool->rest.position[0] += aside[place] * wide;
-    tool->rest.position[2] = around->upper[2] + below + tool->radius +
-                             fmax(tool->radius, CLEAR * around->size);
+    tool->rest.position[2] =
+        around->upper[2] + below + tool->radius + fmax(tool->radius, CLEAR * around->size);
 }
 
 /* ---- what may be added ---------------------------------------------------------------------- */
@@ -73,8 +73,7 @@ static lar_status check_size(const lar_simulation *simulation, const lar_tool *t
     const double RADIUS_MOST = 0.5, LENGTH_MOST = 5;
     const char *wrong = lar_tool_size_fault(tool);
     double least = least_radius(simulation);
-    if (wrong)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "the tool cannot be added: %s", wrong);
+    if (wrong) return lar_fail(error, LAR_ERROR_ARGUMENT, "the tool cannot be added: %s", wrong);
     if (tool->radius < least)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a radius of %.3g m is too thin: large faces of this body would not feel "

@@ -81,15 +81,16 @@ static lar_status read_header(lar_recording_reader *reader, lar_error *error) {
                         reader->path);
     lar_status status = check_header(reader, word, error);
     if (status) return status;
-    reader->header = (lar_recording_header){.element = (lar_element_kind)word[1],
-                                            .nodes = (int32_t)word[2],
-                                            .elements = (int32_t)word[3],
-                                            .tools = (int32_t)word[4],
-                                            .hands = (int32_t)word[5],
-                                            .time_step = lar_double_of(word[6]),
-                                            .tick_steps = word[7],
-                                            .hash_every = word[8],
-                                            .spares = word[0] > LAR_RECORDING_WITHOUT_SPARES ? (int32_t)word[9] : 0};
+    reader->header = (lar_recording_header){
+        .element = (lar_element_kind)word[1],
+        .nodes = (int32_t)word[2],
+        .elements = (int32_t)word[3],
+        .tools = (int32_t)word[4],
+        .hands = (int32_t)word[5],
+        .time_step = lar_double_of(word[6]),
+        .tick_steps = word[7],
+        .hash_every = word[8],
+        .spares = word[0] > LAR_RECORDING_WITHOUT_SPARES ? (int32_t)word[9] : 0};
     reader->at = 8 * (2 + LAR_RECORDING_HEADER_WORDS);
     return LAR_OK;
 }

@@ -48,8 +48,7 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
         return lar_fail(error, LAR_ERROR_IO,
                         "%s: cannot be written: %s; check the folder and its permissions", path,
                         strerror(errno));
-    uint64_t version =
-        header->spares > 0 ? LAR_RECORDING_VERSION : LAR_RECORDING_WITHOUT_SPARES;
+    uint64_t version = header->spares > 0 ? LAR_RECORDING_VERSION : LAR_RECORDING_WITHOUT_SPARES;
     uint64_t words[1 + LAR_RECORDING_HEADER_WORDS] = {0,
                                                       version,
                                                       (uint64_t)header->element,
