@@ -136,6 +136,22 @@ static void test_silent_device_is_told_zero(void **state) {
     lar_device_close(r.device);
 }
 
+/* A single packet, which anybody may have sent under this address, is answered once. */
+static void test_single_packet_is_answered_once(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int s = reach(&r), answers = 0;
+    lar_force_packet answer;
+    send_position(s, 1, 0, NULL);
+    for (int i = 0; i < 200; i++) {
+        tick(&r);
+        while (receive(s, &answer)) answers++;
+    }
+    assert_int_equal(answers, 1);
+    close(s);
+    lar_device_close(r.device);
+}
+
 /* Others get no answer and move nothing; a flood is read in portions and then not at all. */
 static void test_strangers_and_floods(void **state) {
     (void)state;
@@ -253,6 +269,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_position_in_force_out),
         cmocka_unit_test(test_silent_device_is_told_zero),
+        cmocka_unit_test(test_single_packet_is_answered_once),
         cmocka_unit_test(test_strangers_and_floods),
         cmocka_unit_test(test_token_on_any_address),
         cmocka_unit_test(test_port_in_use),

@@ -40,6 +40,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     if (!link->owned) {
         link->owned = true;
         link->owner = *from;
+        link->packets = 0;
     } else {
         if (memcmp(&link->owner, from, sizeof *from)) return refuse(link);
         /* Numbers go round after 2^32; what lies less than half of that ahead is newer. */
@@ -55,6 +56,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     link->newest = packet;
     link->last_packet = now;
     link->received++;
+    link->packets++;
     return LAR_LINK_TAKEN;
 }
 

@@ -49,6 +49,7 @@ typedef struct udp_state {
     udp_answer answer[READ_MOST];
     udp_answer last;  /* taken: what is said while a force fades */
     int said_nothing; /* answers of zero since the force has faded */
+    uint64_t unasked; /* answers that no packet asked for, since the last one */
     uint64_t answered;
     lar_histogram answer_time;
     struct mmsghdr message[READ_MOST];
@@ -193,6 +194,7 @@ static void take(udp_state *state, int i, uint64_t now) {
                                .came = arrival(head)};
     if (state->due < READ_MOST) state->answer[state->due++] = state->last;
     state->said_nothing = 0;
+    state->unasked = 0;
 }
 
 /* Listens to everybody again, or to the owner alone. */
@@ -246,11 +248,14 @@ static lar_force_packet force_packet(const udp_state *state, const lar_device_ti
     return packet;
 }
 
-/* A silent device is told in every tick that its force fades, and three times that it is gone. */
+/* A silent device is told in every tick that its force fades, and three times that it is gone. No
+ * more often than it has sent packets, but for one: whoever sends a single packet under a false
+ * address has it answered once. */
 static void add_fading(udp_state *state) {
     enum { ENOUGH = 3 };
     if (state->due > 0 || !state->link.owned || !state->link.silent) return;
-    if (state->said_nothing == ENOUGH) return;
+    if (state->said_nothing == ENOUGH || state->unasked + 1 >= state->link.packets) return;
+    state->unasked++;
     if (state->link.strength <= 0 && state->link.left <= 0) state->said_nothing++;
     state->answer[state->due++] = state->last;
 }
