@@ -39,6 +39,7 @@ typedef struct lar_link {
     char token[LAR_PACKET_TOKEN]; /* zeros: none is asked for */
     bool owned;
     lar_link_address owner;
+    uint64_t packets;                     /* of the owner */
     uint64_t last_packet;                 /* of the owner [ns] */
     uint64_t last_time;                   /* of the last call of lar_link_advance [ns] */
     double last_gap;                      /* between the last two calls of lar_link_advance [ms] */
