@@ -26,6 +26,7 @@ static const int64_t STILL = LAR_SECOND_NS / 4;
  * took both threads, so that they leave most of a core to others. */
 static const int64_t PAINT_EVERY = LAR_SECOND_NS / 125;
 enum { PAINT_SHARE = 4 };
+static const double SAVE_MOST = 4e9; /* [bytes] */
 /* A viewer that takes nothing for so long is closed. */
 static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
@@ -104,6 +105,7 @@ static void watch(lar_server *server, int64_t now) {
     double seconds = (double)(now - server->watched_at) / (double)LAR_SECOND_NS;
     server->watched_at = now;
     lar_server_sweep(server, now);
+    lar_server_watch_recording(server);
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
         uint64_t bytes = bytes_received(viewer->wsi), before = viewer->bytes_in;
         viewer->bytes_in = bytes;
@@ -334,6 +336,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->session = session;
     server->model = model;
     server->listener = server->spare = -1;
+    server->save_most = asked.save_most > 0 ? asked.save_most : SAVE_MOST;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
