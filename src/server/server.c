@@ -35,7 +35,7 @@ static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST +
 /* ---- the beat ----------------------------------------------------------------------------------
  */
 
-static void take_status(lar_server *server) {
+void lar_server_take_status(lar_server *server) {
     lar_session_status_get(server->session, &server->status);
     for (int32_t i = 0; i < server->session->tools; i++)
         lar_session_tool_force(server->session, i, &server->tool[i].pose, &server->tool[i].force,
@@ -123,7 +123,7 @@ static void beat(lws_sorted_usec_list_t *sul) {
     if (now - server->watched_at >= WATCH_EVERY) watch(server, now);
     if (server->first && now - server->status_at >= STATUS_EVERY) {
         server->status_at = now;
-        take_status(server);
+        lar_server_take_status(server);
     }
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
@@ -311,7 +311,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     if (!server->forces.memory) return lar_fail_memory(error, bytes, "forces for viewers");
     server->pace = session->options.pace;
     lar_server_list_saved(server);
-    take_status(server);
+    lar_server_take_status(server);
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);
     if (!status)

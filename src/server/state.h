@@ -153,6 +153,11 @@ struct lar_server {
 /* What the worker has done. */
 void lar_server_collect(lar_server *server);
 
+/* ---- server.c ---------- */
+
+/* What the session says now; due to all viewers. */
+void lar_server_take_status(lar_server *server);
+
 /* ---- http.c ----------- */
 
 typedef struct lar_download {

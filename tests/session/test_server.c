@@ -456,6 +456,20 @@ static void gravity_damping_and_stiffness_are_set(void **unused) {
     end_serving(&s);
 }
 
+/* Who comes after a while without viewers is not told of long ago. */
+static void first_status_is_fresh(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    lar_session_status now;
+    nap(0.3);
+    lar_session_status_get(s.b.session, &now);
+    assert_true(now.step > 0);
+    client c = open_client(s.port);
+    assert_true(number_of(await_text(&c, "status"), "step") >= (double)now.step);
+    close_client(&c);
+    end_serving(&s);
+}
+
 /* The folder takes so much and no more: a recording ends there, and then nothing is saved. */
 static void saves_as_much_as_it_may(void **unused) {
     (void)unused;
@@ -579,6 +593,7 @@ int main(void) {
                                        cmocka_unit_test(a_tool_that_tissue_stops_says_so),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
                                        cmocka_unit_test(gravity_damping_and_stiffness_are_set),
+                                       cmocka_unit_test(first_status_is_fresh),
                                        cmocka_unit_test(saves_as_much_as_it_may),
                                        cmocka_unit_test(saves_where_it_may),
                                        cmocka_unit_test(shows_why_it_stopped_and_begins_again),
