@@ -1,7 +1,7 @@
-# Optional: PETSc solves the linear systems of the implicit comparison (src/study/petsc_shim.h), in
+# Optional: PETSc solves the linear systems of the implicit comparison (src/study/implicit/petsc_shim.h), in
 # a loadable module, because it brings an MPI and some dozen libraries that nothing else needs.
 if(LARIAT_HAVE_PETSC)
-  add_library(lariat-petsc MODULE study/petsc_shim.c)
+  add_library(lariat-petsc MODULE study/implicit/petsc_shim.c)
   target_include_directories(lariat-petsc PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(lariat-petsc PRIVATE ${PROJECT_SOURCE_DIR}/include)
   # Headers of others warn.
@@ -14,5 +14,5 @@ endif()
 # From the command's folder to where the module is installed.
 file(RELATIVE_PATH LARIAT_PETSC_FROM_BIN "/root/${CMAKE_INSTALL_BINDIR}"
   "/root/${CMAKE_INSTALL_LIBDIR}")
-set_property(SOURCE study/linear_solver.c APPEND PROPERTY COMPILE_DEFINITIONS
+set_property(SOURCE study/implicit/linear_solver.c APPEND PROPERTY COMPILE_DEFINITIONS
   LAR_PETSC_FROM_BIN="${LARIAT_PETSC_FROM_BIN}")

@@ -5,30 +5,16 @@
 # network and all build folders share web/dist; `make` has it on.
 option(LARIAT_VIEWER "Build the viewer's page with npm when web/ has changed" OFF)
 
-target_sources(lariat PRIVATE cli/view.c cli/view_report.c)
-target_sources(lariat_core PRIVATE session/server_json.c session/server_message.c)
 if(LARIAT_HAVE_LIBWEBSOCKETS)
-  target_sources(lariat_core PRIVATE
-    session/server.c
-    session/server_act.c
-    session/server_files.c
-    session/server_hands.c
-    session/server_http.c
-    session/server_inspect.c
-    session/server_picture.c
-    session/server_reading.c
-    session/server_riding.c
-    session/server_saved.c
-    session/server_scan.c
-    session/server_send.c
-    session/server_socket.c
-    session/server_work.c)
+  lariat_sources(sources server)
+  list(REMOVE_ITEM sources server/absent.c)
+  target_sources(lariat_core PRIVATE ${sources})
   target_link_libraries(lariat_core PRIVATE PkgConfig::LWS)
 else()
-  target_sources(lariat_core PRIVATE session/server_absent.c)
+  target_sources(lariat_core PRIVATE server/absent.c server/json.c server/message.c)
 endif()
 set(LARIAT_VIEWER_BELOW_PREFIX ${CMAKE_INSTALL_DATADIR}/lariat/viewer)
-set_property(SOURCE session/server_files.c APPEND PROPERTY COMPILE_DEFINITIONS
+set_property(SOURCE server/files.c APPEND PROPERTY COMPILE_DEFINITIONS
   LAR_VIEWER_FOLDER="${PROJECT_SOURCE_DIR}/web/dist"
   LAR_VIEWER_BELOW_PREFIX="${LARIAT_VIEWER_BELOW_PREFIX}")
 

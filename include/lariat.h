@@ -16,15 +16,15 @@
  *
  * Conventions. SI units. Vectors are x, y, z. Node and element indices count from 0 in the
  * order of the mesh file. Every call that can fail returns a lar_status (LAR_OK is 0) and writes
- * one sentence to *error, which may be NULL; outputs are set on success only. Calls without a status
- * accept NULL: they return 0, -1 for an index, "" or NULL for a text; what they fill in is 0, but
- * for arrays of nodes, which stay as they are. The library never exits, and prints nothing.
+ * one sentence to *error, which may be NULL; outputs are set on success only. Calls without a
+ * status accept NULL: they return 0, -1 for an index, "" or NULL for a text; what they fill in is
+ * 0, but for arrays of nodes, which stay as they are. The library never exits, and prints nothing.
  *
  * Threads. A model may be used by any number of threads at once. A simulation, and the results that
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
  * use scratch memory inside it, though never change what another call returns. A SESSION takes a
- * simulation over and computes on a thread of its own; all its calls may come from any thread. While
- * it does, calls that change the simulation are refused.
+ * simulation over and computes on a thread of its own; all its calls may come from any thread.
+ * While it does, calls that change the simulation are refused.
  */
 #ifndef LARIAT_H
 #define LARIAT_H

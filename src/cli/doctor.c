@@ -5,7 +5,7 @@
 
 #include "cli/build_info.h"
 #include "cli/commands.h"
-#include "cli/json.h"
+#include "cli/report/json.h"
 #include "study/doctor.h"
 
 typedef struct findings {

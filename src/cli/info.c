@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "cli/commands.h"
-#include "cli/info_report.h"
+#include "cli/report/info.h"
 
 /* Organs are not ten metres long: a mesh in millimetres is the commonest slip. */
 static void doubt_scale(const lar_model_info *info) {

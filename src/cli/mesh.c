@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/mesh_report.h"
+#include "cli/report/mesh.h"
 #include "cli/stop.h"
 
 enum { INPUTS_MOST = 255 };

@@ -7,9 +7,9 @@
 
 #include "cli/commands.h"
 #include "cli/parallel.h"
-#include "cli/predict_report.h"
-#include "study/bench_kernel.h"
-#include "study/network_trace.h"
+#include "cli/report/predict.h"
+#include "study/bench/kernel.h"
+#include "study/predict/network_trace.h"
 
 enum { ROWS_MOST = 16, MACHINES_MOST = 16, CRITICAL_EDGE = 40 };
 
@@ -249,8 +249,7 @@ static int check_mode(const predict_settings *s) {
                             "--measure, --trace, --svg, --grid, --distribution and --schedules "
                             "need a scene");
     if (without && !s->scale && s->steps)
-        return cli_complain(&cli_predict, CLI_USAGE,
-                            "--steps belongs to a scene or to --scale-to");
+        return cli_complain(&cli_predict, CLI_USAGE, "--steps belongs to a scene or to --scale-to");
     if (!s->scene && !s->scale && s->parallel.scheme >= 0)
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--scheme belongs to a scene or to --scale-to; --critical tries all");

@@ -7,10 +7,10 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/json.h"
+#include "cli/report/json.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
-#include "study/step_clock.h"
+#include "study/bench/step_clock.h"
 
 typedef struct replay_settings {
     const char *recording, *scene, *out;

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/requirements_report.h"
+#include "cli/report/requirements.h"
 
 /* NULL: it is over. */
 static void show_progress(void *context, const char *what) {

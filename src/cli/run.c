@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
-#include "cli/run_report.h"
+#include "cli/report/run.h"
 
 enum { PATH_SIZE = 4096 };
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/json.h"
+#include "cli/report/json.h"
 #include "cli/parallel.h"
 #include "study/verify.h"
 

@@ -13,7 +13,7 @@
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
-#include "cli/view_report.h"
+#include "cli/report/view.h"
 
 typedef struct view_settings {
     const char *scene, *resume, *listen, *token, *watch_token, *record, *save_folder, *viewer,

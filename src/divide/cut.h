@@ -13,7 +13,7 @@
 #define LAR_DIVIDE_CUT_H
 
 #include "divide/grid.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Scratch of lar_cut, one per element. */
 typedef struct lar_cut_item {

@@ -8,7 +8,7 @@
 #ifndef LAR_DIVIDE_INCIDENCE_H
 #define LAR_DIVIDE_INCIDENCE_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 typedef struct lar_incidence {
     int32_t node_count, element_count;

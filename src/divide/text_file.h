@@ -16,7 +16,7 @@
 
 #include "base/memory.h"
 #include "divide/grid.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 typedef struct lar_text_file {
     const char *path; /* for messages */

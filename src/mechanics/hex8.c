@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "mechanics/hexahedron.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* h_m(a): columns xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
 static void modal_signs(int a, double sign[7]) {

@@ -10,7 +10,7 @@
  * twenty times the operations. Plain C, no lanes: for tests, comparison and T table 4.3.
  *
  * All functions take the reference corners [8][3] in metres and displacements u [8][3] in metres,
- * in the order of model/mesh.h, and keep nothing.
+ * in the order of model/mesh/mesh.h, and keep nothing.
  */
 #ifndef LAR_MECHANICS_HEX8_FULL_H
 #define LAR_MECHANICS_HEX8_FULL_H

@@ -6,7 +6,7 @@
 
 #include "base/vector.h"
 #include "mechanics/hexahedron.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Part of K + 4/3 G. */
 static const double KAPPA = 0.5;

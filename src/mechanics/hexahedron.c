@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "mechanics/law.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 void lar_gauss_point(int g, double at[3]) {
     for (int k = 0; k < 3; k++) at[k] = lar_node_sign[g][k] / sqrt(3.0);

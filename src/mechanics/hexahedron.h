@@ -1,7 +1,7 @@
 /* Geometry of the eight-node hexahedron, shared by all its elements.
  *
  *          7-------6        Local node a sits at the natural coordinates lar_node_sign[a]
- *         /|      /|        (model/mesh.h); its shape function is
+ *         /|      /|        (model/mesh/mesh.h); its shape function is
  *        4-------5 |            N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta) / 8
  *        | 3-----|-2        The rule of integration is 2x2x2 Gauss, all weights 1: exact for the
  *        |/      |/         volume of any hexahedron and for everything in a parallelepiped.

@@ -6,7 +6,7 @@
 
 #include "base/share.h"
 #include "base/vector.h"
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 /* Samples in each direction, about; samples along a side of a face or triangle, at most; samples
  * along the edge of a face, of the surface or, where its triangles are smaller, of the face. */

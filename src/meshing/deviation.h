@@ -2,8 +2,8 @@
 #ifndef LAR_MESHING_DEVIATION_H
 #define LAR_MESHING_DEVIATION_H
 
-#include "meshing/boundary.h"
-#include "model/mesh.h"
+#include "meshing/boundary/boundary.h"
+#include "model/mesh/mesh.h"
 
 /* Distances between two surfaces [m]. */
 typedef struct lar_deviation {

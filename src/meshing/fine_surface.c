@@ -6,7 +6,7 @@
 
 #include "base/share.h"
 #include "base/union_find.h"
-#include "model/mesh_skin.h"
+#include "model/triangles/skin.h"
 
 /* In cells. */
 static const double NEAR = 0.5, FAR = 1;

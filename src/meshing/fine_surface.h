@@ -1,9 +1,9 @@
-/* The true surface, made fit to ride on a mesh (model/embedding.h). */
+/* The true surface, made fit to ride on a mesh (model/triangles/embedding.h). */
 #ifndef LAR_MESHING_FINE_SURFACE_H
 #define LAR_MESHING_FINE_SURFACE_H
 
-#include "model/mesh.h"
-#include "model/triangles.h"
+#include "model/mesh/mesh.h"
+#include "model/triangles/triangles.h"
 
 /* Leaves out the shells that the mesh has nothing of: loose pieces and hollows that cleaning left
  * out or filled. A shell is such a one when its vertices are on the mean farther from the mesh's

@@ -1,5 +1,5 @@
 /* From label images, closed surfaces or other meshes to a hexahedral mesh: the public calls, and
- * the line of steps behind them (meshing/lattice.h draws it). */
+ * the line of steps behind them (meshing/grid/lattice.h draws it). */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,8 +8,8 @@
 
 #include "base/share.h"
 #include "meshing/fine_surface.h"
-#include "meshing/fit.h"
-#include "meshing/lattice_check.h"
+#include "meshing/fit/fit.h"
+#include "meshing/grid/lattice_check.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 

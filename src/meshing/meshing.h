@@ -10,9 +10,9 @@
 #define LAR_MESHING_MESHING_H
 
 #include "lariat.h"
-#include "meshing/boundary.h"
-#include "meshing/tissue.h"
-#include "model/mesh.h"
+#include "meshing/boundary/boundary.h"
+#include "meshing/starter/tissue.h"
+#include "model/mesh/mesh.h"
 
 /* What holds the body, and where the starter scene pulls at it. */
 typedef struct lar_support {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "meshing/crossing.h"
+#include "meshing/fit/crossing.h"
 #include "meshing/deviation.h"
 #include "meshing/meshing.h"
 #include "model/model.h"

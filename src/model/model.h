@@ -7,10 +7,10 @@
 #define LAR_MODEL_MODEL_H
 
 #include "model/curve.h"
-#include "model/embedding.h"
+#include "model/triangles/embedding.h"
 #include "model/material.h"
-#include "model/mesh.h"
-#include "model/surface.h"
+#include "model/mesh/mesh.h"
+#include "model/mesh/surface.h"
 
 enum { LAR_AXIS_X = 1, LAR_AXIS_Y = 2, LAR_AXIS_Z = 4, LAR_AXIS_ALL = 7 };
 

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "engine/checkpoint.h"
+#include "simulation/checkpoint.h"
 #include "session/session.h"
 
 /* Before the start it waits for the start. */

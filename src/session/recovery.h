@@ -23,7 +23,7 @@
 #ifndef LAR_SESSION_RECOVERY_H
 #define LAR_SESSION_RECOVERY_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 
 enum { LAR_STATES_KEPT = 4 };
 

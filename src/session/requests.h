@@ -14,9 +14,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "session/device.h"
-#include "session/player.h"
-#include "session/record.h"
+#include "session/device/device.h"
+#include "session/recording/player.h"
+#include "session/recording/record.h"
 
 typedef enum lar_request_kind {
     LAR_REQUEST_PLAY = 0,

@@ -19,15 +19,15 @@
 #ifndef LAR_SESSION_SESSION_H
 #define LAR_SESSION_SESSION_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/advice.h"
 #include "session/coupling.h"
-#include "session/device.h"
+#include "session/device/device.h"
 #include "session/exchange.h"
 #include "session/history.h"
 #include "session/pace.h"
-#include "session/player.h"
-#include "session/recording_file.h"
+#include "session/recording/player.h"
+#include "session/recording/file.h"
 #include "session/recovery.h"
 #include "session/requests.h"
 #include "session/snapshot.h"

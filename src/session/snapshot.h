@@ -11,7 +11,7 @@
 #ifndef LAR_SESSION_SNAPSHOT_H
 #define LAR_SESSION_SNAPSHOT_H
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "session/exchange.h"
 
 typedef struct lar_snapshots {

@@ -11,9 +11,9 @@
 #include "base/thread.h"
 #include "comm/comm.h"
 #include "comm/mpi_world.h"
-#include "engine/simulation.h"
-#include "study/bench_step.h"
-#include "study/linear_solver.h"
+#include "simulation/simulation.h"
+#include "study/bench/step.h"
+#include "study/implicit/linear_solver.h"
 #include "study/real_time.h"
 
 /* ---- parts ---------------------------------------------------------------------------------- */

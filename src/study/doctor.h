@@ -19,7 +19,7 @@
 
 #include <stdbool.h>
 
-#include "study/bench_jitter.h"
+#include "study/bench/jitter.h"
 #include "study/machine.h"
 
 typedef struct lar_feature {

@@ -5,7 +5,7 @@
 #include <strings.h>
 
 #include "base/vector.h"
-#include "meshing/image.h"
+#include "meshing/image/image.h"
 
 void lar_label_list_clear(lar_label_list *list) {
     for (int32_t i = 0; i < list->count; i++) free(list->row[i].name);

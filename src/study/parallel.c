@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "comm/comm.h"
-#include "divide/schedule_file.h"
-#include "engine/division.h"
+#include "divide/schedule/file.h"
+#include "parallel/division.h"
 #include "model/model.h"
 
 static lar_status check_comm(const char *name, lar_error *error) {

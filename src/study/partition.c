@@ -5,7 +5,7 @@
 
 #include "divide/distribution.h"
 #include "divide/genetic.h"
-#include "divide/schedule_file.h"
+#include "divide/schedule/file.h"
 #include "model/format/mesh_io.h"
 #include "model/model.h"
 

@@ -1,6 +1,6 @@
 #include "study/real_time.h"
 
-#include "study/step_clock.h"
+#include "study/bench/step_clock.h"
 
 /* Steps that warm the caches, and those that are the least to be measured. */
 enum { WARM = 5, LEAST = 10 };

@@ -1,7 +1,7 @@
 #include "study/verify.h"
 
-#include "engine/division.h"
-#include "engine/verification.h"
+#include "parallel/division.h"
+#include "parallel/verification.h"
 #include "model/model.h"
 
 enum { LISTED_LEAST = 20, SEED = 1 };

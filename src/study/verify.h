@@ -1,8 +1,8 @@
 /* Whether a division can be trusted, in three steps of growing cost (T 6.9, 7.5.8):
  *
- *     schedules   proved from what stands in them, before anything runs (divide/schedule_proof.h)
- *     lists       the real program passes lists of elements instead of forces, with random delays:
- *                 every force arrives at every node once (engine/verification.h)
+ *     schedules   proved from what stands in them, before anything runs
+ * (divide/proof/schedule_proof.h) lists       the real program passes lists of elements instead of
+ * forces, with random delays: every force arrives at every node once (parallel/verification.h)
  *     forces      the real program with forces: its state is one processor's, bit for bit
  *
  * Each step is a function, so that whoever calls can tell how far it got. Processor zero calls
@@ -11,7 +11,7 @@
 #ifndef LAR_STUDY_VERIFY_H
 #define LAR_STUDY_VERIFY_H
 
-#include "divide/schedule_proof.h"
+#include "divide/proof/schedule_proof.h"
 #include "study/processes.h"
 
 typedef struct lar_verify_setting {

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "cli/json.h"
+#include "cli/report/json.h"
 
 typedef struct page {
     char *text;

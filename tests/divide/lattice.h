@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "divide/distribution.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 static inline lar_mesh lattice(int nx, int ny, int nz) {
     lar_mesh mesh = {.source = lar_strdup("lattice"),

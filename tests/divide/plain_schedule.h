@@ -13,7 +13,7 @@
 #include "testing.h"
 
 #include "divide/incidence.h"
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "lattice.h"
 
 /* A mesh and who has what of it. */

@@ -2,7 +2,7 @@
 #ifndef LAR_TESTS_SAME_SCHEDULE_H
 #define LAR_TESTS_SAME_SCHEDULE_H
 
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 #include "testing.h"
 
 static inline void assert_same_numbers(const int32_t *a, lar_range of_a, const int32_t *b,

@@ -11,7 +11,7 @@
 #include "testing.h"
 
 #include "divide/random.h"
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 
 enum { PLAYED_STEPS = 4 };
 

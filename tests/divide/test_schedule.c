@@ -1,7 +1,7 @@
 /* Schedules: the thesis's figures, counted from what the schedules send, and their shape. */
-#include "divide/schedule.h"
+#include "divide/schedule/schedule.h"
 
-#include "divide/schedule_proof.h"
+#include "divide/proof/schedule_proof.h"
 #include "lattice.h"
 #include "model/demo/demo.h"
 

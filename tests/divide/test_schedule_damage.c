@@ -4,7 +4,7 @@
  *
  *     test_divide_schedule_damage [rounds]
  */
-#include "divide/schedule_proof.h"
+#include "divide/proof/schedule_proof.h"
 
 #include "plain_schedule.h"
 #include "step_player.h"

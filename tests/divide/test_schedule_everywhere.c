@@ -4,7 +4,7 @@
  *     test_divide_schedule_everywhere            a sample of the combinations
  *     test_divide_schedule_everywhere all        all of them
  */
-#include "divide/schedule_proof.h"
+#include "divide/proof/schedule_proof.h"
 
 #include "model/demo/demo.h"
 #include "model/format/mesh_io.h"

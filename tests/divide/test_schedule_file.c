@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "divide/schedule_file.h"
+#include "divide/schedule/file.h"
 #include "lattice.h"
 #include "model/demo/demo.h"
 #include "same_schedule.h"

@@ -1,5 +1,5 @@
 /* The proof sees every damage, and says where: plain schedules, damaged one way at a time. */
-#include "divide/schedule_proof.h"
+#include "divide/proof/schedule_proof.h"
 
 #include "plain_schedule.h"
 #include "step_player.h"

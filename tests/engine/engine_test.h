@@ -6,8 +6,8 @@
 #ifndef LAR_TESTS_ENGINE_TEST_H
 #define LAR_TESTS_ENGINE_TEST_H
 
-#include "engine/measure.h"
-#include "engine/simulation.h"
+#include "step/measure.h"
+#include "simulation/simulation.h"
 #include "model/model.h"
 #include "testing.h"
 

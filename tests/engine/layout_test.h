@@ -4,7 +4,7 @@
 #define LAR_TESTS_LAYOUT_TEST_H
 
 #include "base/simd.h"
-#include "engine/row_plan.h"
+#include "layout/row_plan.h"
 #include "engine_test.h"
 
 /* ---- what must hold ------------------------------------------------------------------------- */

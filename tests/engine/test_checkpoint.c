@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "engine/checkpoint.h"
+#include "simulation/checkpoint.h"
 #include "engine/collide_test.h"
 #include "engine/engine_test.h"
 #include "engine/fleet_test.h"

@@ -1,7 +1,7 @@
 /* A body whose concave crease folds shut: nodes that come into its layer without having come
  * through a face are not pushed out with energy from nowhere, and the run goes on to rest. */
 #include "engine/collide_test.h"
-#include "engine/computer.h"
+#include "parallel/computer.h"
 #include "engine/fleet_test.h"
 #include "engine/touch_test.h"
 

@@ -3,7 +3,7 @@
 #include "engine/collide_test.h"
 
 #include "base/hash.h"
-#include "engine/computer.h"
+#include "parallel/computer.h"
 
 static const brick lower_brick = {{6, 4, 2}, 0.01, 0.08, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
 static const brick upper_brick = {{4, 3, 2}, 0.008, 0.05, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};

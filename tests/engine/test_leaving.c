@@ -4,7 +4,7 @@
 #include <pthread.h>
 
 #include "comm/backend.h"
-#include "divide/schedule_file.h"
+#include "divide/schedule/file.h"
 #include "engine/engine_test.h"
 
 /* One that notices the end of a connection by itself, and one that does not. */

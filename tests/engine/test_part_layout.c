@@ -2,7 +2,7 @@
  * owners and the corners of the whole. At last how many blocks the demonstration organ needs when
  * it is cut (printed), since a part may not cost much more than its share. */
 #include "divide/distribution.h"
-#include "engine/finish.h"
+#include "layout/finish.h"
 #include "layout_test.h"
 #include "model/demo/demo.h"
 

@@ -127,7 +127,7 @@ static void tools_allocate_and_lock_nothing(void **unused) {
 }
 
 /* The same of four processors with two threads each. Threads take a lock to fall asleep and to wake
- * up between two advances and between two intervals of one (engine/interval.h), so it is counted
+ * up between two advances and between two intervals of one (step/interval.h), so it is counted
  * within intervals, by processor zero, when the slowest has woken up. */
 static int calls_from, calls_within, intervals;
 

@@ -1,6 +1,6 @@
 /* When a body is at rest: swinging, creeping, moved and free ones, on every grid. */
 #include "engine/engine_test.h"
-#include "engine/rest.h"
+#include "simulation/rest.h"
 #include "model/rest.h"
 
 /* A brick held at one end that sinks under gravity; the damping in shares of the critical guess. */

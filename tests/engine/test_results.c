@@ -16,8 +16,8 @@
 #include <cmocka.h>
 
 #include "base/folder.h"
-#include "engine/measure.h"
-#include "engine/results_probe.h"
+#include "step/measure.h"
+#include "simulation/results_probe.h"
 #include "mechanics/law.h"
 #include "meshing/shapes.h"
 #include "model/brick.h"

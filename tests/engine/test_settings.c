@@ -1,7 +1,7 @@
 /* Gravity, damping and stiffness that are changed while a simulation runs: their effect is that of
  * a model that had them from the start, every joule is accounted for, and the bits are the same on
  * every grid, with every backend, and through checkpoints. */
-#include "engine/checkpoint.h"
+#include "simulation/checkpoint.h"
 #include "engine/engine_test.h"
 #include "engine/fleet_test.h"
 #include "engine/tools_test.h"

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "engine/checkpoint.h"
-#include "engine/identity.h"
+#include "simulation/checkpoint.h"
+#include "step/identity.h"
 #include "fuzz/two_cubes.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

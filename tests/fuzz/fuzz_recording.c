@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "fuzz/two_cubes.h"
-#include "session/recording_words.h"
+#include "session/recording/words.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

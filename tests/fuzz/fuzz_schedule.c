@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "divide/schedule_file.h"
+#include "divide/schedule/file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "session/device_link.h"
+#include "session/device/link.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "session/server_json.h"
-#include "session/server_message.h"
+#include "server/json.h"
+#include "server/message.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 typedef lar_status surface_parser(const char *path, const lar_bytes *bytes,
                                   lar_triangles *triangles, lar_error *error);

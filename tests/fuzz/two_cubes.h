@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 
 enum { NODES = 12 };
 

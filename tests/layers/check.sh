@@ -14,7 +14,7 @@ check_tree() {
     # shellcheck disable=SC2046
     set -- $(cd "$root" && find src -name '*.[ch]' | LC_ALL=C sort)
     [ $# -gt 0 ] || { echo "layers: no sources below $root/src"; return 1; }
-    (cd "$root" && awk -f "$rules" "$@")
+    (cd "$root" && awk -f "$here/rooms.awk" -f "$here/rules.awk" "$@")
 }
 
 self_test() {
@@ -24,13 +24,13 @@ self_test() {
 
     fresh() {
         rm -rf "$scratch/tree"
-        for folder in base model mechanics divide comm engine session study cli; do
+        for folder in base model mechanics divide comm simulation session study cli; do
             mkdir -p "$scratch/tree/src/$folder"
             printf '#include "lariat.h"\n' >"$scratch/tree/src/$folder/a.h"
         done
         printf '#include "base/a.h"\n#include "model/a.h"\n/* never call exit(1) */\n%s\n' \
             'const char *s = "printf(\"x\"); // "; int f(int (*exit_early)(void));' \
-            >"$scratch/tree/src/engine/a.c"
+            >"$scratch/tree/src/simulation/a.c"
     }
     # expect FILE LINE PATTERN: with LINE added to FILE, the check fails and says PATTERN.
     expect() {
@@ -55,16 +55,16 @@ self_test() {
     expect model/a.h '#include "mechanics/a.h"' 'model may not include mechanics'
     expect mechanics/a.h '#include "divide/a.h"' 'mechanics may not include divide'
     expect divide/a.h '  #  include "comm/a.h"' 'divide may not include comm'
-    expect comm/a.h '#include "engine/a.h"' 'comm may not include engine'
-    expect engine/a.h '#include "session/a.h"' 'engine may not include session'
+    expect comm/a.h '#include "simulation/a.h"' 'comm may not include simulation'
+    expect simulation/a.h '#include "session/a.h"' 'simulation may not include session'
     expect session/a.h '#include "study/a.h"' 'session may not include study'
-    expect cli/a.h '#include "engine/a.h"' 'cli may not include engine'
+    expect cli/a.h '#include "simulation/a.h"' 'cli may not include simulation'
     expect cli/a.h '#include "base/a.h"' 'cli may not include base'
-    expect model/a.h '#include "../engine/a.h"' 'write the path from src'
+    expect model/a.h '#include "../simulation/a.h"' 'write the path from src'
     expect model/a.h '#include "model/none.h"' 'does not exist'
     expect model/a.h '#include "model/a.h"' 'circle'
     expect model/a.h '#include <immintrin.h>' 'intrinsics'
-    expect engine/a.c 'void g(void) { exit(1); }' 'exit'
+    expect simulation/a.c 'void g(void) { exit(1); }' 'exit'
     expect mechanics/a.h 'static void g(void) { /* x */ printf("%d", 1); }' 'printf'
     expect base/a.h 'static void g(void) { fprintf(stderr, "x"); }' 'stderr'
     expect comm/a.h 'static void g(void) { abort(); }' 'abort'
@@ -81,7 +81,7 @@ self_test() {
     [ $failures -eq 0 ] && echo "layers: every planted violation was found"
 }
 
-rules=$(cd "$(dirname "$0")" && pwd)/rules.awk
+here=$(cd "$(dirname "$0")" && pwd)
 case ${1:-} in
 --self-test) self_test ;;
 '') echo "usage: check.sh ROOT | --self-test" >&2; exit 2 ;;

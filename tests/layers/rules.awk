@@ -1,11 +1,7 @@
-# Reads C files named on the command line as src/FOLDER/FILE; check.sh says what the rules are.
+# Reads C files named on the command line as src/FOLDER/FILE, after rooms.awk; check.sh says what the
+# rules are.
 
 BEGIN {
-    # The layers, docs/architecture.md. Folders of one layer do not know each other.
-    split("base 0 model 1 mechanics 2 meshing 2 divide 2 comm 2 contact 2.5 engine 3 session 4 study 4 cli 5", words, " ")
-    for (i = 1; i in words; i += 2) layer[words[i]] = words[i + 1]
-    command_may["cli"] = command_may["study"] = 1
-
     # What a library must not call. `study` works for the command and may print.
     ending = "exit _exit _Exit quick_exit abort"
     printing = "printf vprintf puts putchar perror putchar_unlocked"
@@ -48,17 +44,12 @@ END {
     print "layers: " files " files keep the rule"
 }
 
-function folder_of(path) {
-    sub(/\/.*/, "", path)
-    return path
-}
-
 function complain(what) {
     printf "src/%s:%d: %s\n", file, FNR, what
     failed = 1
 }
 
-function check_include(name, target, allowed) {
+function check_include(name, target) {
     if (name == "lariat.h") return
     if (name ~ /^\.\.?\//) {
         complain("\"" name "\": write the path from src, so that the layer can be seen")
@@ -70,11 +61,7 @@ function check_include(name, target, allowed) {
         complain("\"" name "\" does not exist below src")
         return
     }
-    if (folder == "cli")
-        allowed = target in command_may
-    else
-        allowed = target == folder || layer[target] < layer[folder]
-    if (!allowed)
+    if (!may_use(folder, target))
         complain(folder " may not include " target " (\"" name "\"); docs/architecture.md")
     edges[file] = edges[file] " " name
 }

@@ -8,7 +8,7 @@
 #define LAR_TESTS_MECHANICS_TEST_H
 
 #include "mechanics/law.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 #include "testing.h"
 
 typedef const double (*rows)[3]; /* what functions that take const double [][3] get */

@@ -6,7 +6,7 @@
 
 #include <zlib.h>
 
-#include "meshing/image.h"
+#include "meshing/image/image.h"
 
 /* ---- bytes ---------------------------------------------------------------------------------- */
 

@@ -4,7 +4,7 @@
 
 #include "testing.h"
 
-#include "meshing/image.h"
+#include "meshing/image/image.h"
 
 /* Segments' names may be NULL; name[i] is that of label i + 1. */
 static TEST_UNUSED void image_file(const lar_image *image, const char *path,

@@ -9,8 +9,8 @@
 
 #include "testing.h"
 
-#include "meshing/image.h"
-#include "model/triangles.h"
+#include "meshing/image/image.h"
+#include "model/triangles/triangles.h"
 
 #define SHAPE_PI 3.14159265358979323846
 

@@ -6,8 +6,8 @@
 
 #include "testing.h"
 
-#include "meshing/fit.h"
-#include "meshing/lattice.h"
+#include "meshing/fit/fit.h"
+#include "meshing/grid/lattice.h"
 
 /* The region at a place, in cells; 0: outside. */
 typedef int solid_function(const double x[3]);

@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "base/vector.h"
-#include "meshing/boundary.h"
-#include "model/triangle_tree.h"
+#include "meshing/boundary/boundary.h"
+#include "model/triangles/tree.h"
 
 static const shape *const shapes[] = {&shape_ellipsoid, &shape_torus, &shape_balls, &shape_sheet,
                                       &shape_holes};

@@ -1,7 +1,7 @@
 /* The boundary of meshes of any solids: regions, names and volumes, from every format. */
 #include "testing.h"
 
-#include "meshing/boundary.h"
+#include "meshing/boundary/boundary.h"
 
 enum { SIDE = 4 }; /* cubes along an axis, of 10 mm */
 

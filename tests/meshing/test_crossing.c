@@ -2,9 +2,9 @@
 #include "testing.h"
 
 #include "base/memory.h"
-#include "meshing/crossing.h"
+#include "meshing/fit/crossing.h"
 #include "meshing/meshing.h"
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 static double depth(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
     const double one = lar_faces_cross(x, a, b, gap), other = lar_faces_cross(x, b, a, gap);

@@ -3,7 +3,7 @@
 
 #include "base/vector.h"
 #include "mechanics/hex8.h"
-#include "meshing/elastic_coarse.h"
+#include "meshing/starter/elastic_coarse.h"
 
 static lar_error error;
 static const double G = 3000, K = 29000;

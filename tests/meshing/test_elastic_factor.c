@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "meshing/elastic_factor.h"
+#include "meshing/starter/elastic_factor.h"
 
 enum { MOST = 40, ROWS = MOST * LAR_BLOCK };
 

@@ -5,9 +5,9 @@
 
 #include "base/vector.h"
 #include "meshing/deviation.h"
-#include "meshing/fit.h"
-#include "meshing/fit_quality.h"
-#include "meshing/fit_work.h"
+#include "meshing/fit/fit.h"
+#include "meshing/fit/quality.h"
+#include "meshing/fit/work.h"
 #include "meshing/meshing.h"
 
 /* ---- from a shape to a fitted mesh ---------------------------------------------------------- */

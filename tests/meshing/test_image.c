@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "meshing/image_parts.h"
+#include "meshing/image/parts.h"
 
 #define FOLDER LAR_TEST_BUILD "/image"
 

@@ -2,7 +2,7 @@
 #include "shapes.h"
 
 #include "base/vector.h"
-#include "meshing/lattice_thin.h"
+#include "meshing/grid/lattice_thin.h"
 
 static void boundary_of(const shape *body, shape_frame frame, lar_image *image,
                         lar_boundary *boundary) {

@@ -1,7 +1,7 @@
 /* How bodies will move, against beams that books have the answer for. */
 #include "bars.h"
 
-#include "meshing/motion.h"
+#include "meshing/starter/motion.h"
 
 static lar_error error;
 static bool held[BAR_NODES], handle[BAR_NODES];

@@ -1,7 +1,7 @@
 /* Pads carry what would sag, and nothing else gets one. */
 #include "bars.h"
 
-#include "meshing/pads.h"
+#include "meshing/starter/pads.h"
 
 static lar_error error;
 static bool held[BAR_NODES], handle[BAR_NODES], pad[BAR_NODES], all[BAR_NODES];

@@ -1,7 +1,7 @@
 /* The tissue that a region's name speaks of, and what is known of each. */
 #include "testing.h"
 
-#include "meshing/tissue.h"
+#include "meshing/starter/tissue.h"
 
 static void names_speak_of_tissues(void **state) {
     (void)state;

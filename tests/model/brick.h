@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 enum { BRICK_EDGE = 2, BRICK_NODES = 27, BRICK_ELEMENTS = 8 };
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "model/mesh_builder.h"
+#include "model/mesh/builder.h"
 
 /* Two cubes side by side along x, nodes in an order of their own: node id = 100 * x + 10 * y + z
  * plus `base`. */

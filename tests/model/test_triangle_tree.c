@@ -1,7 +1,7 @@
 /* The nearest of many triangles, against asking all of them with another formula. */
 #include "model/triangle_shapes.h"
 
-#include "model/triangle_tree.h"
+#include "model/triangles/tree.h"
 
 static const double origin[3] = {0, 0, 0};
 

@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "model/format/vtk_grid.h"
-#include "model/format/vtu_array.h"
-#include "model/format/vtu_split.h"
+#include "model/format/vtk/vtk_grid.h"
+#include "model/format/vtk/vtu_array.h"
+#include "model/format/vtk/vtu_split.h"
 
 enum { NX = 16, NY = 10, NZ = 10, COLUMN = (NY + 1) * (NZ + 1) };
 

@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include "session/device.h"
+#include "session/device/device.h"
 
 static const lar_tool_info PROBE = {.name = "probe",
                                     .radius = 0.005,

@@ -1,7 +1,7 @@
 /* The network's part of a device without a network: packets, owners, silence. */
 #include "testing.h"
 
-#include "session/device_link.h"
+#include "session/device/link.h"
 
 static const uint64_t MS = 1000000;
 

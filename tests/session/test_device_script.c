@@ -2,8 +2,8 @@
 #include "testing.h"
 
 #include "base/quaternion.h"
-#include "session/device.h"
-#include "session/trocar.h"
+#include "session/device/device.h"
+#include "session/device/trocar.h"
 
 static const lar_tool_info PROBE = {
     .name = "probe",

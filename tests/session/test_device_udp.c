@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/device_packet.h"
-#include "session/device.h"
+#include "session/device/device.h"
 
 static const uint64_t MS = 1000000;
 static const lar_tool_info PROBE = {.name = "probe",

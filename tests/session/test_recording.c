@@ -7,8 +7,8 @@
 #include <sys/wait.h>
 
 #include "base/folder.h"
-#include "session/record.h"
-#include "session/recording_words.h"
+#include "session/recording/record.h"
+#include "session/recording/words.h"
 #include "session/session.h"
 #include "session/session_test.h"
 

@@ -4,7 +4,7 @@
 
 #include "session/server_test.h"
 
-#include "engine/simulation.h"
+#include "simulation/simulation.h"
 #include "mechanics/law.h"
 
 static served s;

@@ -1,6 +1,6 @@
 /* What viewers may say, word by word; and what is written for them is JSON. */
-#include "session/server_json.h"
-#include "session/server_message.h"
+#include "server/json.h"
+#include "server/message.h"
 #include "testing.h"
 
 enum { TOOLS = 5 };

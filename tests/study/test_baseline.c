@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "study/baseline.h"
+#include "study/bench/baseline.h"
 #include "testing.h"
 
 static const char PATH[] = LAR_TEST_BUILD "/baseline.json";

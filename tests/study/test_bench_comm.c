@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "comm/comm.h"
-#include "study/bench_comm.h"
+#include "study/bench/comm.h"
 
 static void check_figures(const lar_bench_comm_figures *at, double portion) {
     assert_true(at->latency > 0);

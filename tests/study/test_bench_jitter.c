@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/beat.h"
-#include "study/bench_jitter.h"
+#include "study/bench/jitter.h"
 
 static void check_percentiles(const lar_percentiles *p) {
     assert_true(p->p50 >= 0 && p->p50 <= p->p99 && p->p99 <= p->p999 && p->p999 <= p->most);

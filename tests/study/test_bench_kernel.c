@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "model/model.h"
-#include "study/bench_kernel.h"
-#include "study/fma_peak.h"
+#include "study/bench/kernel.h"
+#include "study/bench/fma_peak.h"
 
 static void edges_are_exact_where_they_can_be(void **state) {
     (void)state;

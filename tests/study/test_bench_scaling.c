@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "study/bench_scaling.h"
+#include "study/bench/scaling.h"
 
 static lar_model *block;
 

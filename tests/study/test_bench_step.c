@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "model/model.h"
-#include "study/bench_scaling.h"
-#include "study/bench_step.h"
+#include "study/bench/scaling.h"
+#include "study/bench/step.h"
 
 static uint64_t hash_of_run(const lar_model *model, uint64_t steps) {
     lar_simulation *simulation = NULL;

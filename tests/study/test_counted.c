@@ -11,8 +11,8 @@
 #include "mechanics/hex8_block.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
-#include "model/mesh.h"
-#include "study/operations.h"
+#include "model/mesh/mesh.h"
+#include "study/requirements/operations.h"
 
 enum { NODES = 64 };
 

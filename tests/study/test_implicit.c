@@ -2,7 +2,7 @@
  * the linear solvers say; what an implicit step cannot solve. */
 #include "engine/engine_test.h"
 
-#include "study/bench_implicit.h"
+#include "study/implicit/bench_implicit.h"
 
 enum { NODES_MOST = 200 };
 

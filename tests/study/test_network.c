@@ -11,11 +11,11 @@
 
 #include <cmocka.h>
 
-#include "engine/division.h"
+#include "parallel/division.h"
 #include "model/model.h"
-#include "study/bench_kernel.h"
-#include "study/network_trace.h"
-#include "study/predict.h"
+#include "study/bench/kernel.h"
+#include "study/predict/network_trace.h"
+#include "study/predict/predict.h"
 
 static lar_model *organ, *block;
 

@@ -10,11 +10,11 @@
 
 #include <cmocka.h>
 
-#include "engine/simulation.h"
-#include "study/precision.h"
-#include "study/precision_cases.h"
-#include "study/single.h"
-#include "study/single_domain.h"
+#include "simulation/simulation.h"
+#include "study/precision/precision.h"
+#include "study/precision/precision_cases.h"
+#include "study/precision/single.h"
+#include "study/precision/single_domain.h"
 
 static lar_precision_result compare(lar_precision_case what, uint64_t steps, lar_isa isa) {
     const lar_precision_options options = {

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "model/model.h"
-#include "study/bench_kernel.h"
-#include "study/requirements.h"
+#include "study/bench/kernel.h"
+#include "study/requirements/requirements.h"
 
 /* ---- chapter 4 as printed ------------------------------------------------------------------ */
 

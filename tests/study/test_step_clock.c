@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "study/bench_kernel.h"
-#include "study/step_clock.h"
+#include "study/bench/kernel.h"
+#include "study/bench/step_clock.h"
 
 typedef struct fixture {
     lar_model *model;

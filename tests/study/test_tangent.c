@@ -2,7 +2,7 @@
  * to rigid motion where there is no stress; for every law, on distorted and deformed elements. */
 #include "mechanics/mechanics_test.h"
 
-#include "study/tangent.h"
+#include "study/implicit/tangent.h"
 
 enum { ELEMENTS = 40 };
 static const double size = 0.01; /* m */

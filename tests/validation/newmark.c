@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "engine/conditions.h"
+#include "contact/conditions.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hexahedron.h"
 

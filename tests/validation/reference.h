@@ -15,8 +15,8 @@
 #ifndef LAR_TESTS_VALIDATION_REFERENCE_H
 #define LAR_TESTS_VALIDATION_REFERENCE_H
 
-#include "engine/simulation.h"
 #include "model/model.h"
+#include "simulation/simulation.h"
 #include "testing.h"
 
 /* ---- reference data ----------------------------------------------------------------------- */

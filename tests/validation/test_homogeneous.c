@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/measure.h"
+#include "step/measure.h"
 #include "validation/reference.h"
 
 static const lar_element_kind kinds[2] = {LAR_ELEMENT_HEX8, LAR_ELEMENT_HEX8_FULL};

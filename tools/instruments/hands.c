@@ -1,5 +1,6 @@
-/* Random sessions: a probe and a grasper that fly around and through a body, and a hand that pulls
- * at its surface. The same for a seed on every machine; prints a row per session. */
+/* Random sessions: a probe and a grasper that fly around and through a body, a hand that pulls at
+ * its surface, gravity that comes and goes. The same for a seed on every machine; prints a row per
+ * session. */
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,7 @@ static const char usage[] =
     "  --seconds S     simulated, of each; default 10\n"
     "  --name NAME     of the rows; default: the scene\n"
     "  --without-hand  nothing pulls\n"
+    "  --weightless    gravity stays as the scene has it\n"
     "  --contact       the surface touches itself\n"
     "  --coupled       hands lead by springs, as in a session\n"
     "  --grid XxYxZ    processors\n"
@@ -41,7 +43,7 @@ static const double TURN = 1.5;                  /* at most, of a leg [rad] */
 typedef struct lar_hands_options {
     const char *scene, *name, *grid;
     double seconds;
-    int sessions, without_hand, contact, coupled, every, log, rows, head;
+    int sessions, without_hand, weightless, contact, coupled, every, log, rows, head;
     uint64_t seed;
 } lar_hands_options;
 
@@ -70,7 +72,10 @@ typedef struct lar_hands {
     int tools;             /* that are led: with or without the hand */
     int pulls;             /* legs that the hand still makes; 0: it holds nothing */
     double grip[3];        /* where it took hold [m] */
+    lar_random weather;    /* of gravity: without it all the rest is the same */
+    bool heavy;            /* gravity is on */
     double time, reset_at; /* of the session; resets do not change it [s] */
+    double turn_at;        /* when gravity comes or goes [s] */
     double turnover;       /* the most energy that was in the account [J] */
     lar_outcome out;
 } lar_hands;
@@ -187,6 +192,8 @@ static void begin_anew(lar_hands *h) {
     }
     h->pulls = h->turnover = 0;
     h->reset_at = h->time + between(h, 2, 8);
+    h->heavy = false;
+    h->turn_at = h->time + 0.2 + 2 * lar_random_unit(&h->weather);
 }
 
 static lar_status go_back(lar_hands *h, lar_error *error) {
@@ -195,6 +202,20 @@ static lar_status go_back(lar_hands *h, lar_error *error) {
     lar_status status = lar_simulation_reset(h->simulation, error);
     if (!status) begin_anew(h);
     return status;
+}
+
+/* Earth's, in any direction, or none. */
+static lar_status turn_gravity(lar_hands *h, lar_error *error) {
+    double gravity[3] = {0}, length = 0;
+    h->heavy = !h->heavy;
+    while (h->heavy && !(length > 0)) {
+        for (int i = 0; i < 3; i++) gravity[i] = lar_random_normal(&h->weather);
+        length = lar_length(gravity);
+    }
+    for (int i = 0; i < 3 && h->heavy; i++) gravity[i] *= 9.81 / length;
+    h->turn_at = h->time + 0.2 + 2 * lar_random_unit(&h->weather);
+    log_it(h, "gravity", gravity);
+    return lar_simulation_set_gravity(h->simulation, gravity, error);
 }
 
 static void account(lar_hands *h) {
@@ -242,6 +263,8 @@ static lar_status tick(lar_hands *h, lar_error *error) {
         const lar_tool_pose pose = pose_on(&h->leg[t], h->time);
         status = lar_guide_follow(&h->guide[t], h->simulation, &pose, error);
     }
+    if (!status && !h->options->weightless && h->time >= h->turn_at)
+        status = turn_gravity(h, error);
     double begun = now();
     if (!status) status = lar_simulation_advance(h->simulation, h->guide[0].steps, error);
     h->out.seconds += now() - begun;
@@ -317,6 +340,7 @@ static lar_status session(const lar_hands_options *options, const lar_model *mod
     lar_hands h = {.options = options,
                    .body = body,
                    .random = {.state = seed},
+                   .weather = {.state = ~seed},
                    .tools = options->without_hand ? HAND : TOOLS};
     lar_options with = lar_options_default();
     with.grid = options->grid;
@@ -362,19 +386,13 @@ static lar_status open_scene(const lar_hands_options *options, lar_model **model
 }
 
 static lar_hands_options read_options(int count, char **word) {
-    static const struct option known[] = {{"sessions", 1, 0, 'n'},
-                                          {"seed", 1, 0, 's'},
-                                          {"seconds", 1, 0, 'S'},
-                                          {"name", 1, 0, 'N'},
-                                          {"contact", 0, 0, 'C'},
-                                          {"coupled", 0, 0, 'H'},
-                                          {"grid", 1, 0, 'g'},
-                                          {"every", 1, 0, 'e'},
-                                          {"log", 0, 0, 'l'},
-                                          {"rows", 0, 0, 'r'},
-                                          {"head", 0, 0, 'h'},
-                                          {"without-hand", 0, 0, 'w'},
-                                          {0}};
+    static const struct option known[] = {{"sessions", 1, 0, 'n'},   {"seed", 1, 0, 's'},
+                                          {"seconds", 1, 0, 'S'},    {"name", 1, 0, 'N'},
+                                          {"contact", 0, 0, 'C'},    {"coupled", 0, 0, 'H'},
+                                          {"grid", 1, 0, 'g'},       {"every", 1, 0, 'e'},
+                                          {"log", 0, 0, 'l'},        {"rows", 0, 0, 'r'},
+                                          {"head", 0, 0, 'h'},       {"without-hand", 0, 0, 'w'},
+                                          {"weightless", 0, 0, 'W'}, {0}};
     lar_hands_options o = {.sessions = 5, .seed = 1, .seconds = 10, .every = 5};
     for (int c; (c = getopt_long(count, word, "", known, NULL)) != -1;) {
         if (c == 'n') o.sessions = atoi(optarg);
@@ -389,6 +407,7 @@ static lar_hands_options read_options(int count, char **word) {
         if (c == 'r') o.rows = 1;
         if (c == 'h') o.head = 1;
         if (c == 'w') o.without_hand = 1;
+        if (c == 'W') o.weightless = 1;
         if (c == '?') exit(2);
     }
     if (optind + 1 == count) o.scene = word[optind];

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/vector.h"
-#include "engine/simulation.h"
-#include "session/device.h"
+#include "simulation/simulation.h"
+#include "session/device/device.h"
 #include "tool.h"
 
 static const char usage[] =

@@ -9,10 +9,10 @@
  * Node sets: cervix, ligament_ends, ligament_end_left, ligament_end_right (to hold), fundus (to
  * pull), posterior (a patch of the back), ovary_left, ovary_right.
  */
-#ifndef LAR_MODEL_DEMO_H
-#define LAR_MODEL_DEMO_H
+#ifndef LAR_MODEL_DEMO_DEMO_H
+#define LAR_MODEL_DEMO_DEMO_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 enum { LAR_DEMO_ELEMENTS = 1840 };
 

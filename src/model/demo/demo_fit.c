@@ -19,7 +19,7 @@
 
 #include "base/memory.h"
 #include "model/demo/demo_parts.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 enum { ROUNDS = 30, STEPS_PER_ROUND = 30, PAIRS = 8 };
 

@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "model/demo/demo_parts.h"
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Bricks of cells, i0 <= i < i1 and so on, for the half i >= 0. Together 920 cells; a later brick
  * does not overlap an earlier one. */

@@ -20,8 +20,8 @@
  *
  * Only + - * / and sqrt are used: the mesh has the same bits on every machine.
  */
-#ifndef LAR_MODEL_DEMO_PARTS_H
-#define LAR_MODEL_DEMO_PARTS_H
+#ifndef LAR_MODEL_DEMO_DEMO_PARTS_H
+#define LAR_MODEL_DEMO_DEMO_PARTS_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* The scenes of the demonstration organ, as text. */
-#ifndef LAR_MODEL_DEMO_SCENE_H
-#define LAR_MODEL_DEMO_SCENE_H
+#ifndef LAR_MODEL_DEMO_DEMO_SCENE_H
+#define LAR_MODEL_DEMO_DEMO_SCENE_H
 
 enum { LAR_DEMO_SCENES = 2, LAR_DEMO_SCENE_PARTS = 3 };
 

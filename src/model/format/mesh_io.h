@@ -6,10 +6,10 @@
  * refuses with a sentence that says what to do. It fills
  * a zeroed lar_mesh; on failure the caller clears it.
  */
-#ifndef LAR_MODEL_MESH_IO_H
-#define LAR_MODEL_MESH_IO_H
+#ifndef LAR_MODEL_FORMAT_MESH_IO_H
+#define LAR_MODEL_FORMAT_MESH_IO_H
 
-#include "model/mesh.h"
+#include "model/mesh/mesh.h"
 
 /* Reads a mesh by the extension of `path` (.vtu .vtk .msh .inp .feb), turns it where it is
  * left-handed throughout, checks it with lar_mesh_check. Positions as in the file (no unit is known

@@ -9,11 +9,11 @@
  * The versions differ in the order of the same numbers. So the sections ask for an integer, a
  * size or a double, and msh_int, msh_size and msh_double take it from text or from bytes.
  */
-#ifndef LAR_MODEL_MSH_READER_H
-#define LAR_MODEL_MSH_READER_H
+#ifndef LAR_MODEL_FORMAT_MSH_READER_H
+#define LAR_MODEL_FORMAT_MSH_READER_H
 
 #include "base/text.h"
-#include "model/mesh_builder.h"
+#include "model/mesh/builder.h"
 
 /* A physical group with a name. */
 typedef struct msh_group {

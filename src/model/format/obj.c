@@ -6,7 +6,7 @@
  *
  * A backslash at its end continues a line. All else (groups, names, materials, normals, lines) says
  * nothing about the shape and is passed over. */
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 #include <inttypes.h>
 #include <math.h>

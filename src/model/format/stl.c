@@ -9,7 +9,7 @@
  *
  * Many programs begin the header of binary files with "solid": the size of the file decides. The
  * normals are not read, they follow from the corners. */
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -17,7 +17,7 @@
 
 #include "base/text.h"
 #include "model/format/triangle_builder.h"
-#include "model/format/vtk_scalar.h"
+#include "model/format/vtk/vtk_scalar.h"
 
 enum { HEADER = 84, COUNT_AT = 80, RECORD = 50, NORMAL = 12 };
 

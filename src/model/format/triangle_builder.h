@@ -1,10 +1,10 @@
 /* A surface that grows while a file is read: vertices, and polygons cut into triangles. */
-#ifndef LAR_MODEL_TRIANGLE_BUILDER_H
-#define LAR_MODEL_TRIANGLE_BUILDER_H
+#ifndef LAR_MODEL_FORMAT_TRIANGLE_BUILDER_H
+#define LAR_MODEL_FORMAT_TRIANGLE_BUILDER_H
 
 #include <stddef.h>
 
-#include "model/triangles.h"
+#include "model/triangles/triangles.h"
 
 typedef struct lar_triangle_builder {
     const char *path; /* for messages */

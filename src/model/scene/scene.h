@@ -15,10 +15,10 @@
  *
  * Every function here returns the status of lar_scene_fail, which has written the sentence.
  */
-#ifndef LAR_MODEL_SCENE_H
-#define LAR_MODEL_SCENE_H
+#ifndef LAR_MODEL_SCENE_SCENE_H
+#define LAR_MODEL_SCENE_SCENE_H
 
-#include "model/id_map.h"
+#include "model/mesh/id_map.h"
 #include "model/model.h"
 #include "model/scene/yaml_tree.h"
 

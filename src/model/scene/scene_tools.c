@@ -150,7 +150,7 @@ static double longest_edge(const lar_model *model) {
     return longest;
 }
 
-/* A face feels tools at 6 x 6 points at most (engine/touch.h). Between four of them there is room
+/* A face feels tools at 6 x 6 points at most (contact/touch.h). Between four of them there is room
  * for a tool of that radius. */
 static lar_status notice_thin_tools(lar_scene *scene) {
     lar_model *model = scene->model;

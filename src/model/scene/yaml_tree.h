@@ -8,8 +8,8 @@
  * Refused with a sentence: aliases and anchors (a short file could otherwise unfold into
  * gigabytes), tags, keys that are no words, the same key twice, a second document.
  */
-#ifndef LAR_MODEL_YAML_TREE_H
-#define LAR_MODEL_YAML_TREE_H
+#ifndef LAR_MODEL_SCENE_YAML_TREE_H
+#define LAR_MODEL_SCENE_YAML_TREE_H
 
 #include <stdbool.h>
 

@@ -1,0 +1,5 @@
+#include "lariat.h"
+
+const char *lar_version(void) {
+    return LAR_VERSION;
+}

@@ -1,0 +1,207 @@
+#include "cli/report/info.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* The words of scenes; hands are in none. */
+static const char *const shape_word[] = {"sphere", "capsule", "grasper", "hand"};
+
+static double degrees(double radians) {
+    static const double HALF_TURN = 3.14159265358979323846;
+    return radians * 180 / HALF_TURN;
+}
+
+/* Where the tip points: the tool's own -z. */
+static void towards(const lar_tool_pose *pose, double out[3]) {
+    const double *q = pose->orientation;
+    out[0] = 0 - 2 * (q[1] * q[3] + q[0] * q[2]);
+    out[1] = 0 - 2 * (q[2] * q[3] - q[0] * q[1]);
+    out[2] = -(1 - 2 * (q[1] * q[1] + q[2] * q[2]));
+}
+
+/* ---- for machines ----------------------------------------------------------------------- */
+
+static void write_contacts(json_writer *json, const lar_model *model) {
+    lar_model_contact_info contact;
+    json_open(json, "contacts", '[');
+    for (int32_t i = 0; !lar_model_contact(model, i, &contact, NULL); i++) {
+        json_open(json, NULL, '{');
+        json_text(json, "kind", contact.kind);
+        json_integer(json, "faces", contact.faces);
+        json_integer(json, "against", contact.against);
+        json_vector(json, "through", contact.through);
+        json_vector(json, "normal", contact.normal);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void write_tools(json_writer *json, const lar_model *model) {
+    lar_tool_info tool;
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; !lar_model_tool(model, i, &tool, NULL); i++) {
+        double direction[3];
+        towards(&tool.rest, direction);
+        json_open(json, NULL, '{');
+        json_text(json, "name", tool.name);
+        json_text(json, "shape", shape_word[tool.shape]);
+        json_number(json, "radius", tool.radius);
+        json_number(json, "length", tool.length);
+        json_number(json, "spread", degrees(tool.spread));
+        json_vector(json, "at", tool.rest.position);
+        json_vector(json, "towards", direction);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+void info_report_json(const info_report *report) {
+    const lar_model *model = report->model;
+    const lar_model_info *info = &report->info;
+    json_writer json = json_begin(stdout);
+    json_text(&json, "file", report->path);
+    json_text(&json, "title", info->title);
+    json_integer(&json, "nodes", info->nodes);
+    json_integer(&json, "elements", info->elements);
+    json_integer(&json, "fixed_nodes", info->fixed_nodes);
+    json_vector(&json, "lower", info->lower);
+    json_vector(&json, "upper", info->upper);
+    json_number(&json, "volume", info->volume);
+    json_number(&json, "mass", info->mass);
+    json_number(&json, "shortest_edge", info->shortest_edge);
+    json_open(&json, "scaled_jacobian", '{');
+    json_number(&json, "min", info->scaled_jacobian_min);
+    json_number(&json, "mean", info->scaled_jacobian_mean);
+    json_integer(&json, "worst_element", lar_model_element_id(model, info->scaled_jacobian_worst));
+    json_close(&json);
+    cli_write_quality(&json, &report->quality);
+    json_number(&json, "stable_step", info->stable_step);
+    json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
+    json_number(&json, "time_step", info->time_step);
+    if (report->timed) cli_write_speed(&json, &report->speed);
+    json_number(&json, "duration", lar_model_duration(model));
+    json_boolean(&json, "until_rest", lar_model_until_rest(model));
+    json_number(&json, "output_interval", lar_model_output_interval(model));
+    json_open(&json, "materials", '[');
+    lar_material_info material;
+    for (int32_t i = 0; !lar_model_material(model, i, &material, NULL); i++) {
+        json_open(&json, NULL, '{');
+        json_text(&json, "name", material.name);
+        json_text(&json, "law", material.law);
+        json_integer(&json, "elements", material.elements);
+        json_number(&json, "density", material.density);
+        json_number(&json, "shear_modulus", material.shear_modulus);
+        json_number(&json, "bulk_modulus", material.bulk_modulus);
+        json_close(&json);
+    }
+    json_close(&json);
+    json_open(&json, "sets", '[');
+    lar_set_info set;
+    for (int32_t i = 0; !lar_model_set(model, i, &set, NULL); i++) {
+        json_open(&json, NULL, '{');
+        json_text(&json, "name", set.name);
+        json_text(&json, "kind", set.kind);
+        json_integer(&json, "count", set.count);
+        json_close(&json);
+    }
+    json_close(&json);
+    write_contacts(&json, model);
+    write_tools(&json, model);
+    json_open(&json, "notices", '[');
+    for (int32_t i = 0; i < lar_model_notice_count(model); i++)
+        json_text(&json, NULL, lar_model_notice_text(model, i));
+    json_end(&json);
+}
+
+/* ---- for people ------------------------------------------------------------------------- */
+
+static void print_materials(const lar_model *model) {
+    lar_material_info m;
+    for (int32_t i = 0; !lar_model_material(model, i, &m, NULL); i++)
+        printf("%-17s%s%s%s, %d elements, %g kg/m^3, shear modulus %.4g Pa, bulk modulus %.4g Pa\n",
+               i ? "" : "materials", m.name, *m.name ? ": " : "", m.law, (int)m.elements, m.density,
+               m.shear_modulus, m.bulk_modulus);
+}
+
+static void print_sets(const lar_model *model) {
+    enum { SHOWN = 30 };
+    int32_t count = lar_model_set_count(model);
+    lar_set_info set;
+    for (int32_t i = 0; i < count && i < SHOWN && !lar_model_set(model, i, &set, NULL); i++)
+        printf("%-17s%s: %d %s\n", i ? "" : "sets", set.name, (int)set.count, set.kind);
+    if (count > SHOWN) printf("%-17sand %d more (--json lists all)\n", "", (int)(count - SHOWN));
+}
+
+static void print_contacts(const lar_model *model) {
+    lar_model_contact_info c;
+    for (int32_t i = 0; !lar_model_contact(model, i, &c, NULL); i++) {
+        printf("%-17s%d faces ", i ? "" : "contact", (int)c.faces);
+        if (c.kind[0] == 'b')
+            printf("with %d others\n", (int)c.against);
+        else if (c.kind[0] == 'p')
+            printf("with a plane through (%.4g, %.4g, %.4g), normal (%.4g, %.4g, %.4g)\n",
+                   c.through[0], c.through[1], c.through[2], c.normal[0], c.normal[1], c.normal[2]);
+        else
+            printf("with each other\n");
+    }
+}
+
+static void print_tools(const lar_model *model) {
+    lar_tool_info t;
+    for (int32_t i = 0; !lar_model_tool(model, i, &t, NULL); i++) {
+        printf("%-17s%s: %s, radius %.4g m", i ? "" : "tools", t.name, shape_word[t.shape],
+               t.radius);
+        if (t.length > 0) printf(", length %.4g m", t.length);
+        if (t.spread > 0) printf(", spread %.4g degrees", degrees(t.spread));
+        const double *at = t.rest.position;
+        printf(", at (%.4g, %.4g, %.4g)\n", at[0], at[1], at[2]);
+    }
+}
+
+static void print_duration(const lar_model *model) {
+    double duration = lar_model_duration(model), interval = lar_model_output_interval(model);
+    if (lar_model_until_rest(model))
+        printf("%-17suntil it is at rest, ", "duration");
+    else if (duration > 0)
+        printf("%-17s%g s, ", "duration", duration);
+    else
+        printf("%-17sopen, ", "duration");
+    if (interval > 0)
+        printf("a frame every %g s\n", interval);
+    else
+        printf("one frame at the end\n");
+}
+
+void info_report_table(const info_report *report) {
+    const lar_model *model = report->model;
+    const lar_model_info *info = &report->info;
+    double size[3];
+    for (int i = 0; i < 3; i++) size[i] = info->upper[i] - info->lower[i];
+    printf("%-17s%s\n", "title", *info->title ? info->title : "(none)");
+    printf("%-17s%d elements, %d nodes, ", "mesh", (int)info->elements, (int)info->nodes);
+    if (info->fixed_nodes > 0)
+        printf("of these %d held or moved\n", (int)info->fixed_nodes);
+    else
+        printf("none held or moved\n");
+    printf("%-17s%.4g x %.4g x %.4g m, from (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g)\n", "size",
+           size[0], size[1], size[2], info->lower[0], info->lower[1], info->lower[2],
+           info->upper[0], info->upper[1], info->upper[2]);
+    printf("%-17s%.4g m^3, %.4g kg\n", "volume, mass", info->volume, info->mass);
+    cli_print_deviation(&report->quality);
+    cli_print_crossings(&report->quality);
+    printf("%-17s%.4g m, mean %.4g m\n", "shortest edge", info->shortest_edge,
+           report->quality.mean_edge);
+    printf("%-17smean %.3f, worst %.3f (element %" PRId64 "); a box has 1\n", "scaled Jacobian",
+           info->scaled_jacobian_mean, info->scaled_jacobian_min,
+           lar_model_element_id(model, info->scaled_jacobian_worst));
+    cli_print_jacobians(&report->quality);
+    printf("%-17s%.4g s (stable up to %.4g s, set by element %" PRId64 ")\n", "time step",
+           info->time_step, info->stable_step, lar_model_element_id(model, info->stable_worst));
+    if (report->timed) cli_print_speed(&report->speed);
+    print_duration(model);
+    print_materials(model);
+    print_sets(model);
+    print_contacts(model);
+    print_tools(model);
+}

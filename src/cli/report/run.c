@@ -1,0 +1,262 @@
+#include "cli/report/run.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "cli/report/json.h"
+
+/* Wall time that the simulated time is compared with: the steps, and the waiting between them when
+ * they were paced. Writing frames is no part of it unless it had to fit between two ticks. */
+static double stepping_time(const run_report *report) {
+    return report->clock->paced ? report->elapsed : lar_step_clock_busy(report->clock);
+}
+
+static double real_time_factor(const run_report *report) {
+    return lar_simulation_time(report->simulation) / stepping_time(report);
+}
+
+static double ns_per_element(const run_report *report) {
+    return 1e9 * lar_step_clock_busy(report->clock) /
+           ((double)lar_simulation_steps(report->simulation) * report->info.elements);
+}
+
+/* ---- for machines ----------------------------------------------------------------------- */
+
+static void write_times(json_writer *json, const lar_step_clock *clock) {
+    json_open(json, "wall_per_step_us", '{');
+    json_number(json, "p50", lar_step_clock_quantile(clock, 0.5));
+    json_number(json, "p99", lar_step_clock_quantile(clock, 0.99));
+    json_number(json, "p999", lar_step_clock_quantile(clock, 0.999));
+    json_number(json, "max", lar_step_clock_longest(clock));
+    json_close(json);
+}
+
+static void write_energy(json_writer *json, const lar_simulation *simulation) {
+    lar_energy energy;
+    lar_simulation_energy(simulation, &energy);
+    json_open(json, "energy", '{');
+    json_number(json, "kinetic", energy.kinetic);
+    json_number(json, "strain", energy.strain);
+    json_number(json, "hourglass", energy.hourglass);
+    json_number(json, "external", energy.external);
+    json_number(json, "damping", energy.damping);
+    json_number(json, "contact", energy.contact);
+    json_close(json);
+}
+
+static void write_contact(json_writer *json, const lar_simulation *simulation) {
+    lar_contact_info info;
+    lar_simulation_contact(simulation, &info);
+    json_open(json, "contact", '{');
+    json_integer(json, "touching", info.touching);
+    json_number(json, "deepest", info.deepest);
+    json_integer(json, "possible", (int64_t)info.possible);
+    json_integer(json, "boxed", (int64_t)info.boxed);
+    json_integer(json, "tested", (int64_t)info.tested);
+    json_integer(json, "searches", (int64_t)info.searches);
+    json_close(json);
+}
+
+/* Name and force of a tool of the scene or a hand, as of the last step. */
+static bool tool_of(const lar_simulation *simulation, int32_t tool, lar_tool_info *info,
+                    lar_tool_force *force) {
+    return !lar_simulation_tool(simulation, tool, info, NULL) &&
+           !lar_simulation_tool_force(simulation, tool, force, NULL);
+}
+
+static void write_tools(json_writer *json, const lar_simulation *simulation) {
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
+        lar_tool_info info;
+        lar_tool_force force;
+        if (!tool_of(simulation, i, &info, &force)) continue;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", info.name);
+        json_vector(json, "force", force.force);
+        json_number(json, "grasp", force.grasp);
+        json_integer(json, "touching", force.touching);
+        json_integer(json, "held", force.held);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+/* Only what is known. */
+static void write_rest(json_writer *json, const run_report *report) {
+    const lar_rest *rest = report->rest;
+    json_open(json, "rest", '{');
+    json_boolean(json, "followed", rest != NULL);
+    json_boolean(json, "reached", rest && rest->reached);
+    if (rest) {
+        double step = lar_simulation_time_step(report->simulation);
+        json_number(json, "since", rest->since);
+        json_number(json, "limit", step * (double)rest->limit);
+        if (rest->strain > 0)
+            json_number(json, "kinetic_over_strain", rest->kinetic / rest->strain);
+        if (rest->looked && isfinite(rest->left)) json_number(json, "left", rest->left);
+    }
+    json_close(json);
+}
+
+void run_report_json(const run_report *report, FILE *out) {
+    const lar_simulation *simulation = report->simulation;
+    int32_t most_parts;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &most_parts);
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
+    json_writer json = json_begin(out);
+    json_text(&json, "title", report->info.title);
+    json_integer(&json, "elements", report->info.elements);
+    json_integer(&json, "nodes", report->info.nodes);
+    json_text(&json, "element", report->element);
+    json_integer(&json, "steps", (int64_t)lar_simulation_steps(simulation));
+    json_number(&json, "time", lar_simulation_time(simulation));
+    json_number(&json, "time_step", lar_simulation_time_step(simulation));
+    json_number(&json, "stable_step", report->info.stable_step);
+    json_text(&json, "grid", report->parallel->grid);
+    json_integer(&json, "processors", report->parallel->processors);
+    json_integer(&json, "threads", report->parallel->threads);
+    json_text(&json, "scheme", report->parallel->scheme);
+    json_text(&json, "comm", report->parallel->comm);
+    json_text(&json, "isa", lar_simulation_isa(simulation));
+    json_number(&json, "wall_time", stepping_time(report));
+    write_times(&json, report->clock);
+    json_number(&json, "ns_per_element", ns_per_element(report));
+    json_number(&json, "real_time_factor", real_time_factor(report));
+    json_boolean(&json, "realtime", report->clock->paced);
+    json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
+    write_energy(&json, simulation);
+    write_contact(&json, simulation);
+    write_tools(&json, simulation);
+    write_rest(&json, report);
+    json_integer(&json, "divided_steps", (int64_t)divided);
+    json_integer(&json, "most_parts", most_parts);
+    json_text(&json, "state_hash", hash);
+    json_boolean(&json, "verify", report->verify);
+    json_integer(&json, "frames", report->frames);
+    json_boolean(&json, "interrupted", report->interrupted);
+    json_end(&json);
+}
+
+/* ---- for people ------------------------------------------------------------------------- */
+
+static void print_division(const lar_parallel *parallel, FILE *out) {
+    bool local = strcmp(parallel->scheme, "local") == 0;
+    bool several = parallel->threads > 1;
+    fprintf(out, "%-17s%s: %d processor%s", "grid", parallel->grid, (int)parallel->processors,
+            parallel->processors == 1 ? "" : "s");
+    if (several) fprintf(out, " of %d threads", (int)parallel->threads);
+    fprintf(out, ", scheme %s%s%s, by %s\n", parallel->scheme, local ? ", channels " : "",
+            local ? parallel->channels : "", parallel->comm);
+}
+
+/* Nothing where nothing came close. */
+static void print_contact(const lar_simulation *simulation, FILE *out) {
+    lar_contact_info info;
+    lar_simulation_contact(simulation, &info);
+    if (info.tested == 0) return;
+    static const double LEAST = 0.001; /* what is worth its digits [%] */
+    double tested = 100 * (double)info.tested / (double)info.possible;
+    fprintf(out,
+            "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
+            " searches, %s%.*f %% of all pairs tested\n",
+            "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
+            tested < LEAST ? "less than " : "",
+            tested < 1    ? 3
+            : tested < 10 ? 1
+                          : 0,
+            fmax(tested, LEAST));
+}
+
+/* Nothing of tools that neither touch nor hold. */
+static void print_tools(const lar_simulation *simulation, FILE *out) {
+    for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
+        lar_tool_info info;
+        lar_tool_force force;
+        if (!tool_of(simulation, i, &info, &force)) continue;
+        if (force.touching == 0 && force.held == 0) continue;
+        const double *f = force.force;
+        fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
+                sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
+        if (force.grasp > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp);
+        if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
+        fputc('\n', out);
+    }
+}
+
+/* Nothing where steps stayed whole. */
+static void print_parts(const lar_simulation *simulation, FILE *out) {
+    int32_t most;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &most);
+    if (divided > 0)
+        fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", divided,
+                (int)most);
+}
+
+static void print_rest(const run_report *report, FILE *out) {
+    const lar_rest *rest = report->rest;
+    if (!rest) return;
+    fprintf(out, "%-17s%s; loads constant from %.4g s", "rest", rest->reached ? "yes" : "NO",
+            rest->since);
+    if (rest->strain > 0)
+        fprintf(out, ", kinetic over strain energy %.2g", rest->kinetic / rest->strain);
+    if (rest->looked && isfinite(rest->left))
+        fprintf(out, ", motion to come %.2g (at rest: %.0e)", rest->left, rest->share);
+    fputc('\n', out);
+}
+
+static void print_body(const run_report *report, FILE *out) {
+    lar_energy energy;
+    lar_simulation_energy(report->simulation, &energy);
+    fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g", "energy [J]",
+            energy.kinetic, energy.strain, energy.hourglass, energy.damping);
+    if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
+    fprintf(out, "; external %.4g\n", energy.external);
+    print_contact(report->simulation, out);
+    print_tools(report->simulation, out);
+    print_parts(report->simulation, out);
+    print_rest(report, out);
+    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
+}
+
+static void print_pace(const run_report *report, FILE *out) {
+    const lar_step_clock *clock = report->clock;
+    double factor = real_time_factor(report);
+    fprintf(out, "%-17s%.4g s", "wall time", stepping_time(report));
+    if (clock->paced)
+        fprintf(out, ", paced; %" PRIu64 " of %" PRIu64 " steps ended after their tick\n",
+                clock->misses, clock->times.count);
+    else if (isfinite(factor))
+        fprintf(out, ", %.3g times as fast as real time\n", factor);
+    else
+        fputc('\n', out);
+}
+
+void run_report_table(const run_report *report, FILE *out) {
+    const lar_simulation *simulation = report->simulation;
+    const lar_step_clock *clock = report->clock;
+    bool titled = *report->info.title != '\0';
+    fprintf(out, "%s: %d elements, %d nodes (%s, %s)\n",
+            titled ? report->info.title : report->scene, (int)report->info.elements,
+            (int)report->info.nodes, report->element, lar_simulation_isa(simulation));
+    if (report->parallel->divided) print_division(report->parallel, out);
+    fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
+            lar_simulation_time(simulation), lar_simulation_steps(simulation),
+            lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");
+    print_pace(report, out);
+    if (clock->times.count > 0) {
+        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
+                "a step", lar_step_clock_quantile(clock, 0.5), lar_step_clock_quantile(clock, 0.99),
+                lar_step_clock_quantile(clock, 0.999), lar_step_clock_longest(clock));
+        fprintf(out, "%-17s%.4g ns on average\n", "an element", ns_per_element(report));
+    }
+    if (report->verify)
+        fprintf(out, "%-17severy force arrived at its nodes once, in every step; nothing moved\n",
+                "verified");
+    else
+        print_body(report, out);
+    if (report->folder)
+        fprintf(out, "%-17s%s: %d frame%s, .pvd, probes.csv, .checkpoint, run.json\n", "results",
+                report->folder, report->frames, report->frames == 1 ? "" : "s");
+}

@@ -1,0 +1,184 @@
+#include "cli/report/view.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "cli/report/json.h"
+
+static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
+static const char *const cause_names[] = {"", "step", "division", "machine"};
+
+static void write_times(json_writer *json, const char *name, double p50, double p99, double p999,
+                        double max) {
+    json_open(json, name, '{');
+    json_number(json, "p50", 1e6 * p50);
+    json_number(json, "p99", 1e6 * p99);
+    json_number(json, "p999", 1e6 * p999);
+    json_number(json, "max", 1e6 * max);
+    json_close(json);
+}
+
+static int32_t most_parts(const view_report *report) {
+    int32_t most;
+    lar_simulation_divided_steps(report->simulation, &most);
+    return most;
+}
+
+static void write_tools(json_writer *json, const view_report *report) {
+    json_open(json, "tools", '[');
+    for (int32_t i = 0; i < report->tools; i++) {
+        const lar_tool_load *load = &report->tool[i].load;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", report->tool[i].name);
+        json_number(json, "largest_force", load->force);
+        json_number(json, "limit", load->limit);
+        json_boolean(json, "limit_reached", load->reached != 0);
+        json_number(json, "largest_grasp", load->grasp);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void print_tools(const view_report *report, FILE *out) {
+    for (int32_t i = 0; i < report->tools; i++) {
+        const lar_tool_load *load = &report->tool[i].load;
+        fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s", "tool", report->tool[i].name,
+                load->force, load->limit, load->reached ? "; the limit was reached" : "");
+        if (load->grasp > 0) fprintf(out, "; jaws grasped with up to %.3g N", load->grasp);
+        fputc('\n', out);
+    }
+}
+
+/* VIEW_DEVICES at most. Packets are counted for devices on the network only. */
+static void write_devices(json_writer *json, const view_report *report) {
+    json_open(json, "devices", '[');
+    for (int32_t i = 0; i < report->devices; i++) {
+        const lar_device_status *d = &report->device[i].status;
+        json_open(json, NULL, '{');
+        json_text(json, "tool", report->device[i].tool);
+        json_text(json, "device", report->device[i].name);
+        json_integer(json, "port", d->port);
+        json_boolean(json, "connected", d->connected != 0);
+        json_integer(json, "received", (int64_t)d->received);
+        json_integer(json, "answered", (int64_t)d->answered);
+        json_integer(json, "refused", (int64_t)d->refused);
+        json_integer(json, "late", (int64_t)d->late);
+        json_integer(json, "lost", (int64_t)d->lost);
+        json_integer(json, "timeouts", (int64_t)d->timeouts);
+        write_times(json, "answer_us", d->answer_p50, d->answer_p99, d->answer_p999, d->answer_max);
+        json_close(json);
+    }
+    json_close(json);
+}
+
+static void print_devices(const view_report *report, FILE *out) {
+    for (int32_t i = 0; i < report->devices; i++) {
+        const lar_device_status *d = &report->device[i].status;
+        fprintf(out, "%-17s%s: %s\n", "device", report->device[i].tool, report->device[i].name);
+        if (d->port == 0) continue;
+        fprintf(out,
+                "%-17s%" PRIu64 " positions, %" PRIu64 " forces; %" PRIu64 " lost, %" PRIu64
+                " late, %" PRIu64 " refused, silent %" PRIu64 " times\n",
+                "", d->received, d->answered, d->lost, d->late, d->refused, d->timeouts);
+        if (d->answered)
+            fprintf(out,
+                    "%-17sanswered within %.4g us (median), 99 %% below %.4g, 99.9 %% below %.4g, "
+                    "longest %.4g\n",
+                    "", 1e6 * d->answer_p50, 1e6 * d->answer_p99, 1e6 * d->answer_p999,
+                    1e6 * d->answer_max);
+    }
+}
+
+void view_report_json(const view_report *report, FILE *out) {
+    const lar_session_status *s = &report->status;
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(report->simulation));
+    json_writer json = json_begin(out);
+    json_text(&json, "title", report->info.title);
+    json_text(&json, "url", report->url);
+    json_integer(&json, "elements", report->info.elements);
+    json_integer(&json, "nodes", report->info.nodes);
+    json_text(&json, "grid", report->parallel->grid);
+    json_integer(&json, "processors", report->parallel->processors);
+    json_integer(&json, "threads", report->parallel->threads);
+    json_text(&json, "scheme", report->parallel->scheme);
+    json_text(&json, "comm", report->parallel->comm);
+    json_text(&json, "isa", lar_simulation_isa(report->simulation));
+    json_text(&json, "state", state_names[s->state]);
+    json_text(&json, "message", s->message);
+    json_integer(&json, "steps", (int64_t)s->step);
+    json_number(&json, "time", s->time);
+    json_number(&json, "time_step", lar_simulation_time_step(report->simulation));
+    json_number(&json, "pace", report->pace);
+    json_number(&json, "wall_time", report->elapsed);
+    json_number(&json, "real_time_factor", s->real_time_factor);
+    json_integer(&json, "ticks", (int64_t)s->ticks);
+    json_integer(&json, "deadline_misses", (int64_t)s->misses);
+    json_integer(&json, "slow_ticks", (int64_t)s->slow_ticks);
+    write_times(&json, "wall_per_step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
+    write_times(&json, "wall_per_tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
+    json_integer(&json, "slow_motion", report->slow_times);
+    json_text(&json, "slow_cause", cause_names[report->slow_cause]);
+    json_number(&json, "skipped", s->skipped);
+    json_integer(&json, "recoveries", (int64_t)s->recoveries);
+    json_text(&json, "recovery", s->recovery);
+    json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
+    json_integer(&json, "most_parts", most_parts(report));
+    json_integer(&json, "viewers", report->viewers_most);
+    write_tools(&json, report);
+    write_devices(&json, report);
+    json_text(&json, "state_hash", hash);
+    json_end(&json);
+}
+
+static void print_pace(const view_report *report, FILE *out) {
+    static const char *const why[] = {
+        "", ", because steps take longer than the time they stand for",
+        ", because strained tissue divided the steps", ", because the machine was busy"};
+    const lar_session_status *s = &report->status;
+    fprintf(out, "%-17s%.3f", "real-time factor", s->real_time_factor);
+    if (report->slow_times > 0)
+        fprintf(out, "; slow motion began %" PRId64 " time%s%s; %.3g s were given up",
+                report->slow_times, report->slow_times == 1 ? "" : "s", why[report->slow_cause],
+                s->skipped);
+    fprintf(out, "\n");
+}
+
+void view_report_table(const view_report *report, FILE *out) {
+    const lar_session_status *s = &report->status;
+    bool titled = *report->info.title != '\0';
+    fprintf(out, "%s: %d elements, %d nodes (%s)\n", titled ? report->info.title : report->scene,
+            (int)report->info.elements, (int)report->info.nodes,
+            lar_simulation_isa(report->simulation));
+    if (report->parallel->divided)
+        fprintf(out, "%-17s%s: %d processors, scheme %s, by %s\n", "grid", report->parallel->grid,
+                (int)report->parallel->processors, report->parallel->scheme,
+                report->parallel->comm);
+    fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s\n", "simulated", s->time, s->step,
+            lar_simulation_time_step(report->simulation));
+    print_pace(report, out);
+    if (s->ticks > 0) {
+        fprintf(out, "%-17s%" PRIu64 ", %" PRIu64 " missed (%.3f %%)", "ticks", s->ticks, s->misses,
+                100 * (double)s->misses / (double)s->ticks);
+        if (s->slow_ticks > 0)
+            fprintf(out, "; %" PRIu64 " more were late in slow motion", s->slow_ticks);
+        fprintf(out,
+                "\n%-17smedian %.3f ms, 99 %% below %.3f ms, 99.9 %% below %.3f ms, longest "
+                "%.3f ms\n",
+                "a tick's forces", 1e3 * s->tick_p50, 1e3 * s->tick_p99, 1e3 * s->tick_p999,
+                1e3 * s->tick_max);
+        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
+                "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
+                1e6 * s->step_max);
+    }
+    if (s->recoveries > 0)
+        fprintf(out, "%-17s%" PRIu64 "; the last time it %s\n", "recoveries", s->recoveries,
+                s->recovery);
+    if (s->divided_steps > 0)
+        fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", s->divided_steps,
+                (int)most_parts(report));
+    print_tools(report, out);
+    print_devices(report, out);
+    fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
+    fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
+}

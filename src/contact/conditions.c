@@ -1,0 +1,255 @@
+#include "contact/conditions.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for at most so many entries; the lists are still empty. */
+static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints, size_t forces,
+                           size_t pressures, lar_error *error) {
+    c->held = lar_calloc(nodes, sizeof *c->held);
+    c->constraint = lar_calloc(constraints, sizeof *c->constraint);
+    c->force = lar_calloc(forces, sizeof *c->force);
+    c->pressure = lar_calloc(pressures, sizeof *c->pressure);
+    if (c->held && c->constraint && c->force && c->pressure) return LAR_OK;
+    lar_conditions_destroy(c);
+    return lar_fail_memory(error,
+                           nodes + constraints * sizeof *c->constraint + forces * sizeof *c->force +
+                               pressures * sizeof *c->pressure,
+                           "supports and loads");
+}
+
+/* Sets overlap at edges and corners: what is held already is not held again, or its reaction would
+ * count twice. (Whatever is moved is held by nothing else: lar_model_check.) */
+static void add_constraints(lar_conditions *c, const int32_t *local,
+                            const lar_condition_share *share, const lar_node_list *nodes,
+                            unsigned axes, double by, int curve) {
+    for (int32_t i = 0; i < nodes->count; i++) {
+        int32_t node = nodes->node[i];
+        if (share && share->holds[node] != share->thread) continue;
+        unsigned fresh = axes & ~(unsigned)c->held[node];
+        for (int axis = 0; axis < 3; axis++)
+            if (fresh & (1u << axis))
+                c->constraint[c->constraint_count++] =
+                    (lar_constraint){.value = 4 * local[node] + axis, .curve = curve, .by = by};
+        c->held[node] |= (uint8_t)fresh;
+    }
+}
+
+static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t *local,
+                         int32_t face, const lar_pressure_load *load) {
+    lar_face_pressure *p = &c->pressure[c->pressure_count++];
+    *p = (lar_face_pressure){.curve = load->curve, .pressure = load->pressure};
+    for (int a = 0; a < 4; a++) {
+        int32_t node = mesh->element[face / 6][lar_face_node[face % 6][a]];
+        p->node[a] = 4 * local[node];
+        memcpy(p->position[a], mesh->position[node], sizeof p->position[a]);
+    }
+}
+
+static void add_forces(lar_conditions *c, const int32_t *local, const lar_condition_share *share,
+                       const lar_nodal_load *load) {
+    for (int32_t k = 0; k < load->nodes.count; k++) {
+        int32_t node = load->nodes.node[k];
+        if (share && share->loads[node] != share->thread) continue;
+        lar_point_force *f = &c->force[c->force_count++];
+        *f = (lar_point_force){.node = 4 * local[node], .curve = load->curve};
+        memcpy(f->force, load->force, sizeof f->force);
+    }
+}
+
+lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, lar_conditions *c,
+                                 lar_error *error) {
+    *c = (lar_conditions){0};
+    size_t constraints = 0, forces = 0, pressures = 0;
+    for (int i = 0; i < model->fix_count; i++)
+        constraints += 3u * (size_t)model->fix[i].nodes.count;
+    for (int i = 0; i < model->move_count; i++)
+        constraints += 3u * (size_t)model->move[i].nodes.count;
+    for (int i = 0; i < model->load_count; i++) forces += (size_t)model->load[i].nodes.count;
+    for (int i = 0; i < model->pressure_count; i++) pressures += (size_t)model->pressure[i].count;
+    size_t nodes = (size_t)model->mesh.node_count;
+    lar_status status = allocate(c, nodes, constraints, forces, pressures, error);
+    if (status) return status;
+
+    for (int i = 0; i < model->fix_count; i++)
+        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
+    c->fixed_count = c->constraint_count;
+    for (int i = 0; i < model->move_count; i++)
+        add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
+                        model->move[i].by, model->move[i].curve);
+    for (int i = 0; i < model->load_count; i++) add_forces(c, local, share, &model->load[i]);
+    for (int i = 0; i < model->pressure_count; i++)
+        for (int32_t k = 0; k < model->pressure[i].count; k++) {
+            int32_t face = model->pressure[i].face[k];
+            if (share && share->presses[face / 6] != share->thread) continue;
+            add_pressure(c, &model->mesh, local, face, &model->pressure[i]);
+        }
+    if (share) {
+        free(c->held);
+        c->held = NULL;
+    }
+    return LAR_OK;
+}
+
+void lar_conditions_destroy(lar_conditions *c) {
+    free(c->constraint);
+    free(c->force);
+    free(c->pressure);
+    free(c->held);
+    *c = (lar_conditions){0};
+}
+
+static double factor_at(const lar_model *model, int curve, double time) {
+    return curve < 0 ? 1 : lar_curve_value(&model->curve[curve], time);
+}
+
+/* Subtracts an external force from the residual, in force units, rounded to nearest. False, and
+ * that part left out, where the sum would come near the end of the integers. */
+static bool add_external(int64_t *force, double scale, const double external[3]) {
+    bool fits = true;
+    for (int i = 0; i < 3; i++) {
+        double units = external[i] * scale;
+        if (fabs(units) + fabs((double)force[i]) < 0x1p60)
+            force[i] -= llrint(units);
+        else
+            fits = false;
+    }
+    return fits;
+}
+
+/* Corner forces of a pressure that follows the deformed face: -p integral N_a (x_r cross x_s) over
+ * the bilinear quadrilateral, exact with 2x2 Gauss points. */
+static void pressure_forces(const double x[4][3], double pressure, double force[4][3]) {
+    static const double sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    memset(force, 0, 12 * sizeof(double));
+    for (int g = 0; g < 4; g++) {
+        double r = sign[g][0] / sqrt(3.0), s = sign[g][1] / sqrt(3.0);
+        double xr[3] = {0}, xs[3] = {0};
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) {
+                xr[i] += x[a][i] * sign[a][0] * (1 + sign[a][1] * s) / 4;
+                xs[i] += x[a][i] * sign[a][1] * (1 + sign[a][0] * r) / 4;
+            }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            double normal = xr[j] * xs[k] - xr[k] * xs[j];
+            for (int a = 0; a < 4; a++)
+                force[a][i] -= pressure * normal * (1 + sign[a][0] * r) * (1 + sign[a][1] * s) / 4;
+        }
+    }
+}
+
+static double half_work(const double force[3], const double *v, double dt) {
+    return 0.5 * dt * (force[0] * v[0] + force[1] * v[1] + force[2] * v[2]);
+}
+
+/* Half the work of gravity that follows a curve. (Constant gravity is a potential.) */
+static double gravity_half_work(const lar_condition_context *context, double time,
+                                const lar_state *state) {
+    double gravity[3], momentum[3] = {0};
+    lar_gravity_at(context->model, context->settings, time, gravity);
+    for (int32_t n = context->first; n < context->end; n++)
+        for (int i = 0; i < 3; i++) momentum[i] += context->weight[n] * state->v[4 * n + i];
+    return half_work(gravity, momentum, context->time_step);
+}
+
+double lar_conditions_half_work(const lar_conditions *c, const lar_condition_context *context,
+                                double time, const lar_state *state) {
+    double dt = context->time_step, work = 0;
+    for (int32_t i = 0; i < c->force_count; i++)
+        work += half_work(c->force[i].now, state->v + c->force[i].node, dt);
+    for (int32_t i = 0; i < c->pressure_count; i++)
+        for (int a = 0; a < 4; a++)
+            work += half_work(c->pressure[i].now[a], state->v + c->pressure[i].node[a], dt);
+    if (lar_gravity_varies(context->model, context->settings))
+        work += gravity_half_work(context, time, state);
+    return work;
+}
+
+int32_t lar_conditions_load(lar_conditions *c, const lar_condition_context *context, double time,
+                            lar_state *state) {
+    int32_t beyond = -1;
+    for (int32_t i = 0; i < c->force_count; i++) {
+        lar_point_force *f = &c->force[i];
+        double factor = factor_at(context->model, f->curve, time);
+        for (int k = 0; k < 3; k++) f->now[k] = factor * f->force[k];
+        if (!add_external(state->force + f->node, context->scale, f->now)) beyond = f->node / 4;
+    }
+    for (int32_t i = 0; i < c->pressure_count; i++) {
+        lar_face_pressure *p = &c->pressure[i];
+        double x[4][3];
+        for (int a = 0; a < 4; a++)
+            for (int k = 0; k < 3; k++) x[a][k] = p->position[a][k] + state->u[p->node[a] + k];
+        pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), p->now);
+        for (int a = 0; a < 4; a++)
+            if (!add_external(state->force + p->node[a], context->scale, p->now[a]))
+                beyond = p->node[a] / 4;
+    }
+    return beyond;
+}
+
+void lar_conditions_observe(lar_conditions *c, const lar_condition_context *context,
+                            lar_state *state) {
+    /* The support takes it: a large reaction is no fast node. */
+    for (int32_t i = 0; i < c->fixed_count; i++) state->force[c->constraint[i].value] = 0;
+    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
+        lar_constraint *constraint = &c->constraint[i];
+        int64_t *force = &state->force[constraint->value];
+        constraint->force = (double)*force / context->scale;
+        constraint->before = state->v[constraint->value];
+        *force = 0;
+    }
+}
+
+double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time) {
+    if (constraint->curve < 0) return 0;
+    return constraint->by * lar_curve_value(&model->curve[constraint->curve], time);
+}
+
+/* The kernel moved what stands still as if it were free, and counted that as damped motion. */
+static double hold(const lar_conditions *c, const double *weight, lar_state *state) {
+    double counted = 0, *restrict u = state->u, *restrict v = state->v;
+    for (int32_t i = 0; i < c->fixed_count; i++) {
+        int32_t value = c->constraint[i].value;
+        counted += weight[value / 4] * v[value] * v[value];
+        u[value] = v[value] = 0;
+    }
+    return counted;
+}
+
+double lar_conditions_impose(lar_conditions *c, const lar_condition_context *context, double time,
+                             lar_state *state) {
+    const lar_model *model = context->model;
+    double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
+    double dt = context->time_step, share = damping * dt / context->whole_step;
+    lar_gravity_at(model, context->settings, time, gravity);
+    state->damped -= share * hold(c, context->weight, state);
+    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
+        const lar_constraint *constraint = &c->constraint[i];
+        double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
+        double mass = context->mass[constraint->value / 4];
+        double weight = context->weight[constraint->value / 4];
+        double before = constraint->before, free = before + *v;
+        double old = lar_constraint_value(model, constraint, time);
+        *u = lar_constraint_value(model, constraint, time + dt);
+        *v = (*u - old) / dt;
+        state->fastest = fmax(state->fastest, fabs(*v));
+        state->damped += share * weight * ((before + *v) * (before + *v) - free * free);
+        /* What the support must add for the node to move so: m a + c m v - m g + residual. */
+        double mean = 0.5 * (*v + before);
+        double acceleration = (*v - before) / dt;
+        double reaction = mass * (acceleration + damping * mean - gravity[constraint->value % 4]) +
+                          constraint->force;
+        if (weight > 0) work += reaction * mean * dt;
+    }
+    return work;
+}
+
+double lar_conditions_largest(const lar_conditions *c) {
+    double largest = 0;
+    for (int32_t i = 0; i < c->force_count; i++)
+        for (int k = 0; k < 3; k++) largest = fmax(largest, fabs(c->force[i].force[k]));
+    return largest;
+}

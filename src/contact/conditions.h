@@ -1,0 +1,113 @@
+/* Supports, prescribed motion and loads of one domain: what acts on nodes besides elements.
+ *
+ * Kept as flat lists by node, so that a step touches only the nodes concerned. Loads enter the
+ * integer force sums (order does not matter); motion is imposed after the nodes have moved.
+ * Prescribed values are computed from the model's curves at the new time, the same on every
+ * processor that has the node.
+ *
+ * What the lists note within a step (forces, velocities before) means nothing between steps: it is
+ * no state.
+ *
+ * Work. In the leapfrog scheme a force F_n held from v- to v+ does exactly the work
+ * dt F_n (v- + v+)/2 on the half-step kinetic energy; the sums here use that, so the energy
+ * balance has no error of first order in dt.
+ */
+#ifndef LAR_CONTACT_CONDITIONS_H
+#define LAR_CONTACT_CONDITIONS_H
+
+#include "layout/state.h"
+#include "model/settings.h"
+
+/* One axis of one node held at, or moved to, by * curve(t). */
+typedef struct lar_constraint {
+    int32_t value; /* index into u and v: 4 * local node + axis */
+    int32_t curve; /* -1: held */
+    double by;
+    double force;  /* residual force of the step under way [N] */
+    double before; /* velocity before the step under way */
+} lar_constraint;
+
+/* A dead force on one node. */
+typedef struct lar_point_force {
+    int32_t node; /* 4 * local node */
+    int32_t curve;
+    double force[3];
+    double now[3]; /* in the step under way [N] */
+} lar_point_force;
+
+/* A pressure on one face. */
+typedef struct lar_face_pressure {
+    int32_t node[4]; /* 4 * local node, counter-clockwise from outside */
+    int32_t curve;
+    double pressure;
+    double position[4][3]; /* reference */
+    double now[4][3];      /* forces on the corners in the step under way [N] */
+} lar_face_pressure;
+
+typedef struct lar_conditions {
+    int32_t constraint_count, force_count, pressure_count;
+    int32_t fixed_count; /* of the constraints, the first: those that stand still */
+    lar_constraint *constraint;
+    lar_point_force *force;
+    lar_face_pressure *pressure;
+    uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
+} lar_conditions;
+
+/* Everything a step needs to know besides the lists. */
+typedef struct lar_condition_context {
+    const lar_model *model;
+    const lar_settings *settings; /* NULL: as the model says */
+    double scale;                 /* force units per newton */
+    double time_step;             /* of the step, or the part of it, under way [s] */
+    double whole_step;            /* [s] */
+    double hardness;              /* of tools: lar_step_division */
+    int32_t shares;               /* of LAR_STEP_SHARES, that the part of the step is */
+    double stable_step;           /* the elements' bound at rest [s] */
+    const double *mass;           /* by local node */
+    const double *weight;         /* the same, 0 for nodes that another processor accounts for */
+    int32_t first, end;           /* local nodes that the thread moves */
+} lar_condition_context;
+
+/* The thread of one processor that the conditions are for. */
+typedef struct lar_condition_share {
+    int32_t thread;
+    const int32_t *holds;   /* [nodes of the model] thread that moves it: supports go there */
+    const int32_t *loads;   /* [nodes of the model] thread that applies the loads of the node */
+    const int32_t *presses; /* [elements of the model] thread that applies pressures on its faces */
+} lar_condition_share;
+
+/* `local` maps global to local nodes. An axis that several entries hold is held once. With a share
+ * (NULL: all) only the conditions of one thread, and no `held`. */
+lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, lar_conditions *conditions,
+                                 lar_error *error);
+void lar_conditions_destroy(lar_conditions *conditions); /* idempotent */
+
+/* Adds the loads at `time` to state->force. Returns a node (local) whose loads are too large for
+ * the force sums, so that the run must stop; -1 when there is none. */
+int32_t lar_conditions_load(lar_conditions *conditions, const lar_condition_context *context,
+                            double time, lar_state *state);
+
+/* Half the work of one step by the loads of the last lar_conditions_load, with the velocities as
+ * they are: once before and once after the nodes move [J]. */
+double lar_conditions_half_work(const lar_conditions *conditions,
+                                const lar_condition_context *context, double time,
+                                const lar_state *state);
+
+/* After the elements, before the nodes move: remembers residual force and velocity where motion is
+ * prescribed, and takes the residual from every supported value: it goes into the ground. */
+void lar_conditions_observe(lar_conditions *conditions, const lar_condition_context *context,
+                            lar_state *state);
+
+/* After the nodes moved from `time`: imposes supports and motion at time + dt; returns the work
+ * that moving the supports took [J]. */
+double lar_conditions_impose(lar_conditions *conditions, const lar_condition_context *context,
+                             double time, lar_state *state);
+
+/* Displacement of a constraint at `time` [m]. */
+double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time);
+
+/* Largest nodal load [N], for the choice of the force scale. */
+double lar_conditions_largest(const lar_conditions *conditions);
+
+#endif

@@ -1,0 +1,136 @@
+/* Sharp edges of surfaces in contact, at rest.
+ *
+ * What comes under a body from beside meets its sharp edge first. There springs are taken up and
+ * let go little by little, over half a face, or each node that goes by would be a blow
+ * (docs/theory.md, contact). How far an edge turns decides: the faces of an organ stand at small
+ * angles to each other, those of a block at a right one.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/contact_surface.h"
+#include "mechanics/contact.h"
+
+/* A side of a face, by its nodes in ascending order. */
+typedef struct side {
+    int32_t node[2], face;
+} side;
+
+static int by_nodes(const void *a, const void *b) {
+    const side *x = a, *y = b;
+    for (int i = 0; i < 2; i++)
+        if (x->node[i] != y->node[i]) return x->node[i] < y->node[i] ? -1 : 1;
+    return (x->face > y->face) - (x->face < y->face);
+}
+
+/* The unit normal of a face at rest, and its middle. */
+static void stand(const lar_contact_surface *s, int32_t face, double normal[3], double middle[3]) {
+    double corner[4][3], length = 0;
+    for (int i = 0; i < 3; i++) middle[i] = 0;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) {
+            corner[a][i] = s->rest[s->face[face].corner[a]][i];
+            middle[i] += 0.25 * corner[a][i];
+        }
+    lar_face_normal((const double(*)[3])corner, normal);
+    for (int i = 0; i < 3; i++) length += normal[i] * normal[i];
+    length = sqrt(length);
+    for (int i = 0; i < 3 && length > 0; i++) normal[i] /= length;
+}
+
+/* 1 where two faces make no sharp edge, 0 where they do. */
+static double bluntness(const lar_contact_surface *s, int32_t one, int32_t other) {
+    static const double BLUNT = 0.26, SHARP = 0.09; /* cosines of 75 and 85 degrees */
+    double normal[2][3], middle[2][3], cosine = 0, under = 0;
+    stand(s, one, normal[0], middle[0]);
+    stand(s, other, normal[1], middle[1]);
+    for (int i = 0; i < 3; i++) {
+        cosine += normal[0][i] * normal[1][i];
+        under += normal[0][i] * (middle[1][i] - middle[0][i]);
+    }
+    if (!(under < 0)) return 1;
+    return fmin(fmax((cosine - SHARP) / (BLUNT - SHARP), 0), 1);
+}
+
+/* All sides of faces, equal ones beside each other. */
+static side *list_sides(const lar_contact_surface *s, size_t count) {
+    side *sides = lar_calloc(count, sizeof *sides);
+    for (size_t i = 0; i < count && sides; i++) {
+        const lar_contact_face *face = &s->face[i / 4];
+        int32_t a = face->corner[i % 4], b = face->corner[(i + 1) % 4];
+        sides[i] = (side){{a < b ? a : b, a < b ? b : a}, (int32_t)(i / 4)};
+    }
+    if (sides) qsort(sides, count, sizeof *sides, by_nodes);
+    return sides;
+}
+
+/* Sharp edges to the front; returns how many. */
+static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
+    static const double MEETS = 0.5; /* others are so blunt that faces are enough */
+    size_t edges = 0;
+    for (int32_t n = 0; n < s->node_count; n++) s->node[n].blunt = 1;
+    for (size_t i = 0; i + 1 < count; i++) {
+        if (memcmp(sides[i].node, sides[i + 1].node, sizeof sides[i].node) != 0) continue;
+        double blunt = bluntness(s, sides[i].face, sides[i + 1].face);
+        for (int k = 0; k < 2; k++) {
+            lar_contact_node *node = &s->node[sides[i].node[k]];
+            node->blunt = fmin(node->blunt, blunt);
+        }
+        if (blunt < MEETS) sides[edges++] = sides[i];
+    }
+    for (int32_t f = 0; f < s->face_count; f++)
+        for (int a = 0; a < 4; a++)
+            s->face[f].fades = s->face[f].fades || s->node[s->face[f].corner[a]].blunt < 1;
+    return edges;
+}
+
+/* Points of an edge: between nodes, which are points already. Each has so small a part of the mass
+ * behind it, or two edges that lie along each other would have more springs than a step bears. */
+enum { EDGE_POINTS = 4, EDGE_PARTS = 12 };
+
+static lar_status add_points(lar_contact_surface *s, const side *edge, size_t edges,
+                             lar_error *error) {
+    size_t nodes = (size_t)s->node_count, count = nodes + EDGE_POINTS * edges;
+    lar_contact_node *node = realloc(s->node, count * sizeof *node);
+    if (node) s->node = node;
+    double(*rest)[3] = realloc(s->rest, count * sizeof *rest);
+    if (rest) s->rest = rest;
+    s->point = lar_calloc(EDGE_POINTS * edges, sizeof *s->point);
+    if (!node || !rest || !s->point)
+        return lar_fail_memory(error, count * sizeof *node, "points of edges");
+    for (size_t e = 0; e < edges; e++)
+        for (int k = 0; k < EDGE_POINTS; k++) {
+            int32_t at = s->point_count++;
+            double along = (k + 0.5) / EDGE_POINTS;
+            lar_contact_point *point = &s->point[at - s->node_count];
+            *point = (lar_contact_point){{edge[e].node[0], edge[e].node[1]}, {1 - along, along}};
+            node[at] = node[point->node[0]];
+            node[at].passes &= node[point->node[1]].passes;
+            for (int i = 0; i < 3; i++)
+                rest[at][i] = point->weight[0] * rest[point->node[0]][i] +
+                              point->weight[1] * rest[point->node[1]][i];
+            s->slave_count += node[at].passes != 0;
+        }
+    return LAR_OK;
+}
+
+lar_status lar_contact_surface_edges(lar_contact_surface *s, lar_error *error) {
+    size_t count = 4 * (size_t)s->face_count;
+    side *sides = list_sides(s, count);
+    s->point_count = s->node_count;
+    if (!sides) return lar_fail_memory(error, count * sizeof *sides, "the edges of surfaces");
+    size_t edges = find_edges(s, sides, count);
+    lar_status status = edges && s->body_count > 1 ? add_points(s, sides, edges, error) : LAR_OK;
+    free(sides);
+    return status;
+}
+
+void lar_contact_edges_fit(lar_contact_surface *s) {
+    for (int32_t n = s->node_count; n < s->point_count; n++) {
+        const lar_contact_point *point = &s->point[n - s->node_count];
+        double compliance = 0;
+        for (int i = 0; i < 2; i++) compliance += point->weight[i] / s->node[point->node[i]].mass;
+        s->node[n].mass = 1 / (EDGE_PARTS * compliance);
+    }
+}

@@ -1,0 +1,93 @@
+/* Which nodes may come to touch which faces soon: the search over boxes (T 3.8.1).
+ *
+ *     tree of patches of faces           a box around all faces below it, made once from the
+ *              []                        places at rest, refitted at every search
+ *         []        []
+ *       []  []    []  []       every node goes down the branches whose boxes, grown by the reach
+ *       ff  ff    ff  ff       of the faces and a skin, hold it: first patches, then single faces
+ *
+ * The result is a list of groups: a node, and the faces of ONE body that it may meet, ascending.
+ * It misses nothing as long as no contact node has moved by more than half the skin along any axis
+ * since the search: a node and a face come closer by twice what each of them moves at most.
+ *
+ * A search of an organ takes as long as some twenty steps. So that nobody waits for it, it can be
+ * made a few nodes at a time, for the places at its beginning, while the last list is still good.
+ *
+ * What is found depends on the skin, what touches does not: a list with more pairs than another
+ * gives the same contacts (collide.h). A search asks for no memory: lists have room for
+ * LAR_PAIRS_PER_NODE pairs per node; where that is not enough, it is made again with a thinner
+ * skin.
+ */
+#ifndef LAR_CONTACT_CONTACT_SEARCH_H
+#define LAR_CONTACT_CONTACT_SEARCH_H
+
+#include "contact/contact_surface.h"
+
+enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MOST = 128 };
+
+/* A node and faces of one body: entries first .. first + count - 1 of lar_contact_list.face. */
+typedef struct lar_contact_group {
+    int32_t node; /* contact node */
+    int32_t first, count;
+    float gap; /* by which the node is outside the boxes of all faces, grown by their reach only,
+                  along some axis; at most 0 when it is inside one [m] */
+} lar_contact_group;
+
+typedef struct lar_contact_list {
+    int32_t group_count, face_count;
+    lar_contact_group *group; /* [group_count] by node, then by body */
+    int32_t *face;            /* [face_count] contact faces */
+    int32_t group_room, face_room;
+    double skin; /* [m] */
+} lar_contact_list;
+
+/* A patch: faces first .. first + count - 1 of lar_contact_search.order; its left half follows it,
+ * its right half is `right`, 0 for one that is not divided. */
+typedef struct lar_patch {
+    int32_t first, count, right;
+} lar_patch;
+
+typedef struct lar_box {
+    double lower[3], upper[3];
+} lar_box;
+
+typedef struct lar_contact_search {
+    lar_contact_surface surface;
+    int32_t patch_count;
+    lar_patch *patch;      /* [patch_count] */
+    lar_box *patch_box;    /* [patch_count] */
+    int32_t *order;        /* [face_count] faces, those of a patch together */
+    int32_t *place;        /* [face_count] where a face stands in `order` */
+    lar_box *face_box;     /* [face_count] in that order */
+    int32_t *apart;        /* [face_count] the last node, plus 1, that never meets it */
+    lar_contact_list list; /* of the last search */
+    lar_contact_list next; /* of the one under way */
+    const double (*x)[3];  /* its places, not owned */
+    int32_t boxes;         /* of faces made anew so far */
+    int32_t at;            /* the node that comes next */
+} lar_contact_search;
+
+/* Without contacts between bodies surface.node_count is 0. Bodies that lie in each other at rest
+ * are refused (LAR_ERROR_MODEL). */
+lar_status lar_contact_search_create(const lar_model *model, const double *mass,
+                                     const int32_t *local, lar_contact_search *search,
+                                     lar_error *error);
+void lar_contact_search_clear(lar_contact_search *search); /* idempotent */
+
+/* Makes the list anew for the places x, [contact nodes][3], with a skin of at most `skin` [m];
+ * list.skin says what it became. False when even without a skin there are too many pairs: the
+ * surface is crushed beyond use, or not finite. */
+bool lar_contact_search_run(lar_contact_search *search, const double (*x)[3], double skin);
+
+/* The same in parts: x must stay as it is meanwhile, and `list` the last one. */
+void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], double skin);
+typedef enum lar_contact_progress {
+    LAR_SEARCH_UNDER_WAY,
+    LAR_SEARCH_DONE, /* `list` is the new one, and the memory of the old one is used next */
+    LAR_SEARCH_FULL  /* too many pairs: take lar_contact_search_run */
+} lar_contact_progress;
+lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes);
+/* What is left to do, in nodes. */
+int32_t lar_contact_search_left(const lar_contact_search *search);
+
+#endif

@@ -1,0 +1,137 @@
+/* What may touch what, compiled from the model: the part of contact that never changes.
+ *
+ *     contact "self"       faces A                 one pass:   nodes of A against faces of A
+ *     contact "between"    faces A, faces B        two passes: nodes of A against faces of B,
+ *                                                              nodes of B against faces of A
+ *
+ * A node and a face belong together when some pass has both: bits say which. Faces around the edge
+ * of a set are taken along mute: they say where inside and outside are beside the set's last face,
+ * and push nobody.
+ *
+ * Never together are neighbours: a node and a face whose elements have a node in common, for these
+ * the elements themselves answer. Nor are a node and a face of one and the same body when the
+ * mesh has the node in the layer below the face already at rest, where a body tapers.
+ *
+ * Bodies are the connected parts of the mesh. A node touches one face of every body at most. How
+ * deep the layer is in which a body repels a node is the same for all its faces: nowhere does a
+ * node come into it but through a face, or leave it from less deep than it came (docs/theory.md,
+ * contact).
+ */
+#ifndef LAR_CONTACT_CONTACT_SURFACE_H
+#define LAR_CONTACT_CONTACT_SURFACE_H
+
+#include <stdbool.h>
+
+#include "model/model.h"
+
+enum { LAR_CONTACT_PASSES_MOST = 64 };
+
+typedef struct lar_contact_face {
+    int32_t corner[4]; /* contact nodes, counter-clockwise seen from outside */
+    int32_t element;   /* behind it */
+    int32_t body;
+    uint64_t active, mute; /* passes */
+    double size;           /* its longer diagonal at rest [m] */
+    bool fades;            /* a corner is on a sharp edge */
+} lar_contact_face;
+
+typedef struct lar_contact_body {
+    double reach[2]; /* thickness of the virtual body below its faces (T 2.2.8) for its own nodes,
+                        half that of its thinnest element, and for others, all of it [m] */
+    double clear;    /* to the nearest other body at rest; INFINITY: none is within a layer [m] */
+    double standoff; /* the contact distance: how far apart it and others push each other already,
+                        at most [m] */
+} lar_contact_body;
+
+/* Nodes of the faces below: "contact nodes". */
+typedef struct lar_contact_node {
+    int32_t node; /* of the model; of a point of an edge that of its first */
+    int32_t body;
+    uint64_t passes; /* in which it is looked at against faces */
+    double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
+    double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
+} lar_contact_node;
+
+/* A point of a sharp edge, which meets faces of other bodies as nodes do. */
+typedef struct lar_contact_point {
+    int32_t node[2];  /* contact nodes */
+    double weight[2]; /* their shares, sum 1 */
+} lar_contact_point;
+
+typedef struct lar_contact_surface {
+    int32_t node_count, face_count, body_count;
+    int32_t point_count;      /* nodes, and behind them points of edges */
+    int32_t slave_count;      /* those with passes */
+    lar_contact_node *node;   /* [point_count] nodes ascending */
+    lar_contact_point *point; /* [point_count - node_count] */
+    lar_contact_face *face;   /* by the surface's order */
+    lar_contact_body *body;   /* [body_count] */
+    double (*rest)[3];        /* [point_count] reference positions */
+    int64_t *apart_first;     /* [node_count + 1] faces that are never together with a node: */
+    int32_t *apart;           /* ascending for each node */
+    double reach;             /* the least of all bodies [m] */
+    double reach_most;        /* the largest [m] */
+    uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
+} lar_contact_surface;
+
+/* Without contacts of these kinds node_count is 0 and nothing is allocated. mass[local[node]] is
+ * the mass of a node of the model. Cleared with lar_contact_surface_clear. */
+lar_status lar_contact_surface_create(const lar_model *model, const double *mass,
+                                      const int32_t *local, lar_contact_surface *surface,
+                                      lar_error *error);
+void lar_contact_surface_clear(lar_contact_surface *surface); /* idempotent */
+
+/* Adds pairs of a node and a face, ascending by node and not known yet, to those that are never
+ * together. */
+lar_status lar_contact_surface_keep_apart(lar_contact_surface *surface, const int32_t (*pair)[2],
+                                          int32_t count, lar_error *error);
+
+/* Whether the face pushes the node; a mute face only says where inside is. */
+static inline bool lar_contact_active(const lar_contact_node *node, const lar_contact_face *face) {
+    return (node->passes & face->active) != 0;
+}
+
+/* How far below the face the node is repelled [m]. */
+static inline double lar_contact_reach(const lar_contact_surface *surface,
+                                       const lar_contact_node *node, const lar_contact_face *face) {
+    return surface->body[face->body].reach[node->body != face->body];
+}
+
+/* How far above a face the node is pushed already: 0 within a body, and for all nodes and faces of
+ * two bodies the same. */
+static inline double lar_contact_standoff(const lar_contact_surface *surface,
+                                          const lar_contact_node *node,
+                                          const lar_contact_face *face) {
+    double one = surface->body[node->body].standoff, other = surface->body[face->body].standoff;
+    return node->body == face->body ? 0 : one < other ? one : other;
+}
+
+/* Fits masses and contact distances to a time step. Once, after `clear` is known. */
+lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
+                                   lar_contact_surface *surface, lar_error *error);
+
+/* The nodes of which a node or point of an edge is made, and their shares; returns how many. */
+static inline int lar_contact_parents(const lar_contact_surface *surface, int32_t node,
+                                      int32_t parent[2], double weight[2]) {
+    parent[0] = parent[1] = node;
+    weight[0] = 1;
+    weight[1] = 0;
+    if (node < surface->node_count) return 1;
+    const lar_contact_point *point = &surface->point[node - surface->node_count];
+    for (int i = 0; i < 2; i++) {
+        parent[i] = point->node[i];
+        weight[i] = point->weight[i];
+    }
+    return 2;
+}
+
+/* Finds the sharp edges at rest: sets `blunt` and `fades`, and adds the edges' points. */
+lar_status lar_contact_surface_edges(lar_contact_surface *surface, lar_error *error);
+
+/* Masses of the edges' points, from those of nodes. */
+void lar_contact_edges_fit(lar_contact_surface *surface);
+
+/* Whether a node and a face are never together. */
+bool lar_contact_apart(const lar_contact_surface *surface, int32_t node, int32_t face);
+
+#endif

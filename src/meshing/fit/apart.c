@@ -1,0 +1,258 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "meshing/fit/crossing.h"
+#include "meshing/fit/face_boxes.h"
+#include "meshing/fit/work.h"
+
+/* Outer faces shall not go through each other. The draft's do not. After each round all pairs are
+ * looked at: where some cross, the round is gone back on and done again, and from then on nodes of
+ * these faces and of those near them are watched: they move only as far as their faces stay clear
+ * of all others. When some cross once more all nodes are watched, and none can. Most bodies have
+ * none to watch, and nothing of the work. */
+
+/* Faces that share no node keep so far apart, so that no rounding in a file makes them cross; a
+ * watched node moves no farther in a round, for which the faces near it are listed [cells]. */
+static const double GAP = 0.01, LEASH = 0.5;
+/* Faces that come so near, and so many rings of faces around them, are watched as soon as some
+ * cross: they may be the next. */
+static const double WARY = 0.15;
+enum { RINGS = 2, LOCAL = 3 }; /* the third time in a round all are */
+/* Where a smaller part of the faces than this cross once more, only places around them are added.
+ */
+static const double FEW = 1e-3;
+/* The cosine between normals of neighbours that look the same way. */
+static const double ALIKE = 0.8;
+
+void lar_fit_apart_clear(lar_fit_apart *apart) {
+    void *const owned[] = {apart->face,    apart->start,      apart->around, apart->watched,
+                           apart->from,    apart->near_start, apart->near,   apart->awake,
+                           apart->crosses, apart->way,        apart->strict, apart->ring};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    *apart = (lar_fit_apart){0};
+}
+
+lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    const size_t nodes = (size_t)work->mesh->node_count;
+    int32_t *outer = NULL;
+    lar_status status = lar_mesh_boundary(work->mesh, &outer, &apart->count, error);
+    if (status) return status;
+    apart->face = lar_calloc((size_t)apart->count, sizeof *apart->face);
+    apart->crosses = lar_calloc((size_t)apart->count, sizeof *apart->crosses);
+    apart->strict = lar_calloc((size_t)apart->count, sizeof *apart->strict);
+    apart->ring = lar_calloc(nodes, sizeof *apart->ring);
+    apart->way = lar_calloc((size_t)apart->count, sizeof *apart->way);
+    apart->near_start = lar_calloc((size_t)apart->count + 1, sizeof *apart->near_start);
+    apart->watched = lar_calloc(nodes, sizeof *apart->watched);
+    apart->awake = lar_calloc(nodes, sizeof *apart->awake);
+    apart->from = lar_calloc(nodes, sizeof *apart->from);
+    bool ready = apart->face && apart->crosses && apart->strict && apart->ring && apart->way &&
+                 apart->near_start && apart->watched && apart->awake && apart->from;
+    for (int32_t f = 0; ready && f < apart->count; f++)
+        for (int a = 0; a < 4; a++)
+            apart->face[f][a] = work->mesh->element[outer[f] / 6][lar_face_node[outer[f] % 6][a]];
+    free(outer);
+    ready = ready && lar_fit_list_around(apart->face[0], 4, (size_t)apart->count, 4,
+                                         work->mesh->node_count, &apart->start, &apart->around);
+    return ready ? LAR_OK : lar_fail_memory(error, 40 * nodes, "the outer faces");
+}
+
+/* ---- watching ------------------------------------------------------------------------------- */
+
+typedef struct listing {
+    const lar_fit_work *work;
+    lar_fit_apart *apart;
+    size_t used, capacity;
+    int32_t face;
+    bool failed;
+} listing;
+
+/* Whether two faces share a node, and all corners of both look the same way. */
+static bool look_alike(const lar_fit_work *work, const int32_t a[4], const int32_t b[4]) {
+    double normal[8][3];
+    int shared = 0;
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) shared += a[i] == b[k];
+    if (shared == 0) return false;
+    for (int c = 0; c < 8; c++) {
+        const int32_t *node = c < 4 ? a : b;
+        double out[3], in[3];
+        lar_minus(work->x[node[(c + 1) & 3]], work->x[node[c & 3]], out);
+        lar_minus(work->x[node[(c + 3) & 3]], work->x[node[c & 3]], in);
+        lar_cross(out, in, normal[c]);
+        const double length = lar_length(normal[c]);
+        for (int i = 0; i < 3; i++) normal[c][i] /= length;
+    }
+    for (int c = 0; c < 8; c++)
+        for (int d = 0; d < c; d++)
+            if (!(lar_dot(normal[c], normal[d]) > ALIKE)) return false;
+    return true;
+}
+
+static bool add_near(void *context, int32_t other) {
+    listing *list = context;
+    if (other == list->face) return true;
+    if (!list->apart->strict[list->face] && !list->apart->strict[other] &&
+        look_alike(list->work, list->apart->face[list->face], list->apart->face[other]))
+        return true;
+    if (list->used == INT32_MAX || !LAR_GROW(list->apart->near, list->capacity, list->used)) {
+        list->failed = true;
+        return false;
+    }
+    list->apart->near[list->used++] = (lar_fit_near){.face = other};
+    return true;
+}
+
+static bool is_among(const bool *marked, const int32_t face[4]) {
+    return marked[face[0]] || marked[face[1]] || marked[face[2]] || marked[face[3]];
+}
+
+/* The faces that each face with a watched node may meet in this round. */
+static lar_status list_near(lar_fit_work *work, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    lar_face_boxes boxes = {0};
+    listing list = {.work = work, .apart = apart};
+    free(apart->near);
+    apart->near = NULL;
+    lar_status status = lar_face_boxes_create(
+        (const double(*)[3])work->x, (const int32_t(*)[4])apart->face, apart->count, &boxes, error);
+    for (int32_t f = 0; !status && f < apart->count; f++) {
+        apart->way[f] = 0;
+        list.face = f;
+        if (is_among(apart->watched, apart->face[f]))
+            lar_face_boxes_near(&boxes, f, 2 * LEASH + GAP, add_near, &list);
+        apart->near_start[f + 1] = (int32_t)list.used;
+        if (list.failed)
+            status = lar_fail_memory(error, 8 * list.capacity, "the faces near each face");
+    }
+    lar_face_boxes_clear(&boxes);
+    return status;
+}
+
+lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    const size_t nodes = (size_t)work->mesh->node_count;
+    memcpy(apart->from, work->x, nodes * sizeof *apart->from);
+    memcpy(apart->awake, work->awake, nodes * sizeof *apart->awake);
+    apart->tries = 0;
+    return apart->any ? list_near(work, error) : LAR_OK;
+}
+
+/* What was found to be far enough is not looked at again before the nodes have gone as far. */
+static bool is_pair_clear(const lar_fit_work *work, int32_t f, lar_fit_near *near) {
+    const lar_fit_apart *apart = &work->apart;
+    const double(*x)[3] = (const double(*)[3])work->x;
+    const int32_t g = near->face;
+    const double way = apart->way[f] + apart->way[g];
+    if (way < near->clear) return true;
+    const double clearance = lar_faces_clearance(x, apart->face[f], apart->face[g], GAP);
+    near->clear = way + clearance;
+    return clearance > 0 || !(lar_faces_cross(x, apart->face[f], apart->face[g], GAP) > 0);
+}
+
+static bool is_clear(const lar_fit_work *work, int32_t n) {
+    const lar_fit_apart *apart = &work->apart;
+    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++) {
+        const int32_t f = apart->around[i] / 4;
+        for (int32_t k = apart->near_start[f]; k < apart->near_start[f + 1]; k++)
+            if (!is_pair_clear(work, f, &apart->near[k])) return false;
+    }
+    return true;
+}
+
+static void place(lar_fit_work *work, int32_t n, const double x[3]) {
+    const lar_fit_apart *apart = &work->apart;
+    double step[3];
+    lar_minus(x, work->x[n], step);
+    memcpy(work->x[n], x, sizeof work->x[n]);
+    if (!apart->any) return;
+    const double length = lar_length(step);
+    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++)
+        apart->way[apart->around[i] / 4] += length;
+}
+
+bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]) {
+    const lar_fit_apart *apart = &work->apart;
+    const bool watched = apart->any && apart->watched[n];
+    double away[3], before[3];
+    if (watched) {
+        lar_minus(x, apart->from[n], away);
+        if (!(lar_length(away) < LEASH)) return false;
+    }
+    memcpy(before, work->x[n], sizeof before);
+    place(work, n, x);
+    if (!watched || is_clear(work, n)) return true;
+    place(work, n, before);
+    return false;
+}
+
+/* ---- after a round -------------------------------------------------------------------------- */
+
+/* Faces that cross though all of their nodes are watched were taken for neighbours that cannot. */
+static void note_strict(lar_fit_apart *apart, int32_t *crossing) {
+    *crossing = 0;
+    for (int32_t f = 0; f < apart->count; f++) {
+        bool all = apart->crosses[f];
+        *crossing += all;
+        for (int a = 0; all && a < 4; a++) all = apart->watched[apart->face[f][a]];
+        apart->strict[f] = apart->strict[f] || all;
+    }
+}
+
+/* Watches the nodes of faces that cross, and rings of faces around them. */
+static void watch_around(lar_fit_apart *apart, size_t nodes) {
+    memset(apart->ring, 0, nodes * sizeof *apart->ring);
+    for (int ring = 0; ring <= RINGS; ring++) {
+        for (int32_t f = 0; f < apart->count; f++)
+            for (int a = 0; apart->crosses[f] && a < 4; a++) apart->ring[apart->face[f][a]] = true;
+        for (int32_t f = 0; f < apart->count; f++)
+            apart->crosses[f] = apart->crosses[f] || is_among(apart->ring, apart->face[f]);
+    }
+    for (size_t n = 0; n < nodes; n++) apart->watched[n] = apart->watched[n] || apart->ring[n];
+}
+
+static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    lar_face_crossings found;
+    lar_status status =
+        lar_faces_find_crossings((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
+                                 apart->count, gap, apart->crosses, &found, error);
+    *any = !status && found.pairs > 0;
+    return status;
+}
+
+/* What is watched from now on. Where a body has but few places to cross, more of them are watched
+ * each time; another one's are watched everywhere at once: a round that is done again costs more.
+ */
+static lar_status watch_more(lar_fit_work *work, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    const size_t nodes = (size_t)work->mesh->node_count;
+    int32_t crossing;
+    bool near;
+    note_strict(apart, &crossing);
+    const bool few = !apart->any || crossing < FEW * apart->count;
+    if (apart->all || ++apart->tries == LOCAL) memset(apart->strict, true, (size_t)apart->count);
+    if (apart->all || !few || apart->tries == LOCAL) {
+        apart->all = true;
+        memset(apart->watched, true, nodes);
+        return LAR_OK;
+    }
+    lar_status status = find(work, WARY, &near, error);
+    if (!status) watch_around(apart, nodes);
+    return status;
+}
+
+lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    const size_t nodes = (size_t)work->mesh->node_count;
+    lar_status status = find(work, GAP, again, error);
+    if (*again) status = watch_more(work, error);
+    if (status || !*again) return status;
+    apart->any = true;
+    memcpy(work->x, apart->from, nodes * sizeof *work->x);
+    memcpy(work->awake, apart->awake, nodes * sizeof *work->awake);
+    return list_near(work, error);
+}

@@ -1,0 +1,230 @@
+#include "meshing/starter/elastic.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/union_find.h"
+#include "base/vector.h"
+
+/* ---- elements ------------------------------------------------------------------------------- */
+
+/* The Walsh-Hadamard transform of eight nodes with `n` numbers each: modes 0..6 of hex8.h, mode m
+ * from modal[m * n]. */
+static inline void to_modes(const double *const node[8], int n, double *modal) {
+    for (int i = 0; i < n; i++) {
+        double s0 = node[1][i] + node[0][i], d0 = node[1][i] - node[0][i];
+        double s1 = node[2][i] + node[3][i], d1 = node[2][i] - node[3][i];
+        double s2 = node[5][i] + node[4][i], d2 = node[5][i] - node[4][i];
+        double s3 = node[6][i] + node[7][i], d3 = node[6][i] - node[7][i];
+        modal[i] = (d3 + d2) + (d1 + d0);
+        modal[n + i] = (s3 - s2) + (s1 - s0);
+        modal[2 * n + i] = (s3 + s2) - (s1 + s0);
+        modal[3 * n + i] = (s3 - s2) - (s1 - s0);
+        modal[4 * n + i] = (d3 + d2) - (d1 + d0);
+        modal[5 * n + i] = (d3 - d2) + (d1 - d0);
+        modal[6 * n + i] = (d3 - d2) - (d1 - d0);
+    }
+}
+
+/* 64 V = [a,b,c] + ([e,d,c] + [f,b,d] + [a,f,e]) / 3 with a..f the modes 0..5 of the corners, and
+ * V B_m its derivatives. */
+static void prepare_gradients(lar_elastic_element *e, const double X[7][3]) {
+    static const struct {
+        int8_t mode, left, right;
+        double factor;
+    } term[12] = {{0, 1, 2, 1},      {0, 5, 4, 1. / 3}, {1, 2, 0, 1},      {1, 3, 5, 1. / 3},
+                  {2, 0, 1, 1},      {2, 4, 3, 1. / 3}, {3, 2, 4, 1. / 3}, {3, 5, 1, 1. / 3},
+                  {4, 3, 2, 1. / 3}, {4, 0, 5, 1. / 3}, {5, 1, 3, 1. / 3}, {5, 4, 0, 1. / 3}};
+    memset(e->gradient, 0, sizeof e->gradient);
+    e->volume = 0;
+    for (int t = 0; t < 12; t++) {
+        double area[3];
+        lar_cross(X[term[t].left], X[term[t].right], area);
+        for (int i = 0; i < 3; i++) e->gradient[term[t].mode][i] += term[t].factor / 64 * area[i];
+    }
+    for (int m = 0; m < 6; m++) e->volume += lar_dot(e->gradient[m], X[m]) / 3;
+    for (int m = 0; m < 6; m++)
+        for (int i = 0; i < 3; i++) e->gradient[m][i] /= e->volume;
+}
+
+static void prepare(lar_elastic_element *e, const double corner[8][3],
+                    const lar_elastic_material *material) {
+    static const double FACTOR = 1.58 / 64; /* mechanics/hex8.h */
+    const double *node[8];
+    double X[7][3];
+    for (int a = 0; a < 8; a++) node[a] = corner[a];
+    to_modes(node, 3, X[0]);
+    prepare_gradients(e, X);
+    memcpy(e->shape, X[3], sizeof e->shape);
+    double edge = cbrt(e->volume);
+    for (int k = 0; k < 4; k++)
+        e->spring[k] = FACTOR * material->shear * edge * (k < 3 ? 4 : 8. / 3) / 3;
+    e->shear = material->shear * e->volume;
+    e->pressure = (material->bulk - 2 * material->shear / 3) * e->volume;
+}
+
+/* A vector for each load of seven modes: load l along axis i at [i * LAR_LOADS + l]. */
+enum { VECTORS = 3 * LAR_LOADS };
+typedef double modes[7][VECTORS];
+
+/* G_m of hex8.h from U_m. */
+static void modal_forces(const lar_elastic_element *e, modes U, modes G) {
+    double H[3][3][LAR_LOADS] = {{{0}}}, S[3][3][LAR_LOADS], trace[LAR_LOADS];
+    for (int m = 0; m < 6; m++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                LAR_EACH_LOAD H[i][j][l] += U[m][i * LAR_LOADS + l] * e->gradient[m][j];
+    LAR_EACH_LOAD trace[l] = e->pressure * (H[0][0][l] + H[1][1][l] + H[2][2][l]);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            LAR_EACH_LOAD S[i][j][l] =
+                e->shear * (H[i][j][l] + H[j][i][l]) + (i == j ? trace[l] : 0);
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < 3; i++) {
+            const double *q = &U[3 + k][i * LAR_LOADS];
+            double *g = &G[3 + k][i * LAR_LOADS];
+            LAR_EACH_LOAD g[l] = q[l];
+            for (int j = 0; j < 3; j++) LAR_EACH_LOAD g[l] -= H[i][j][l] * e->shape[k][j];
+            LAR_EACH_LOAD g[l] *= e->spring[k];
+            for (int j = 0; j < 3; j++) LAR_EACH_LOAD S[i][j][l] -= g[l] * e->shape[k][j];
+        }
+    memset(G, 0, 3 * sizeof G[0]);
+    for (int m = 0; m < 6; m++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                LAR_EACH_LOAD G[m][i * LAR_LOADS + l] += S[i][j][l] * e->gradient[m][j];
+}
+
+/* Adds sum_m h_m(a) G_m to the nodes. */
+static inline void add_from_modes(modes G, double *const node[8]) {
+    static const struct {
+        int8_t eta, zeta, left, right;
+    } line[4] = {{-1, -1, 0, 1}, {1, -1, 3, 2}, {-1, 1, 4, 5}, {1, 1, 7, 6}};
+    for (int k = 0; k < 4; k++) {
+        double eta = line[k].eta, zeta = line[k].zeta;
+        double *left = node[line[k].left], *right = node[line[k].right];
+        for (int i = 0; i < VECTORS; i++) {
+            double even = eta * G[1][i] + zeta * (G[2][i] + eta * G[3][i]);
+            double odd = G[0][i] + eta * G[5][i] + zeta * (G[4][i] + eta * G[6][i]);
+            left[i] += even - odd;
+            right[i] += even + odd;
+        }
+    }
+}
+
+void lar_elastic_element_matrix(const lar_elastic_element *e, double K[24][24]) {
+    for (int first = 0; first < 24; first += LAR_LOADS) {
+        double u[8][3][LAR_LOADS] = {{{0}}}, f[8][3][LAR_LOADS] = {{{0}}};
+        const double *from[8];
+        double *to[8];
+        modes U, G;
+        for (int a = 0; a < 8; a++) from[a] = u[a][0], to[a] = f[a][0];
+        LAR_EACH_LOAD u[(first + l) / 3][(first + l) % 3][l] = 1;
+        to_modes(from, VECTORS, U[0]);
+        modal_forces(e, U, G);
+        add_from_modes(G, to);
+        for (int row = 0; row < 24; row++) LAR_EACH_LOAD K[row][first + l] = f[row / 3][row % 3][l];
+    }
+}
+
+void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u,
+                        lar_load_vectors *f) {
+    memset(f, 0, (size_t)elastic->node_count * sizeof *f);
+    for (int32_t k = 0; k < elastic->element_count; k++) {
+        const lar_elastic_element *e = &elastic->element[k];
+        const double *from[8];
+        double *to[8];
+        modes U, G;
+        for (int a = 0; a < 8; a++) from[a] = (const double *)u[e->node[a]];
+        for (int a = 0; a < 8; a++) to[a] = (double *)f[e->node[a]];
+        to_modes(from, VECTORS, U[0]);
+        modal_forces(e, U, G);
+        add_from_modes(G, to);
+    }
+    for (int32_t n = 0; n < elastic->node_count; n++)
+        if (elastic->still[n]) memset(f[n], 0, sizeof f[n]);
+}
+
+/* h_m(a). */
+static double node_sign(int mode, int a) {
+    const int8_t *s = lar_node_sign[a];
+    static const int8_t in[7] = {1, 2, 4, 6, 5, 3, 7};
+    return ((in[mode] & 1) ? s[0] : 1) * ((in[mode] & 2) ? s[1] : 1) * ((in[mode] & 4) ? s[2] : 1);
+}
+
+void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]) {
+    for (int32_t k = 0; k < elastic->element_count; k++) {
+        const lar_elastic_element *e = &elastic->element[k];
+        for (int a = 0; a < 8; a++) {
+            double b[3] = {0}, hourglass = 0, *d = diagonal[e->node[a]];
+            for (int m = 0; m < 6; m++)
+                for (int i = 0; i < 3; i++) b[i] += node_sign(m, a) * e->gradient[m][i];
+            for (int m = 0; m < 4; m++) {
+                double q = node_sign(3 + m, a) - lar_dot(b, e->shape[m]);
+                hourglass += e->spring[m] * q * q;
+            }
+            for (int i = 0; i < 3; i++)
+                d[i] += e->shear * (lar_dot(b, b) + b[i] * b[i]) + e->pressure * b[i] * b[i] +
+                        hourglass;
+        }
+    }
+    for (int32_t n = 0; n < elastic->node_count; n++)
+        if (elastic->still[n]) memset(diagonal[n], 0, sizeof diagonal[n]);
+}
+
+/* ---- the body ------------------------------------------------------------------------------- */
+
+/* Marks what is held, and what hangs together with nothing that is. */
+static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *material,
+                             const bool *held, bool *still, lar_error *error) {
+    size_t nodes = (size_t)mesh->node_count;
+    int32_t *parent = lar_calloc(nodes, sizeof *parent);
+    bool *anchored = lar_calloc(nodes, sizeof *anchored);
+    bool ready = parent && anchored;
+    if (ready) lar_union_start(parent, mesh->node_count);
+    for (int32_t e = 0; ready && e < mesh->element_count; e++)
+        for (int a = 1; a < 8 && material[e].shear > 0; a++)
+            lar_union_join(parent, mesh->element[e][0], mesh->element[e][a]);
+    for (int32_t n = 0; ready && n < mesh->node_count; n++)
+        if (held[n]) anchored[lar_union_root(parent, n)] = true;
+    for (int32_t n = 0; ready && n < mesh->node_count; n++)
+        still[n] = held[n] || !anchored[lar_union_root(parent, n)];
+    free(parent);
+    free(anchored);
+    return ready ? LAR_OK : lar_fail_memory(error, 5 * nodes, "the body's pieces");
+}
+
+static bool moves(const lar_elastic *elastic, const int32_t node[8]) {
+    for (int a = 0; a < 8; a++)
+        if (!elastic->still[node[a]]) return true;
+    return false;
+}
+
+lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
+                              const bool *held, lar_elastic *elastic, lar_error *error) {
+    size_t nodes = (size_t)mesh->node_count, elements = (size_t)mesh->element_count;
+    *elastic = (lar_elastic){.mesh = mesh, .node_count = mesh->node_count};
+    elastic->still = lar_calloc(nodes, sizeof *elastic->still);
+    elastic->element = lar_calloc(elements, sizeof *elastic->element);
+    lar_status status = LAR_OK;
+    if (!elastic->still || !elastic->element)
+        status = lar_fail_memory(error, elements * sizeof *elastic->element, "a static estimate");
+    if (!status) status = find_still(mesh, material, held, elastic->still, error);
+    for (int32_t e = 0; !status && e < mesh->element_count; e++) {
+        if (!(material[e].shear > 0) || !moves(elastic, mesh->element[e])) continue;
+        lar_elastic_element *element = &elastic->element[elastic->element_count++];
+        double corner[8][3];
+        lar_mesh_corners(mesh, e, corner);
+        memcpy(element->node, mesh->element[e], sizeof element->node);
+        prepare(element, corner, &material[e]);
+    }
+    if (status) lar_elastic_clear(elastic);
+    return status;
+}
+
+void lar_elastic_clear(lar_elastic *elastic) {
+    free(elastic->element);
+    free(elastic->still);
+    *elastic = (lar_elastic){0};
+}

@@ -1,0 +1,67 @@
+/* Small displacements of a meshed body under a few loads at once: what it will do to a pull or to
+ * its weight, before anything is simulated.
+ *
+ *     K u_l = f_l        conjugate gradients, preconditioned by the diagonal and
+ *                        by rigid groups of nodes (elastic_coarse.h)
+ *
+ * The element is the production element (mechanics/hex8.h) at rest: the mean strain, and springs
+ * of the hourglass modes, here with the stiffness that they have in a cube of the same volume. The
+ * loads stand side by side in the inner loops, so that four cost little more than two.
+ *
+ * The work f . u that a load does grows from step to step of conjugate gradients by alpha r . z
+ * (Hestenes and Stiefel 1952): when the last steps have added next to nothing, it is known
+ * (Strakos and Tichy, Electronic Transactions on Numerical Analysis 13, 2002). */
+#ifndef LAR_MESHING_STARTER_ELASTIC_H
+#define LAR_MESHING_STARTER_ELASTIC_H
+
+#include "model/mesh/mesh.h"
+
+enum { LAR_LOADS = 4 };
+#define LAR_EACH_LOAD for (int l = 0; l < LAR_LOADS; l++)
+
+/* A number for each of the loads; [l] is one of them. */
+typedef double lar_loads __attribute__((vector_size(8 * LAR_LOADS), aligned(8)));
+
+/* A vector of a node for each of the loads. */
+typedef lar_loads lar_load_vectors[3];
+
+/* What an element is made of; shear 0: rigid, or left out. */
+typedef struct lar_elastic_material {
+    double shear, bulk; /* [Pa] */
+} lar_elastic_material;
+
+typedef struct lar_elastic_element {
+    double gradient[6][3]; /* B_m [1/m] */
+    double shape[4][3];    /* X_m [m] */
+    double spring[4];      /* c_m [N/m] */
+    double volume, shear, pressure;
+    int32_t node[8];
+} lar_elastic_element;
+
+typedef struct lar_elastic {
+    const lar_mesh *mesh;
+    int32_t node_count, element_count;
+    lar_elastic_element *element;
+    bool *still; /* [nodes] held, or of nothing elastic */
+} lar_elastic;
+
+/* material: [elements]; held: [nodes]. What hangs together with nothing that is held is left out:
+ * its nodes are still. */
+lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
+                              const bool *held, lar_elastic *elastic, lar_error *error);
+void lar_elastic_clear(lar_elastic *elastic);
+
+/* Forces at the nodes, row 3 a + i for axis i of node a, by their displacements [N/m]. */
+void lar_elastic_element_matrix(const lar_elastic_element *element, double K[24][24]);
+
+/* [nodes] the diagonal of K, added to what is there; 0 on still nodes. */
+void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]);
+
+/* Forces [N] of the body at displacements u [m]; those on still nodes are 0. */
+void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u, lar_load_vectors *f);
+
+/* Displacements under the forces f, and the work f . u of each load [J], within a hundredth. */
+lar_status lar_elastic_solve(const lar_elastic *elastic, const lar_load_vectors *f,
+                             lar_load_vectors *u, double work[LAR_LOADS], lar_error *error);
+
+#endif

@@ -1,0 +1,326 @@
+/* The scene of a meshing: it runs as it is, and says why it is so. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "base/vector.h"
+#include "meshing/fit/quality.h"
+#include "meshing/meshing.h"
+#include "model/format/vtk/vtk_xml_write.h"
+
+/* ---- words -------------------------------------------------------------------------------- */
+
+/* Bytes of a well-formed character that YAML lets through, 0: none begins here. */
+static int character(const unsigned char *c) {
+    if (c[0] < 0x80) return c[0] >= ' ' && c[0] < 0x7f;
+    int more = c[0] >= 0xc2 && c[0] < 0xe0 ? 1 : c[0] >= 0xe0 && c[0] < 0xf0 ? 2 : 0;
+    for (int i = 1; i <= more; i++)
+        if ((c[i] & 0xc0) != 0x80) return 0;
+    if (more == 1) return c[0] == 0xc2 && c[1] < 0xa0 ? 0 : 2;           /* C1 controls */
+    if (more == 0 || (c[0] == 0xe0 && c[1] < 0xa0)) return 0;            /* over-long */
+    if (c[0] == 0xed && c[1] >= 0xa0) return 0;                          /* surrogates */
+    if (c[0] == 0xe2 && c[1] == 0x80 && (c[2] & 0xfe) == 0xa8) return 0; /* line ends */
+    return c[0] == 0xef && c[1] >= 0xbb ? 0 : 3; /* byte order mark, no characters */
+}
+
+/* A text that comes from a file, on one line; between quotes with `quoted`. */
+static void put(FILE *file, const char *text, bool quoted) {
+    if (quoted) fputc('"', file);
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        int length = character(c);
+        if (quoted && (*c == '"' || *c == '\\')) fputc('\\', file);
+        if (length > 0)
+            fwrite(c, 1, (size_t)length, file);
+        else
+            fputc('?', file);
+        c += length > 0 ? length : 1;
+    }
+    if (quoted) fputc('"', file);
+}
+
+/* ---- the scene ----------------------------------------------------------------------------- */
+
+static double two_digits(double x) {
+    double digit = pow(10, floor(log10(x)) - 1);
+    return round(x / digit) * digit;
+}
+
+/* A motion that is damped by c while it swings at w decays with c/2, as long as c is below 2 w. The
+ * estimate of w is above the slowest, by a tenth or two, so c = 1.6 w is a little below 2 w and
+ * everything decays with 0.8 w at least. */
+static double damping(const lar_meshing *m) {
+    static const double WITHOUT = 10, LEAST = 0.3, PART = 1.6;
+    if (!(m->support.slowest > 0)) return WITHOUT;
+    return two_digits(fmax(LEAST, PART * m->support.slowest));
+}
+
+/* Time in which the slowest motion has become a hundredth, with some room. */
+static double settling(const lar_meshing *m) {
+    return 2 * log(300) / damping(m);
+}
+
+/* The pull and what comes after it; half seconds. */
+static double duration(const lar_meshing *m) {
+    static const double PULL = 1.2, LEAST = 2;
+    if (!m->support.handle) return LEAST;
+    return fmax(LEAST, ceil(2 * (PULL + settling(m))) / 2);
+}
+
+static double least_height(const lar_mesh *mesh, int32_t e) {
+    double least = INFINITY, x[8][3], edge[3][3], area[3];
+    lar_mesh_corners(mesh, e, x);
+    for (int a = 0; a < 8; a++) {
+        double largest = 0;
+        for (int k = 0; k < 3; k++) lar_minus(x[lar_fit_edge[a][k]], x[a], edge[k]);
+        for (int k = 0; k < 3; k++) {
+            lar_cross(edge[k], edge[(k + 1) % 3], area);
+            largest = fmax(largest, lar_length(area));
+        }
+        /* `area` is that of edges 2 and 0 now. */
+        least = fmin(least, fabs(lar_dot(area, edge[1])) / largest);
+    }
+    return least;
+}
+
+/* The least height of an element, divided by the speed of pressure waves in it, and half of that:
+ * an element that is squeezed to half its height still bears the step. The height at a corner is
+ * the volume that its edges span over the largest area of two of them. */
+static double squeezed_step(const lar_meshing *m) {
+    double least = INFINITY;
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        const lar_region_info *region = &m->region[r];
+        double modulus = region->bulk_modulus + 4 * region->shear_modulus / 3;
+        double speed = sqrt(modulus / region->density);
+        for (int32_t e = 0; e < m->mesh.element_count; e++)
+            if (m->mesh.element_tag[e] == region->tag)
+                least = fmin(least, least_height(&m->mesh, e) / speed);
+    }
+    return least / 2;
+}
+
+static void put_head(const lar_meshing *m, FILE *f) {
+    const lar_meshing_info *info = &m->info;
+    fputs("# ", f);
+    put(f, m->title, false);
+    fputs(": made by `lariat mesh` from ", f);
+    put(f, m->from, false);
+    fprintf(f,
+            ".\n"
+            "# %" PRId32 " hexahedra %s, about %.3g mm wide.\n"
+            "#\n"
+            "#     lariat info %s.yaml                  sizes, quality, speed\n"
+            "#     lariat view %s.yaml                  take hold of it\n"
+            "#     lariat run %s.yaml --out results     pull at it, for ParaView\n"
+            "#\n"
+            "# A first scene to change as you need it: docs/formats.md has every key.\n"
+            "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n",
+            info->elements, m->fitted ? "on the true boundary" : "on a grid, as cubes",
+            1e3 * info->size, m->stem, m->stem, m->stem);
+    fputs(m->image ? "# x points to the patient's right, y to the front, z to the head.\n"
+                   : "# Axes are those of the file.\n",
+          f);
+    fputs("lariat: 1\ntitle: ", f);
+    put(f, m->title, true);
+    fprintf(f,
+            "\nmesh: \"%s.vtu\"\n"
+            "surface: \"%s_surface.vtp\"   # the true surface rides on the mesh, to be looked at\n",
+            m->stem, m->stem);
+    fputs(m->image
+              ? "view: [0.15, 1, 0.35]   # looked at from the patient's front, the head is up\n\n"
+              : "\n",
+          f);
+}
+
+static void put_motion(const lar_meshing *m, FILE *f) {
+    fprintf(
+        f,
+        "# No gravity: the scanner saw the organ sag already, and what was seen is its shape at\n"
+        "# rest here. %s, %s:\n"
+        "#     gravity: [0, -9.81, 0]\n"
+        "# A body that its support does not carry folds up under it; elements that are squeezed\n"
+        "# need shorter steps than at rest:\n"
+        "#     time_step: %.1e\n"
+        "gravity: [0, 0, 0]\n"
+        "time_step: auto\n"
+        "damping: %g             # 1/s; let go, it comes to rest in about %.2g s\n"
+        "duration: %g              # s; a run lasts so long unless --time says otherwise\n\n",
+        m->support.carried ? "What holds it bears its weight besides" : "For its weight besides",
+        m->image ? "the patient lying on the back" : "lying on its back", squeezed_step(m),
+        damping(m), settling(m), duration(m));
+}
+
+static void put_material(const lar_region_info *region, FILE *f) {
+    fprintf(f, "  # As %s. %s.\n", region->tissue, region->source);
+    fputs("  - { name: ", f);
+    put(f, region->name, true);
+    fprintf(f,
+            ", cells: %" PRId32 ", law: coupled-neo-hookean, density: %g,\n"
+            "      shear_modulus: %g, bulk_modulus: %.3g }\n",
+            region->tag, region->density, region->shear_modulus, region->bulk_modulus);
+}
+
+static void put_materials(const lar_meshing *m, FILE *f) {
+    fputs(
+        "# Stiffnesses at small strain, of healthy adults, from the literature: they differ\n"
+        "# between people, ages and methods by a factor of two and more. The bulk modulus is that\n"
+        "# of Poisson's ratio 0.45. Tissue is nearer to 0.5, but the stable time step goes with "
+        "the\n"
+        "# speed of pressure waves: at 0.49 it is less than half as long.\n"
+        "# `cells` is the tag of the elements, the label in the image.\n"
+        "materials:\n",
+        f);
+    for (int32_t r = 0; r < m->info.regions; r++)
+        if (m->region[r].elements > 0) put_material(&m->region[r], f);
+    fputc('\n', f);
+}
+
+static void put_fix(const lar_meshing *m, FILE *f) {
+    const lar_support *support = &m->support;
+    bool any = false;
+    if (strcmp(support->rule, "cut") == 0)
+        fputs("# Held where the image cuts it off.\n", f);
+    else if (support->held)
+        fprintf(f, "# Held at the %s: the surface's nodes in the last tenth of its extent.\n",
+                support->rule);
+    else
+        fputs(
+            "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
+            f);
+    if (support->pads > 0)
+        fputs("# Pads: small places of its underside, where its neighbours carry it in the patient "
+              "and\n"
+              "# without which it could not bear its weight. Without that line it hangs free.\n",
+              f);
+    if (support->held) fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
+    any = support->held;
+    if (support->pads > 0) {
+        fprintf(f, "%s  - { nodes: pads, axes: xyz }\n", any ? "" : "fix:\n");
+        any = true;
+    }
+    for (int32_t r = 0; r < m->info.regions; r++) {
+        const lar_region_info *region = &m->region[r];
+        if (region->elements == 0 || !region->held) continue;
+        if (!any) fputs("fix:\n", f);
+        any = true;
+        fprintf(f, "  - { nodes: { tag: %" PRId32 " }, axes: xyz }   # ", region->tag);
+        put(f, region->name, false);
+        fputs(" is bone, and stays where it is\n", f);
+    }
+    fputc('\n', f);
+}
+
+static void put_load(const lar_meshing *m, FILE *f) {
+    const lar_support *s = &m->support;
+    static const char curve[] =
+        "      curve: { points: [[0, 0], [0.4, 1], [0.8, 1], [1.2, 0]], shape: smooth } }\n";
+    if (!s->handle) return;
+    fprintf(
+        f,
+        "# A pull at the %s: it grows, stays, and lets go. The force is the total, shared by the\n"
+        "# nodes of the set. In the viewer your hand pulls too; take this out for your hand "
+        "alone.\n"
+        "load:\n"
+        "  - { nodes: handle, force: [%g, %g, %g],\n%s",
+        s->handle, s->pull[0], s->pull[1], s->pull[2], curve);
+    if (s->opposed)
+        fprintf(f, "  - { nodes: handle_opposite, force: [%g, %g, %g],\n%s", 0 - s->pull[0],
+                0 - s->pull[1], 0 - s->pull[2], curve);
+    fputc('\n', f);
+}
+
+/* A ball around the mesh: the middle of its box and half of its diagonal. */
+static double ball_around(const lar_mesh *mesh, double middle[3]) {
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (lar_gid n = 0; n < mesh->node_count; n++)
+        for (int i = 0; i < 3; i++) {
+            lower[i] = fmin(lower[i], mesh->position[n][i]);
+            upper[i] = fmax(upper[i], mesh->position[n][i]);
+        }
+    for (int i = 0; i < 3; i++) middle[i] = 0.5 * (lower[i] + upper[i]);
+    lar_minus(upper, lower, upper);
+    return 0.5 * lar_length(upper);
+}
+
+static double longest_edge(const lar_mesh *mesh) {
+    double most = 0, x[8][3], edge[3];
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        lar_mesh_corners(mesh, e, x);
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++) {
+                lar_minus(x[lar_fit_edge[a][k]], x[a], edge);
+                most = fmax(most, lar_length(edge));
+            }
+    }
+    return most;
+}
+
+/* Outside of that ball, so that they touch nothing, above the body as the viewer sees it at first:
+ * one to the left of the picture's middle, one to the right. */
+static void put_tools(const lar_meshing *m, FILE *f) {
+    static const double from_image[3] = {0.15, 1, 0.35}, from_other[3] = {-0.14, -0.925, 0.352};
+    static const double up[3] = {0, 0, 1};
+    const double *eye = m->image ? from_image : from_other;
+    double middle[3], right[3], way[2][3], place[2][3];
+    double radius = ball_around(&m->mesh, middle), length = lar_length(eye);
+    /* Thinner ones would be felt by some points of large faces only (model/contact_check.h). */
+    double least = 0.13 * longest_edge(&m->mesh);
+    double probe = fmax(least, 0.035 * radius), jaw = fmax(least, 0.012 * radius);
+    double jaws = fmax(5 * jaw, 0.12 * radius);
+    double away = fmax(1.28 * radius, 1.05 * radius + jaws + jaw);
+    lar_cross(up, eye, right);
+    double wide = lar_length(right);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < 3; i++)
+            way[side][i] =
+                0.8 * eye[i] / length + (side ? 0.38 : -0.38) * right[i] / wide + 0.46 * up[i];
+        double whole = lar_length(way[side]);
+        for (int i = 0; i < 3; i++) place[side][i] = middle[i] + away * way[side][i] / whole;
+    }
+    fprintf(f,
+            "# Instruments for the viewer and for devices (lariat view --device). They wait beside "
+            "the\n"
+            "# body and touch nothing until they are moved: a run is the same without them.\n"
+            "tools:\n"
+            "  - { name: probe, shape: sphere, radius: %.3g, at: [%.6g, %.6g, %.6g] }\n"
+            "  - { name: grasper, shape: grasper, radius: %.3g, length: %.3g, spread: 50,\n"
+            "      at: [%.6g, %.6g, %.6g], towards: [%.4g, %.4g, %.4g] }\n\n",
+            probe, place[0][0], place[0][1], place[0][2], jaw, jaws, place[1][0], place[1][1],
+            place[1][2], -way[1][0], -way[1][1], -way[1][2]);
+}
+
+static void put_end(const lar_meshing *m, FILE *f) {
+    fputs(
+        "# It does not pass through itself: takes some of each step.\n"
+        "# contact: [ { self: true } ]\n\n"
+        "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n"
+        "# surface: true   # the true surface in every frame too, for ParaView: takes more room\n",
+        f);
+    if (!m->support.handle && !m->support.held) return;
+    fputs("  probes:\n", f);
+    if (m->support.handle)
+        fputs("    - { set: handle }                        # mean displacement\n", f);
+    if (m->support.held)
+        fputs("    - { set: support, sum: reaction }        # force of the support\n", f);
+}
+
+static void put_scene(const lar_meshing *m, FILE *f) {
+    put_head(m, f);
+    put_motion(m, f);
+    put_materials(m, f);
+    put_fix(m, f);
+    put_load(m, f);
+    put_tools(m, f);
+    put_end(m, f);
+}
+
+lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error) {
+    lar_part_file out;
+    lar_status status = lar_part_open(&out, path, error);
+    locale_t before = uselocale(lar_text_locale());
+    if (!status) put_scene(meshing, out.file);
+    uselocale(before);
+    return lar_part_close(&out, status);
+}

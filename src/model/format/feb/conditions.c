@@ -1,0 +1,424 @@
+/* FEBio decks: <Boundary>, <Loads>, <Initial>. See feb.h.
+ *
+ * Signs, as FEBio has them. A pressure p gives the traction -p n, with n the normal that the
+ * order of the face's corners makes (right-hand rule): positive pushes against it. A body load b
+ * gives the force -rho b per volume: a deck writes z = 9.81 for gravity that pulls downwards, so
+ * Lariat's gravity is -b.
+ */
+#include "model/format/feb/feb.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The child that every condition of this kind must have. */
+static lar_status need_child(lar_feb *feb, const xmlNode *parent, const char *name,
+                             const xmlNode **child) {
+    *child = lar_feb_child(parent, name);
+    if (*child) return LAR_OK;
+    return lar_feb_fail(feb, parent, LAR_ERROR_FORMAT, "<%s> has no <%s>; add it",
+                        (const char *)parent->name, name);
+}
+
+/* Nodes of the attribute node_set. *list is owned by the caller, also after a failure. */
+static lar_status read_node_set(lar_feb *feb, const xmlNode *at, lar_node_list *list) {
+    const char *reference;
+    lar_status status = lar_feb_need_attribute(feb, at, "node_set", &reference);
+    return status ? status : lar_feb_node_list(feb, at, reference, list);
+}
+
+/* "x", "y" or "z" as an axis number. */
+static lar_status parse_axis(lar_feb *feb, const xmlNode *at, lar_span word, int *axis) {
+    static const char *const names[] = {"x", "y", "z"};
+    word = lar_span_trim(word);
+    for (*axis = 0; *axis < 3; ++*axis)
+        if (lar_span_equal(word, names[*axis])) return LAR_OK;
+    return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
+                        "the degree of freedom '%.*s' is not one of x, y, z, all that a solid has; "
+                        "remove it",
+                        (int)(word.length < 40 ? word.length : 40), word.at);
+}
+
+static lar_status refuse_type(lar_feb *feb, const xmlNode *at, const char *known) {
+    const char *type = lar_feb_attribute(feb, at, "type");
+    return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
+                        "<%s> of type '%.60s' is not read and would change the answer; Lariat "
+                        "reads %s",
+                        (const char *)at->name, type ? type : "", known);
+}
+
+/* Refuses a flag that asks for something else than FEBio's default. */
+static lar_status refuse_flag(lar_feb *feb, const xmlNode *at, const char *name) {
+    bool set;
+    lar_status status = lar_feb_flag(feb, at, name, false, &set);
+    if (status || !set) return status;
+    return lar_feb_fail(feb, lar_feb_child(at, name), LAR_ERROR_UNSUPPORTED,
+                        "<%s> other than 0 is not read; set it to 0", name);
+}
+
+/* ---- boundary ----------------------------------------------------------------------------------
+ */
+
+/* x_dof, y_dof, z_dof: 0 or 1 each (version 4). */
+static lar_status read_axis_flags(lar_feb *feb, const xmlNode *at, unsigned *axes) {
+    static const char *const names[] = {"x_dof", "y_dof", "z_dof"};
+    lar_status status = LAR_OK;
+    *axes = 0;
+    for (int i = 0; i < 3 && !status; i++) {
+        bool set;
+        status = lar_feb_flag(feb, at, names[i], false, &set);
+        if (!status && set) *axes |= 1u << i;
+    }
+    return status;
+}
+
+/* "x,y,z" in <dofs> (version 3). */
+static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *axes) {
+    lar_feb_list list = lar_feb_list_of(feb, dofs);
+    lar_span word;
+    lar_status status = LAR_OK;
+    *axes = 0;
+    while (!status && lar_feb_list_next(&list, &word)) {
+        int axis;
+        status = parse_axis(feb, dofs, word, &axis);
+        if (!status) *axes |= 1u << axis;
+    }
+    return status;
+}
+
+static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"dofs", "x_dof", "y_dof", "z_dof", NULL};
+    const xmlNode *dofs = lar_feb_child(at, "dofs");
+    unsigned axes;
+    lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
+    lar_node_list nodes = {0};
+    if (!status) status = lar_feb_notice_others(feb, at, known);
+    if (!status) status = read_node_set(feb, at, &nodes);
+    if (!status && (axes == 0 || nodes.count == 0)) {
+        free(nodes.node);
+        return lar_feb_notice(feb, at, "<%s> holds no %s and was left out", (const char *)at->name,
+                              axes ? "node" : "axis");
+    }
+    lar_fix *fix = status ? NULL : LAR_MODEL_APPEND(feb->model, fix);
+    if (!status && !fix) status = lar_feb_no_memory(feb, "the supports");
+    if (status) {
+        free(nodes.node);
+        return status;
+    }
+    *fix = (lar_fix){nodes, axes};
+    return LAR_OK;
+}
+
+/* Its size stands in <value> in version 4, in <scale> in version 3. */
+static lar_status read_move(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"dof", "value", "scale", "relative", "shell_bottom", NULL};
+    const xmlNode *dof, *value = lar_feb_child(at, "value");
+    int axis = 0, curve = 0;
+    double by = 0.0;
+    lar_node_list nodes = {0};
+    lar_status status = need_child(feb, at, "dof", &dof);
+    if (!status) status = parse_axis(feb, dof, lar_feb_text(feb, dof), &axis);
+    if (!status && !value) value = lar_feb_child(at, "scale");
+    if (!status && !value) status = need_child(feb, at, "value", &value);
+    if (!status) status = lar_feb_curve_of(feb, value, &curve);
+    if (!status) status = lar_feb_doubles(feb, value, &by, 1);
+    if (!status) status = refuse_flag(feb, at, "relative");
+    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
+    if (!status) status = read_node_set(feb, at, &nodes);
+    lar_move *move = status || nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
+    if (move) {
+        *move = (lar_move){nodes, 1u << axis, by, curve};
+        return LAR_OK;
+    }
+    free(nodes.node);
+    if (status) return status;
+    return nodes.count ? lar_feb_no_memory(feb, "the supports")
+                       : lar_feb_notice(feb, at, "<%s> holds no node and was left out",
+                                        (const char *)at->name);
+}
+
+static lar_status read_bc(lar_feb *feb, const xmlNode *bc) {
+    static const char known[] =
+        "zero displacement, fixed displacement, fix, prescribed displacement and prescribe";
+    if (!lar_feb_is(bc, "bc"))
+        return lar_feb_fail(feb, bc, LAR_ERROR_UNSUPPORTED,
+                            "<%s> in <Boundary> is not read and would change the answer; Lariat "
+                            "reads <bc>",
+                            (const char *)bc->name);
+    const char *type;
+    lar_status status = lar_feb_need_attribute(feb, bc, "type", &type);
+    if (status) return status;
+    if (strcmp(type, "zero displacement") == 0 || strcmp(type, "fixed displacement") == 0 ||
+        strcmp(type, "fix") == 0)
+        return read_fix(feb, bc);
+    if (strcmp(type, "prescribed displacement") == 0 || strcmp(type, "prescribe") == 0)
+        return read_move(feb, bc);
+    return refuse_type(feb, bc, known);
+}
+
+lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section) {
+    lar_status status = LAR_OK;
+    for (xmlNode *bc = lar_feb_first(section); bc && !status; bc = lar_feb_next(bc))
+        status = read_bc(feb, bc);
+    return status;
+}
+
+/* ---- loads -------------------------------------------------------------------------------------
+ */
+
+/* The force vector and curve of a nodal load of either form. */
+static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *type,
+                                   double force[3], int *curve) {
+    const xmlNode *value, *dof;
+    lar_status status;
+    if (strcmp(type, "nodal_force") == 0) {
+        status = need_child(feb, at, "value", &value);
+        if (!status) status = lar_feb_curve_of(feb, value, curve);
+        if (!status) status = lar_feb_doubles(feb, value, force, 3);
+        return status;
+    }
+    int axis = 0;
+    status = need_child(feb, at, "dof", &dof);
+    if (!status) status = parse_axis(feb, dof, lar_feb_text(feb, dof), &axis);
+    if (!status) status = need_child(feb, at, "scale", &value);
+    if (!status) status = lar_feb_curve_of(feb, value, curve);
+    if (!status) status = lar_feb_doubles(feb, value, &force[axis], 1);
+    return status;
+}
+
+static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"value", "dof", "scale", "relative", "shell_bottom", NULL};
+    const char *type;
+    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
+    if (status) return status;
+    if (strcmp(type, "nodal_force") != 0 && strcmp(type, "nodal_load") != 0)
+        return refuse_type(feb, at, "nodal_force and nodal_load");
+    lar_nodal_load entry = {0};
+    status = read_nodal_force(feb, at, type, entry.force, &entry.curve);
+    if (!status) status = refuse_flag(feb, at, "relative");
+    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
+    if (!status) status = read_node_set(feb, at, &entry.nodes);
+    lar_nodal_load *load = status ? NULL : LAR_MODEL_APPEND(feb->model, load);
+    if (!status && !load) status = lar_feb_no_memory(feb, "the loads");
+    if (status) {
+        free(entry.nodes.node);
+        return status;
+    }
+    *load = entry;
+    return LAR_OK;
+}
+
+/* +1 when the corners go round the face as lar_face_node does (normal outwards), -1 when the
+ * other way, 0 when they do not go round it. */
+static int winding(const lar_mesh *mesh, int32_t face, const int64_t corner[4]) {
+    const int32_t *element = mesh->element[face / 6];
+    int64_t own[4];
+    for (int a = 0; a < 4; a++) own[a] = mesh->node_id[element[lar_face_node[face % 6][a]]];
+    for (int a = 0; a < 4; a++) {
+        if (own[a] != corner[0]) continue;
+        if (own[(a + 2) % 4] != corner[2]) return 0;
+        if (own[(a + 1) % 4] == corner[1] && own[(a + 3) % 4] == corner[3]) return 1;
+        if (own[(a + 3) % 4] == corner[1] && own[(a + 1) % 4] == corner[3]) return -1;
+    }
+    return 0;
+}
+
+/* Sorts the faces of a surface by winding: those outwards to the front of `face`, the others
+ * behind. The mesh's set has the faces in the order of the file. */
+static lar_status split_by_winding(lar_feb *feb, const xmlNode *surface, const lar_set *set,
+                                   int32_t *face, int32_t *outward_count) {
+    int32_t i = 0, front = 0, back = set->count;
+    for (xmlNode *quad = lar_feb_first(surface); quad; quad = lar_feb_next(quad), i++) {
+        int64_t corner[4];
+        lar_status status = lar_feb_ids(feb, quad, corner, 4);
+        if (status) return status;
+        int way = i < set->count ? winding(feb->mesh, set->index[i], corner) : 0;
+        if (way == 0)
+            return lar_feb_fail(feb, quad, LAR_ERROR_FORMAT,
+                                "this face stands twice in its surface, or its corners do not go "
+                                "round it; correct the surface");
+        face[way > 0 ? front++ : --back] = set->index[i];
+    }
+    *outward_count = front;
+    return LAR_OK;
+}
+
+/* Appends `count` faces with one pressure; copies them. */
+static lar_status add_pressure(lar_feb *feb, const int32_t *face, int32_t count, double pressure,
+                               int curve) {
+    if (count == 0) return LAR_OK;
+    int32_t *copy = lar_calloc((size_t)count, sizeof *copy);
+    lar_pressure_load *load = copy ? LAR_MODEL_APPEND(feb->model, pressure) : NULL;
+    if (!load) {
+        free(copy);
+        return lar_feb_no_memory(feb, "the pressures");
+    }
+    memcpy(copy, face, (size_t)count * sizeof *copy);
+    *load = (lar_pressure_load){count, copy, pressure, curve};
+    return LAR_OK;
+}
+
+static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *name, double pressure,
+                                int curve) {
+    const lar_set *set = lar_mesh_find_set(feb->mesh, name, LAR_SET_FACES);
+    const xmlNode *surface = lar_feb_find_surface(feb, name);
+    if (!set || !surface)
+        return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                            "<surface_load> names the surface '%.100s', which the mesh does not "
+                            "define; define it or correct the name",
+                            name);
+    int32_t *face = lar_calloc((size_t)set->count, sizeof *face), outward = 0;
+    if (!face) return lar_feb_no_memory(feb, "the pressures");
+    lar_status status = split_by_winding(feb, surface, set, face, &outward);
+    if (!status) status = add_pressure(feb, face, outward, pressure, curve);
+    if (!status) status = add_pressure(feb, face + outward, set->count - outward, -pressure, curve);
+    if (!status && outward < set->count)
+        status = lar_feb_notice(feb, surface,
+                                "%d faces of surface '%.100s' are listed with their normals into "
+                                "the body; their pressure changes sign, as in FEBio",
+                                (int)(set->count - outward), name);
+    free(face);
+    return status;
+}
+
+static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"pressure", "linear", "symmetric_stiffness", "shell_bottom",
+                                        NULL};
+    const char *type, *surface;
+    const xmlNode *value;
+    int curve = 0;
+    double pressure = 0.0;
+    bool linear = false;
+    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
+    if (!status && strcmp(type, "pressure") != 0) return refuse_type(feb, at, "pressure");
+    if (!status) status = lar_feb_need_attribute(feb, at, "surface", &surface);
+    if (!status) status = need_child(feb, at, "pressure", &value);
+    if (!status) status = lar_feb_curve_of(feb, value, &curve);
+    if (!status) status = lar_feb_doubles(feb, value, &pressure, 1);
+    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
+    if (!status) status = lar_feb_flag(feb, at, "linear", false, &linear);
+    if (!status && linear)
+        status = lar_feb_notice(feb, lar_feb_child(at, "linear"),
+                                "<linear> is left out: the pressure follows the deformed faces");
+    return status ? status : add_pressures(feb, at, surface, pressure, curve);
+}
+
+/* Adds an acceleration -value on one axis. */
+static lar_status add_gravity(lar_feb *feb, const xmlNode *at, int axis, double value, int curve) {
+    lar_model *model = feb->model;
+    if (value == 0.0 && model->gravity[axis] != 0.0) return LAR_OK;
+    if (model->gravity[axis] != 0.0 && model->gravity_curve[axis] != curve)
+        return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
+                            "a second body load acts along %c with another load curve; join the "
+                            "two into one",
+                            "xyz"[axis]);
+    model->gravity[axis] -= value;
+    model->gravity_curve[axis] = curve;
+    return LAR_OK;
+}
+
+/* <x>, <y>, <z> with a curve each, or <force> (version 4, "body force") with one. */
+static lar_status read_body_values(lar_feb *feb, const xmlNode *at) {
+    static const char *const names[] = {"x", "y", "z"};
+    const xmlNode *vector = lar_feb_child(at, "force");
+    double value[3] = {0};
+    int curve = 0;
+    lar_status status = LAR_OK;
+    if (vector) {
+        status = lar_feb_curve_of(feb, vector, &curve);
+        if (!status) status = lar_feb_doubles(feb, vector, value, 3);
+        for (int i = 0; i < 3 && !status; i++)
+            status = add_gravity(feb, vector, i, value[i], curve);
+        return status;
+    }
+    int found = 0;
+    for (int i = 0; i < 3 && !status; i++) {
+        const xmlNode *child = lar_feb_child(at, names[i]);
+        if (!child) continue;
+        found++;
+        status = lar_feb_curve_of(feb, child, &curve);
+        if (!status) status = lar_feb_doubles(feb, child, value, 1);
+        if (!status) status = add_gravity(feb, child, i, value[0], curve);
+    }
+    if (!status && !found)
+        status = lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                              "<body_load> has neither <x>, <y>, <z> nor <force>; add them");
+    return status;
+}
+
+static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
+    static const char *const known[] = {"x", "y", "z", "force", NULL};
+    const char *type, *part = lar_feb_attribute(feb, at, "elem_set");
+    bool whole = true;
+    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
+    if (status) return status;
+    if (strcmp(type, "const") != 0 && strcmp(type, "gravity") != 0 &&
+        strcmp(type, "body force") != 0)
+        return refuse_type(feb, at, "const, gravity and body force");
+    status = lar_feb_notice_others(feb, at, known);
+    if (!status && part && *part) status = lar_feb_is_whole_mesh(feb, at, part, &whole);
+    if (!status && !whole)
+        status = lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
+                              "the body load acts on '%.100s' only; Lariat's gravity acts on the "
+                              "whole model",
+                              part);
+    return status ? status : read_body_values(feb, at);
+}
+
+lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
+    lar_status status = LAR_OK;
+    for (xmlNode *load = lar_feb_first(section); load && !status; load = lar_feb_next(load)) {
+        if (lar_feb_is(load, "nodal_load"))
+            status = read_nodal_load(feb, load);
+        else if (lar_feb_is(load, "surface_load"))
+            status = read_surface_load(feb, load);
+        else if (lar_feb_is(load, "body_load"))
+            status = read_body_load(feb, load);
+        else
+            status = lar_feb_fail(feb, load, LAR_ERROR_UNSUPPORTED,
+                                  "<%s> in <Loads> is not read and would change the answer; Lariat "
+                                  "reads nodal_load, surface_load and body_load",
+                                  (const char *)load->name);
+    }
+    return status;
+}
+
+/* ---- initial -----------------------------------------------------------------------------------
+ */
+
+static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
+    static const char *const known[] = {"value", NULL};
+    const char *type;
+    lar_status status = lar_feb_need_attribute(feb, ic, "type", &type);
+    if (status) return status;
+    if ((!lar_feb_is(ic, "ic") && !lar_feb_is(ic, "init")) ||
+        (strcmp(type, "velocity") != 0 && strcmp(type, "initial velocity") != 0))
+        return refuse_type(feb, ic, "<ic> of type velocity");
+    const xmlNode *value;
+    lar_initial_velocity entry = {0};
+    status = need_child(feb, ic, "value", &value);
+    if (!status && (lar_feb_attribute(feb, value, "lc") || lar_feb_attribute(feb, value, "type")))
+        status = lar_feb_fail(feb, value, LAR_ERROR_UNSUPPORTED,
+                              "an initial velocity with a curve or a map is not read; give it "
+                              "three numbers");
+    if (!status) status = lar_feb_doubles(feb, value, entry.velocity, 3);
+    if (!status) status = lar_feb_notice_others(feb, ic, known);
+    if (!status) status = read_node_set(feb, ic, &entry.nodes);
+    lar_initial_velocity *initial = status ? NULL : LAR_MODEL_APPEND(feb->model, initial);
+    if (!status && !initial) status = lar_feb_no_memory(feb, "the initial velocities");
+    if (status) {
+        free(entry.nodes.node);
+        return status;
+    }
+    *initial = entry;
+    return LAR_OK;
+}
+
+lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section) {
+    lar_status status = LAR_OK;
+    for (xmlNode *ic = lar_feb_first(section); ic && !status; ic = lar_feb_next(ic))
+        status = read_ic(feb, ic);
+    return status;
+}

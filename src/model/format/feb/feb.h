@@ -1,0 +1,147 @@
+/* FEBio decks (.feb, format versions 3.0 and 4.0): what the parts of the reader share.
+ *
+ *     bytes --libxml2--> tree --feb_mesh--> lar_mesh          lar_feb_parse_mesh stops here
+ *                         |---feb_material, feb_curve, feb_conditions--> lar_model
+ *
+ * The whole tree is read first, because a deck's sections refer to each other by name in both
+ * directions (a part to its material, a support to its node set, a load to its curve). After
+ * that every section is visited once. A rule holds throughout: what is not read is either
+ * harmless (solver settings, output), or refused (LAR_ERROR_UNSUPPORTED) when leaving it out
+ * would change the answer, or named in a notice. Nothing is skipped in silence.
+ *
+ * libxml2 runs without network, without entity substitution, without the limits lifted, and stops
+ * at the first <!DOCTYPE: a deck has no use for entities, an attacker has.
+ */
+#ifndef LAR_MODEL_FORMAT_FEB_FEB_H
+#define LAR_MODEL_FORMAT_FEB_FEB_H
+
+#include <libxml/tree.h>
+
+#include "base/text.h"
+#include "model/model.h"
+
+/* One <material>. */
+typedef struct lar_feb_material {
+    int32_t id;
+    const char *name;
+    xmlNode *node;
+    int index; /* in lar_model.material, -1 until an element uses it */
+} lar_feb_material;
+
+/* One <load_controller>. A curve that cannot be read is no error until something uses it. */
+typedef struct lar_feb_controller {
+    int64_t id;
+    xmlNode *node;
+    int curve; /* in lar_model.curve, -1 when `problem` says why not */
+    const char *problem;
+} lar_feb_controller;
+
+typedef struct lar_feb {
+    const char *path;
+    lar_error *error;
+    xmlDoc *document;
+    xmlNode *root;
+    xmlDict *strings; /* owns text that had to be put together */
+
+    lar_mesh *mesh;
+    lar_model *model;   /* NULL when only the mesh is wanted */
+    int constant_curve; /* the curve that is 1 for ever, -1 until wanted */
+
+    int material_count;
+    size_t material_room;
+    lar_feb_material *material;
+    int controller_count;
+    size_t controller_room;
+    lar_feb_controller *controller;
+} lar_feb;
+
+/* ---- xml.c: the tree, its messages and its values --------------------------------------- */
+
+/* Parses the bytes into feb->document and feb->root and checks the version. `feb` is zeroed
+ * before and cleared by lar_feb_clear, also after a failure. */
+lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, lar_error *error);
+void lar_feb_clear(lar_feb *feb);
+
+/* A failure and a notice that begin with FILE:LINE: of an element. */
+lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* A notice for every child of `parent` whose name is not in `known`, which ends with NULL. */
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
+                                 const char *const *known);
+lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
+int lar_feb_line(const xmlNode *at);
+
+/* Child elements: the first, the next sibling, the first with a name. NULL when there is none. */
+xmlNode *lar_feb_first(const xmlNode *parent);
+xmlNode *lar_feb_next(const xmlNode *element);
+xmlNode *lar_feb_child(const xmlNode *parent, const char *name);
+bool lar_feb_is(const xmlNode *element, const char *name);
+
+/* Value of an attribute, NULL when it is missing. Lives as long as `feb`. */
+const char *lar_feb_attribute(lar_feb *feb, const xmlNode *element, const char *name);
+/* The same, missing or empty being an error. */
+lar_status lar_feb_need_attribute(lar_feb *feb, const xmlNode *element, const char *name,
+                                  const char **value);
+/* A whole number in an attribute (an id). */
+lar_status lar_feb_id_attribute(lar_feb *feb, const xmlNode *element, const char *name,
+                                int64_t *value);
+/* Text of an element without white space at both ends; terminated one byte after the untrimmed
+ * text. Lives as long as `feb`. */
+lar_span lar_feb_text(lar_feb *feb, const xmlNode *element);
+
+/* Values separated by commas or white space, with the line where each stands. */
+typedef struct lar_feb_list {
+    const char *at, *end;
+    int line;
+} lar_feb_list;
+lar_feb_list lar_feb_list_of(lar_feb *feb, const xmlNode *element);
+bool lar_feb_list_next(lar_feb_list *list, lar_span *item);
+
+/* Exactly `count` finite numbers, or ids, in the text of an element. */
+lar_status lar_feb_doubles(lar_feb *feb, const xmlNode *element, double *value, int count);
+lar_status lar_feb_ids(lar_feb *feb, const xmlNode *element, int64_t *id, int count);
+/* 0 or 1 in the child `name` of `parent`; `fallback` when there is no such child. */
+lar_status lar_feb_flag(lar_feb *feb, const xmlNode *parent, const char *name, bool fallback,
+                        bool *value);
+
+/* ---- mesh.c ---------------------------------------------------------------------------------- */
+
+/* Reads <Mesh> into feb->mesh. Element tags are material ids, 0 where none is named. Needs the
+ * material table. */
+lar_status lar_feb_read_mesh(lar_feb *feb);
+/* The nodes that a reference names: a node set, or @surface:, @elem_set:, @part_list:. */
+lar_status lar_feb_node_list(lar_feb *feb, const xmlNode *at, const char *reference,
+                             lar_node_list *list);
+/* True in *all when an element reference (set, part, @part_list:, @elem_set:) is the whole mesh. */
+lar_status lar_feb_is_whole_mesh(lar_feb *feb, const xmlNode *at, const char *reference, bool *all);
+/* The <Surface> of that name, NULL when there is none. */
+xmlNode *lar_feb_find_surface(lar_feb *feb, const char *name);
+
+/* ---- material.c ------------------------------------------------------------------------------ */
+
+/* Lists the <material> entries without reading their parameters. */
+lar_status lar_feb_list_materials(lar_feb *feb);
+/* The material that an <Elements> part is made of (its `mat`, else its SolidDomain's), NULL when
+ * none is named; a name that no material bears is an error. */
+lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
+                                 const lar_feb_material **material);
+/* Reads the materials that elements use into the model and assigns them. */
+lar_status lar_feb_read_materials(lar_feb *feb);
+
+/* ---- curve.c --------------------------------------------------------------------------------- */
+
+/* Reads <LoadData>; the model's duration must be known. */
+lar_status lar_feb_read_curves(lar_feb *feb);
+/* The curve that the `lc` of a value names, or the constant one. Refuses values that are maps or
+ * expressions. */
+lar_status lar_feb_curve_of(lar_feb *feb, const xmlNode *value, int *curve);
+
+/* ---- conditions.c ---------------------------------------------------------------------------- */
+
+lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section);
+lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
+lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section);
+
+#endif

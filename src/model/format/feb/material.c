@@ -1,0 +1,209 @@
+/* FEBio decks: <Material> and <MeshDomains>. See feb.h.
+ *
+ * Parameters are converted to those of Lariat's laws:
+ *   neo-Hookean    W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2,
+ *                  mu = E / (2 (1 + v)), lambda = E v / ((1 + v) (1 - 2 v))
+ *   Mooney-Rivlin  W = c1 (I1' - 3) + c2 (I2' - 3) + k/2 (ln J)^2 (pressure_model "default")
+ */
+#include "model/format/feb/feb.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static lar_status list_one(lar_feb *feb, xmlNode *node) {
+    int64_t id;
+    lar_status status = lar_feb_id_attribute(feb, node, "id", &id);
+    if (status) return status;
+    if (id < 1 || id > INT32_MAX)
+        return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
+                            "material id %lld is out of range; number materials from 1",
+                            (long long)id);
+    for (int i = 0; i < feb->material_count; i++)
+        if (feb->material[i].id == id)
+            return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
+                                "a second material has the id %lld; renumber one of them",
+                                (long long)id);
+    enum { MOST = 10000 }; /* the search above is linear */
+    if (feb->material_count >= MOST)
+        return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                            "more than %d materials; remove those that no part uses", MOST);
+    if (!LAR_GROW(feb->material, feb->material_room, feb->material_count))
+        return lar_feb_no_memory(feb, "the materials");
+    const char *name = lar_feb_attribute(feb, node, "name");
+    feb->material[feb->material_count++] =
+        (lar_feb_material){(int32_t)id, name ? name : "", node, -1};
+    return LAR_OK;
+}
+
+lar_status lar_feb_list_materials(lar_feb *feb) {
+    const xmlNode *section = lar_feb_child(feb->root, "Material");
+    xmlNode *node = section ? lar_feb_first(section) : NULL;
+    lar_status status = LAR_OK;
+    for (; node && !status; node = lar_feb_next(node)) {
+        if (lar_feb_is(node, "material"))
+            status = list_one(feb, node);
+        else
+            status = lar_feb_notice(feb, node, "<%s> among the materials was left out",
+                                    (const char *)node->name);
+    }
+    return status;
+}
+
+/* The `mat` that MeshDomains gives the part, NULL when it has none. *at is where it stands. */
+static const char *domain_material(lar_feb *feb, const char *part, const xmlNode **at) {
+    const xmlNode *section = part ? lar_feb_child(feb->root, "MeshDomains") : NULL;
+    const xmlNode *domain = section ? lar_feb_first(section) : NULL;
+    for (; domain; domain = lar_feb_next(domain)) {
+        const char *name = lar_feb_attribute(feb, domain, "name");
+        if (!lar_feb_is(domain, "SolidDomain") || !name || strcmp(name, part) != 0) continue;
+        *at = domain;
+        return lar_feb_attribute(feb, domain, "mat");
+    }
+    return NULL;
+}
+
+lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
+                                 const lar_feb_material **material) {
+    const xmlNode *at = elements;
+    const char *wanted = lar_feb_attribute(feb, elements, "mat");
+    if (!wanted) wanted = domain_material(feb, lar_feb_attribute(feb, elements, "name"), &at);
+    *material = NULL;
+    if (!wanted) return LAR_OK;
+    for (int i = 0; i < feb->material_count && !*material; i++)
+        if (strcmp(feb->material[i].name, wanted) == 0) *material = &feb->material[i];
+    int64_t id;
+    lar_span span = lar_span_trim((lar_span){wanted, strlen(wanted)});
+    if (!*material && lar_span_int64(span, &id))
+        for (int i = 0; i < feb->material_count; i++)
+            if (feb->material[i].id == id) *material = &feb->material[i];
+    /* A file that only lends its mesh may lack its materials. */
+    if (*material || !feb->model) return LAR_OK;
+    return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                        "<%s> names the material '%.100s', which <Material> does not define; "
+                        "define it or correct the name",
+                        (const char *)at->name, wanted);
+}
+
+/* ---- parameters --------------------------------------------------------------------------------
+ */
+
+/* One parameter that does not vary in space or time. A missing one keeps *value when that is
+ * allowed. */
+static lar_status read_parameter(lar_feb *feb, const xmlNode *material, const char *name,
+                                 bool required, double *value) {
+    const xmlNode *child = lar_feb_child(material, name);
+    if (!child && !required) return LAR_OK;
+    if (!child)
+        return lar_feb_fail(feb, material, LAR_ERROR_FORMAT,
+                            "the material has no parameter <%s>; add it", name);
+    const char *type = lar_feb_attribute(feb, child, "type");
+    if ((type && strcmp(type, "const") != 0) || lar_feb_attribute(feb, child, "lc"))
+        return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
+                            "the parameter <%s> varies in space or time, which Lariat does not "
+                            "do; give it one number",
+                            name);
+    return lar_feb_doubles(feb, child, value, 1);
+}
+
+static lar_status read_density(lar_feb *feb, const xmlNode *node, lar_material *material) {
+    material->density = 1.0; /* FEBio's default */
+    if (lar_feb_child(node, "density"))
+        return read_parameter(feb, node, "density", true, &material->density);
+    return lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
+}
+
+static lar_status read_neo_hookean(lar_feb *feb, const xmlNode *node, lar_material *material) {
+    static const char *const known[] = {"density", "E", "v", NULL};
+    double young = 0.0, poisson = 0.0;
+    lar_status status = read_parameter(feb, node, "E", true, &young);
+    if (!status) status = read_parameter(feb, node, "v", true, &poisson);
+    if (status) return status;
+    if (!(poisson > -1.0 && poisson < 0.5))
+        return lar_feb_fail(feb, node, LAR_ERROR_MODEL,
+                            "Poisson's ratio v = %g is not between -1 and 0.5; correct it",
+                            poisson);
+    material->law = LAR_LAW_coupled_neo_hookean;
+    material->parameter[0] = young / (2.0 * (1.0 + poisson));
+    material->parameter[1] = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    return lar_feb_notice_others(feb, node, known);
+}
+
+static lar_status read_mooney_rivlin(lar_feb *feb, const xmlNode *node, lar_material *material) {
+    static const char *const known[] = {"density", "c1", "c2", "k", "pressure_model", NULL};
+    const xmlNode *pressure = lar_feb_child(node, "pressure_model");
+    if (pressure) {
+        lar_span model = lar_feb_text(feb, pressure);
+        if (!lar_span_equal(model, "default") && !lar_span_equal(model, "0"))
+            return lar_feb_fail(feb, pressure, LAR_ERROR_UNSUPPORTED,
+                                "pressure_model '%.*s' is not read; Lariat has FEBio's default, "
+                                "k/2 (ln J)^2",
+                                (int)(model.length < 40 ? model.length : 40), model.at);
+    }
+    material->law = LAR_LAW_mooney_rivlin;
+    lar_status status = read_parameter(feb, node, "c1", true, &material->parameter[0]);
+    if (!status) status = read_parameter(feb, node, "c2", false, &material->parameter[1]);
+    if (!status) status = read_parameter(feb, node, "k", true, &material->parameter[2]);
+    return status ? status : lar_feb_notice_others(feb, node, known);
+}
+
+static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
+    const char *type;
+    lar_status status = lar_feb_need_attribute(feb, entry->node, "type", &type);
+    if (status) return status;
+    entry->index = feb->model->material_count;
+    lar_material *material = LAR_MODEL_APPEND(feb->model, material);
+    if (!material) return lar_feb_no_memory(feb, "the materials");
+    material->name = lar_strdup(entry->name);
+    if (!material->name) return lar_feb_no_memory(feb, "the materials");
+    status = read_density(feb, entry->node, material);
+    if (status) return status;
+    if (strcmp(type, "neo-Hookean") == 0)
+        status = read_neo_hookean(feb, entry->node, material);
+    else if (strcmp(type, "Mooney-Rivlin") == 0)
+        status = read_mooney_rivlin(feb, entry->node, material);
+    else
+        return lar_feb_fail(feb, entry->node, LAR_ERROR_UNSUPPORTED,
+                            "material type '%.60s' is not read; of FEBio's, Lariat has "
+                            "neo-Hookean and Mooney-Rivlin",
+                            type);
+    if (status) return status;
+    char where[300];
+    snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));
+    return lar_material_check(material, where, feb->error);
+}
+
+/* Position in feb->material of a part's tag; tags were made from that table. */
+static int find_tag(const lar_feb *feb, int32_t tag) {
+    for (int i = 0; i < feb->material_count; i++)
+        if (feb->material[i].id == tag) return i;
+    return -1;
+}
+
+lar_status lar_feb_read_materials(lar_feb *feb) {
+    const lar_mesh *mesh = feb->mesh;
+    int32_t *assigned = lar_calloc((size_t)mesh->element_count, sizeof *assigned);
+    if (!assigned) return lar_feb_no_memory(feb, "the materials");
+    feb->model->element_material = assigned;
+    int last = -1;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        if (last < 0 || feb->material[last].id != mesh->element_tag[e])
+            last = find_tag(feb, mesh->element_tag[e]);
+        if (last < 0)
+            return lar_feb_fail(feb, feb->root, LAR_ERROR_MODEL,
+                                "element %lld has no material; give its part one, in "
+                                "<MeshDomains> or by mat=\"...\" in <Elements>",
+                                (long long)mesh->element_id[e]);
+        lar_feb_material *entry = &feb->material[last];
+        lar_status status = entry->index < 0 ? read_material(feb, entry) : LAR_OK;
+        if (status) return status;
+        assigned[e] = entry->index;
+    }
+    lar_status status = LAR_OK;
+    for (int i = 0; i < feb->material_count && !status; i++)
+        if (feb->material[i].index < 0)
+            status = lar_feb_notice(feb, feb->material[i].node,
+                                    "material '%.100s' is not used by any element and was left "
+                                    "out",
+                                    feb->material[i].name);
+    return status;
+}

@@ -1,0 +1,287 @@
+/* FEBio decks: the XML tree, messages with lines, values. See feb.h. */
+#include "model/format/feb/feb.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <libxml/parser.h>
+#include <libxml/parserInternals.h>
+#include <libxml/xmlerror.h>
+
+#include "model/format/xml_starved.h"
+
+/* Called by libxml2 at <!DOCTYPE, before any entity is declared. */
+static void stop_at_doctype(void *context, const xmlChar *name, const xmlChar *external,
+                            const xmlChar *system) {
+    (void)name, (void)external, (void)system;
+    xmlParserCtxt *parser = context;
+    *(int *)parser->_private = parser->input ? parser->input->line : 1;
+    xmlStopParser(parser);
+}
+
+static lar_status parse_tree(lar_feb *feb, xmlParserCtxt *parser, const lar_bytes *bytes) {
+    int doctype_line = 0;
+    parser->_private = &doctype_line;
+    parser->sax->internalSubset = stop_at_doctype;
+    lar_xml_watch watch;
+    lar_xml_watch_begin(&watch);
+    feb->document =
+        xmlCtxtReadMemory(parser, (const char *)bytes->data, (int)bytes->size, NULL, NULL,
+                          XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                              XML_PARSE_NOCDATA | XML_PARSE_BIG_LINES);
+    if (lar_xml_watch_end(&watch)) return lar_feb_no_memory(feb, "the deck");
+    if (doctype_line)
+        return lar_fail(feb->error, LAR_ERROR_FORMAT,
+                        "%s:%d: a document type declaration (<!DOCTYPE) has no place in a FEBio "
+                        "deck; remove it",
+                        feb->path, doctype_line);
+    if (feb->document) return LAR_OK;
+    const xmlError *trouble = xmlCtxtGetLastError(parser);
+    int length = trouble && trouble->message ? (int)strcspn(trouble->message, "\n") : 0;
+    return lar_fail(feb->error, LAR_ERROR_FORMAT,
+                    "%s:%d: not well-formed XML (%.*s); the file may be cut short or damaged, "
+                    "export it again",
+                    feb->path, trouble && trouble->line > 0 ? trouble->line : 1,
+                    length ? length : 12, length ? trouble->message : "no root here");
+}
+
+static lar_status check_version(lar_feb *feb) {
+    if (!lar_feb_is(feb->root, "febio_spec"))
+        return lar_feb_fail(feb, feb->root, LAR_ERROR_FORMAT,
+                            "the file begins with <%s> where a FEBio deck has <febio_spec>; is it "
+                            "a FEBio input file?",
+                            (const char *)feb->root->name);
+    const char *version = "";
+    lar_status status = lar_feb_need_attribute(feb, feb->root, "version", &version);
+    if (status) return status;
+    if (strcmp(version, "3.0") == 0 || strcmp(version, "4.0") == 0) return LAR_OK;
+    return lar_feb_fail(feb, feb->root, LAR_ERROR_UNSUPPORTED,
+                        "format version %.20s of FEBio decks is not read; open the model in FEBio "
+                        "Studio and save it as version 3.0 or 4.0",
+                        version);
+}
+
+lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, lar_error *error) {
+    feb->path = path;
+    feb->error = error;
+    feb->constant_curve = -1;
+    if (bytes->size == 0 || bytes->size > INT_MAX)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: %zu bytes are %s for a FEBio deck; check the file", path, bytes->size,
+                        bytes->size ? "too many (2 GB at most)" : "too few");
+    xmlInitParser();
+    feb->strings = xmlDictCreate();
+    xmlParserCtxt *parser = xmlNewParserCtxt();
+    lar_status status = feb->strings && parser ? parse_tree(feb, parser, bytes)
+                                               : lar_feb_no_memory(feb, "the XML parser");
+    if (parser) xmlFreeParserCtxt(parser);
+    if (status) return status;
+    feb->root = xmlDocGetRootElement(feb->document);
+    if (!feb->root)
+        return lar_fail(error, LAR_ERROR_FORMAT, "%s:1: the file has no XML element; check it",
+                        path);
+    return check_version(feb);
+}
+
+void lar_feb_clear(lar_feb *feb) {
+    if (feb->document) xmlFreeDoc(feb->document);
+    if (feb->strings) xmlDictFree(feb->strings);
+    free(feb->material);
+    free(feb->controller);
+    *feb = (lar_feb){0};
+}
+
+int lar_feb_line(const xmlNode *at) {
+    long line = xmlGetLineNo(at);
+    return line > 0 && line < INT_MAX ? (int)line : 0;
+}
+
+lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status,
+                        const char *format, ...) {
+    char sentence[sizeof feb->error->message];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    return lar_fail(feb->error, status, "%s:%d: %s", feb->path, lar_feb_line(at), sentence);
+}
+
+lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...) {
+    if (!feb->model) return LAR_OK;
+    char sentence[sizeof feb->error->message];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    return lar_model_notice(feb->model, feb->error, "%s:%d: %s", feb->path, lar_feb_line(at),
+                            sentence);
+}
+
+lar_status lar_feb_no_memory(const lar_feb *feb, const char *what) {
+    return lar_fail(feb->error, LAR_ERROR_MEMORY,
+                    "%s: out of memory for %s; use a smaller model or a machine with more memory",
+                    feb->path, what);
+}
+
+static xmlNode *element_from(xmlNode *node) {
+    while (node && node->type != XML_ELEMENT_NODE) node = node->next;
+    return node;
+}
+
+xmlNode *lar_feb_first(const xmlNode *parent) {
+    return element_from(parent->children);
+}
+
+xmlNode *lar_feb_next(const xmlNode *element) {
+    return element_from(element->next);
+}
+
+xmlNode *lar_feb_child(const xmlNode *parent, const char *name) {
+    xmlNode *child = lar_feb_first(parent);
+    while (child && !lar_feb_is(child, name)) child = lar_feb_next(child);
+    return child;
+}
+
+bool lar_feb_is(const xmlNode *element, const char *name) {
+    return strcmp((const char *)element->name, name) == 0;
+}
+
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
+                                 const char *const *known) {
+    lar_status status = LAR_OK;
+    for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
+        const char *const *name = known;
+        while (*name && !lar_feb_is(child, *name)) name++;
+        if (!*name)
+            status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out",
+                                    (const char *)child->name, (const char *)parent->name);
+    }
+    return status;
+}
+
+/* Hands a string of libxml2 over to feb->strings. "" when memory is refused. */
+static const char *keep(lar_feb *feb, xmlChar *text) {
+    const xmlChar *kept = text ? xmlDictLookup(feb->strings, text, -1) : NULL;
+    xmlFree(text);
+    return kept ? (const char *)kept : "";
+}
+
+const char *lar_feb_attribute(lar_feb *feb, const xmlNode *element, const char *name) {
+    const xmlAttr *attribute = xmlHasProp(element, (const xmlChar *)name);
+    if (!attribute) return NULL;
+    const xmlNode *value = attribute->children;
+    if (!value) return "";
+    if (!value->next && value->type == XML_TEXT_NODE)
+        return value->content ? (const char *)value->content : "";
+    return keep(feb, xmlNodeListGetString(feb->document, value, 1));
+}
+
+lar_status lar_feb_need_attribute(lar_feb *feb, const xmlNode *element, const char *name,
+                                  const char **value) {
+    const char *found = lar_feb_attribute(feb, element, name);
+    if (!found || !*found)
+        return lar_feb_fail(feb, element, LAR_ERROR_FORMAT,
+                            "<%s> has no attribute %s; add %s=\"...\"", (const char *)element->name,
+                            name, name);
+    *value = found;
+    return LAR_OK;
+}
+
+lar_status lar_feb_id_attribute(lar_feb *feb, const xmlNode *element, const char *name,
+                                int64_t *value) {
+    const char *text = "";
+    lar_status status = lar_feb_need_attribute(feb, element, name, &text);
+    if (status) return status;
+    lar_span span = lar_span_trim((lar_span){text, strlen(text)});
+    if (lar_span_int64(span, value)) return LAR_OK;
+    return lar_feb_fail(feb, element, LAR_ERROR_FORMAT,
+                        "<%s> has %s=\"%.40s\", which is no whole number; write its number there",
+                        (const char *)element->name, name, text);
+}
+
+/* The text of an element is one node unless comments cut it into pieces. */
+static const char *whole_text(lar_feb *feb, const xmlNode *element) {
+    const xmlNode *only = NULL;
+    for (const xmlNode *child = element->children; child; child = child->next) {
+        if (child->type != XML_TEXT_NODE && child->type != XML_CDATA_SECTION_NODE) continue;
+        if (only) return keep(feb, xmlNodeGetContent(element));
+        only = child;
+    }
+    return only && only->content ? (const char *)only->content : "";
+}
+
+lar_span lar_feb_text(lar_feb *feb, const xmlNode *element) {
+    const char *text = whole_text(feb, element);
+    return lar_span_trim((lar_span){text, strlen(text)});
+}
+
+lar_feb_list lar_feb_list_of(lar_feb *feb, const xmlNode *element) {
+    const char *text = whole_text(feb, element);
+    return (lar_feb_list){text, text + strlen(text), lar_feb_line(element)};
+}
+
+bool lar_feb_list_next(lar_feb_list *list, lar_span *item) {
+    static const char separators[] = ", \t\r\n";
+    while (list->at < list->end && strchr(separators, *list->at)) {
+        if (*list->at == '\n') list->line++;
+        list->at++;
+    }
+    if (list->at >= list->end) return false;
+    item->at = list->at;
+    item->length = strcspn(list->at, separators);
+    list->at += item->length;
+    return true;
+}
+
+/* `count` values by `parse` (which returns false for a bad one). */
+static lar_status read_values(lar_feb *feb, const xmlNode *element, int count, const char *kind,
+                              bool (*parse)(lar_span, void *, int), void *out) {
+    lar_feb_list list = lar_feb_list_of(feb, element);
+    lar_span item;
+    int found = 0;
+    for (; lar_feb_list_next(&list, &item); found++) {
+        if (found >= count) continue;
+        if (!parse(item, out, found))
+            return lar_fail(feb->error, LAR_ERROR_FORMAT,
+                            "%s:%d: '%.*s' in <%s> is no %s; correct it", feb->path, list.line,
+                            (int)(item.length < 40 ? item.length : 40), item.at,
+                            (const char *)element->name, kind);
+    }
+    if (found == count) return LAR_OK;
+    return lar_feb_fail(feb, element, LAR_ERROR_FORMAT,
+                        "<%s> holds %d values where %d belong; correct the line",
+                        (const char *)element->name, found, count);
+}
+
+static bool parse_double(lar_span item, void *out, int i) {
+    double *value = out;
+    return lar_span_double(item, &value[i]) && isfinite(value[i]);
+}
+
+static bool parse_id(lar_span item, void *out, int i) {
+    int64_t *id = out;
+    return lar_span_int64(item, &id[i]);
+}
+
+lar_status lar_feb_doubles(lar_feb *feb, const xmlNode *element, double *value, int count) {
+    return read_values(feb, element, count, "finite number", parse_double, value);
+}
+
+lar_status lar_feb_ids(lar_feb *feb, const xmlNode *element, int64_t *id, int count) {
+    return read_values(feb, element, count, "whole number", parse_id, id);
+}
+
+lar_status lar_feb_flag(lar_feb *feb, const xmlNode *parent, const char *name, bool fallback,
+                        bool *value) {
+    *value = fallback;
+    const xmlNode *child = lar_feb_child(parent, name);
+    if (!child) return LAR_OK;
+    double number = 0.0;
+    lar_status status = lar_feb_doubles(feb, child, &number, 1);
+    if (!status) *value = number != 0.0;
+    return status;
+}

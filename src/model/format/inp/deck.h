@@ -1,0 +1,181 @@
+/* Abaqus and CalculiX decks as models: what the parts of the reader share.
+ *
+ *     bytes --lar_inp_parse--> lar_mesh with its sets      `mesh:` in a scene stops here
+ *       |---walk 1: materials, amplitudes, the step's procedure
+ *       |---walk 2: sections, supports, loads, contact (they name sets, materials and amplitudes)
+ *       '---finish: materials of elements, supports and loads gathered node by node
+ *
+ * One table says of every keyword in which walk it is read, that it is harmless (output, solver
+ * settings), or that it is left out with a notice; every other one is refused by name and line,
+ * because leaving it out would change the answer. The same holds for parameters.
+ *
+ * In a deck what comes later overrides: a step's displacement takes the place of a support that
+ * stands above. So supports are kept per node and axis while the deck is read, and made into lists
+ * at its end.
+ */
+#ifndef LAR_MODEL_FORMAT_INP_DECK_H
+#define LAR_MODEL_FORMAT_INP_DECK_H
+
+#include "model/format/inp/reader.h"
+#include "model/mesh/id_map.h"
+#include "model/model.h"
+
+typedef struct inp_material {
+    char *name;
+    int line;
+    bool has_law, has_density;
+    bool linear;    /* from *ELASTIC */
+    double damping; /* ALPHA of *DAMPING [1/s] */
+    lar_material value;
+    int index; /* in lar_model.material, -1 until a section uses it */
+} inp_material;
+
+typedef struct inp_amplitude {
+    char *name;
+    int curve;
+} inp_amplitude;
+
+/* A displacement that is not zero. */
+typedef struct inp_prescribed {
+    double by;
+    int curve;
+} inp_prescribed;
+
+/* One force or velocity of a node: equal ones become one entry. */
+typedef struct inp_vector {
+    double value[3];
+    int32_t node;
+} inp_vector;
+
+/* Concentrated forces on one curve, summed per node. */
+typedef struct inp_forces {
+    int curve;
+    double (*force)[3];
+} inp_forces;
+
+/* A pressure on one face. */
+typedef struct inp_pressure {
+    int curve;
+    double pressure;
+    int32_t face; /* element * 6 + local face */
+} inp_pressure;
+
+typedef enum inp_procedure { INP_NO_PROCEDURE, INP_STATIC, INP_DYNAMIC } inp_procedure;
+
+typedef struct inp_step {
+    int line;  /* of *STEP, 0: none so far */
+    bool open; /* between *STEP and *END STEP */
+    inp_procedure procedure;
+    double period; /* [s] */
+    int amplitude; /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
+    bool large;    /* NLGEOM */
+    bool supports; /* a *BOUNDARY has been read in it */
+} inp_step;
+
+typedef struct inp_deck {
+    inp_reader reader; /* position, path, error; its mesh members are not used */
+    lar_model *model;
+    lar_mesh *mesh;
+    lar_id_map nodes, elements;
+
+    size_t material_count, material_room;
+    inp_material *material;
+    int64_t current; /* material that options belong to, -1: none */
+    size_t amplitude_count, amplitude_room;
+    inp_amplitude *amplitude;
+
+    inp_step step;
+    int constant, ramp; /* curves, -1 until wanted */
+
+    int32_t *hold; /* [nodes][3]: 0 free, 1 fixed, 2 + index into `prescribed` */
+    size_t prescribed_count, prescribed_room;
+    inp_prescribed *prescribed;
+    size_t forces_count, forces_room;
+    inp_forces *forces;
+    double (*velocity)[3]; /* of *INITIAL CONDITIONS, NULL: none */
+    size_t pressure_count, pressure_room;
+    inp_pressure *pressure;
+    int gravity_line; /* of the first GRAV, 0: none */
+    char *heavy;      /* [elements]: GRAV acts on it */
+    double gravity[3];
+    int gravity_curve;
+} inp_deck;
+
+/* ---- values.c: what every card needs ------------------------------------------------- */
+
+/* FILE:LINE: and the sentence; a notice likewise. */
+lar_status inp_fail(const inp_deck *deck, int line, lar_status status, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+lar_status inp_notice(const inp_deck *deck, int line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+lar_status inp_no_memory(const inp_deck *deck, const char *what);
+/* As much of a word as a message takes, for %.*s. */
+int inp_shown(lar_span word);
+
+/* Refuses a card with another parameter than these; the list ends with NULL. */
+lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *const *known);
+/* The value of a parameter that must be there. */
+lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name, lar_span *value);
+
+/* Fields of a data line, trimmed; at most `most`, more are an error. */
+lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int most, int *count);
+/* A finite number, or `fallback` where the field is empty or not there and that is allowed. */
+lar_status inp_number(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
+                      double *value);
+lar_status inp_optional(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
+                        double fallback, double *value);
+
+/* The set of that name, in any case of letters and with or without its instance, or NULL. */
+const lar_set *inp_mesh_set(const inp_deck *deck, lar_span name, lar_set_kind kind);
+/* What a field names: a node or a node set, an element or an element set. *index points into the
+ * mesh or to `own`. Naming costs: few bytes could ask for any amount of work. */
+lar_status inp_nodes(inp_deck *deck, lar_span field, int32_t *own, const int32_t **index,
+                     int32_t *count);
+lar_status inp_elements(inp_deck *deck, lar_span field, int32_t *own, const int32_t **index,
+                        int32_t *count);
+/* The faces of a surface; `what` names the user in messages. */
+lar_status inp_faces(inp_deck *deck, lar_span field, const lar_set **set);
+
+/* The curve of a load: AMPLITUDE of its card, else what the step says. */
+lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve);
+/* Refuses a load that stands outside of a step. */
+lar_status inp_in_step(const inp_deck *deck, const inp_card *card);
+
+/* ---- material.c -------------------------------------------------------------------------- */
+
+lar_status inp_read_material(inp_deck *deck, const inp_card *card);
+lar_status inp_read_elastic(inp_deck *deck, const inp_card *card);
+lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card);
+lar_status inp_read_density(inp_deck *deck, const inp_card *card);
+lar_status inp_read_damping(inp_deck *deck, const inp_card *card);
+lar_status inp_read_section(inp_deck *deck, const inp_card *card);
+/* Densities, notices and the damping of what sections use. */
+lar_status inp_finish_materials(inp_deck *deck);
+
+/* ---- conditions.c ------------------------------------------------------------------------ */
+
+lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card);
+lar_status inp_read_boundary(inp_deck *deck, const inp_card *card);
+lar_status inp_read_initial(inp_deck *deck, const inp_card *card);
+lar_status inp_finish_supports(inp_deck *deck);
+/* The nodes with a vector that is not zero, sorted by vector; *vector is the caller's. */
+lar_status inp_sort_vectors(const inp_deck *deck, const double (*value)[3], inp_vector **vector,
+                            int32_t *count);
+/* Nodes of the run of equal vectors that begins at `first`; *end is behind it. */
+lar_status inp_take_run(const inp_deck *deck, const inp_vector *vector, int32_t count,
+                        int32_t first, lar_node_list *nodes, int32_t *end);
+
+/* ---- loads.c ----------------------------------------------------------------------------- */
+
+lar_status inp_read_cload(inp_deck *deck, const inp_card *card);
+lar_status inp_read_dload(inp_deck *deck, const inp_card *card);
+lar_status inp_read_dsload(inp_deck *deck, const inp_card *card);
+lar_status inp_finish_loads(inp_deck *deck);
+
+/* ---- contact.c --------------------------------------------------------------------------- */
+
+lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card);
+lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card);
+lar_status inp_read_friction(inp_deck *deck, const inp_card *card);
+
+#endif

@@ -1,0 +1,332 @@
+/* Abaqus and CalculiX decks: materials and sections. See deck.h.
+ *
+ * Their parameters and ours:
+ *   *ELASTIC E, nu                  neo-Hookean with the same G and K: equal at small strain
+ *   *HYPERELASTIC, NEO HOOKE        U = C10 (I1' - 3) + (J - 1)^2 / D1 is neo-Hookean with
+ *                                   G = 2 C10, K = 2 / D1
+ *   *HYPERELASTIC, MOONEY-RIVLIN    U = C10 (I1' - 3) + C01 (I2' - 3) + (J - 1)^2 / D1; Lariat's
+ * has K/2 (ln J)^2, equal where the volume changes little
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "model/format/inp/deck.h"
+#include "model/rest.h"
+
+static inp_material *find_material(const inp_deck *deck, lar_span name) {
+    for (size_t i = 0; i < deck->material_count; i++)
+        if (lar_span_equal_nocase(name, deck->material[i].name)) return &deck->material[i];
+    return NULL;
+}
+
+lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"NAME", "RTOL", "DEPENDENCIES", NULL};
+    enum { MOST = 10000 }; /* they are looked up by walking the list */
+    lar_span name;
+    lar_status status = inp_only(deck, card, known);
+    if (!status) status = inp_need(deck, card, "NAME", &name);
+    if (status) return status;
+    if (find_material(deck, name))
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "a second *MATERIAL is called '%.*s'; rename one of them", inp_shown(name),
+                        name.at);
+    if (deck->material_count >= MOST)
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "more than %d materials; remove those that no section uses", MOST);
+    char *copy = lar_strndup(name.at, name.length);
+    if (!copy || !LAR_GROW(deck->material, deck->material_room, deck->material_count)) {
+        free(copy);
+        return inp_no_memory(deck, "the materials");
+    }
+    deck->current = (int64_t)deck->material_count;
+    deck->material[deck->material_count++] =
+        (inp_material){.name = copy, .line = card->line, .index = -1};
+    return LAR_OK;
+}
+
+/* The material that an option belongs to, and its one line of numbers. More lines are values at
+ * other temperatures. */
+static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *field, int most,
+                              int *count, inp_material **material) {
+    lar_span line;
+    if (deck->current < 0)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "*%.*s stands outside of a material; put it behind its *MATERIAL",
+                        inp_shown(card->keyword), card->keyword.at);
+    *material = &deck->material[deck->current];
+    if (!inp_data_line(&deck->reader, &line))
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT, "*%.*s has no line of numbers; add it",
+                        inp_shown(card->keyword), card->keyword.at);
+    lar_status status = inp_fields(deck, line, field, most, count);
+    if (!status && inp_data_line(&deck->reader, &line))
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                        "*%.*s depends on temperature or other fields, which Lariat does not have; "
+                        "keep one line",
+                        inp_shown(card->keyword), card->keyword.at);
+    return status;
+}
+
+static lar_status take_law(inp_deck *deck, const inp_card *card, inp_material *material,
+                           lar_law law) {
+    if (material->has_law)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "the material '%.60s' has a second law; keep one of the two",
+                        material->name);
+    material->has_law = true;
+    material->line = card->line;
+    material->value.law = law;
+    return LAR_OK;
+}
+
+/* The law as a whole: moduli that are positive. The density is not known yet. */
+static lar_status check_law(const inp_deck *deck, const inp_material *material) {
+    char where[300];
+    lar_material tried = material->value;
+    tried.density = 1.0;
+    snprintf(where, sizeof where, "%.200s:%d", deck->reader.path, material->line);
+    return lar_material_check(&tried, where, deck->reader.error);
+}
+
+lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"TYPE", NULL};
+    lar_span type, field[3];
+    int count;
+    inp_material *material;
+    double young, poisson;
+    lar_status status = inp_only(deck, card, known);
+    if (status) return status;
+    if (inp_parameter(card, "TYPE", &type) && !lar_span_equal_nocase(type, "ISO") &&
+        !lar_span_equal_nocase(type, "ISOTROPIC"))
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "*ELASTIC of type '%.*s' is not read; Lariat's tissue is isotropic "
+                        "(TYPE=ISO)",
+                        inp_shown(type), type.at);
+    status = read_option(deck, card, field, 3, &count, &material);
+    if (!status) status = inp_number(deck, field, count, 0, "Young's modulus", &young);
+    if (!status) status = inp_number(deck, field, count, 1, "Poisson's ratio", &poisson);
+    if (!status) status = take_law(deck, card, material, LAR_LAW_neo_hookean);
+    if (status) return status;
+    if (!(poisson > -1.0 && poisson < 0.5))
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL,
+                        "Poisson's ratio %g is not between -1 and 0.5; correct it", poisson);
+    material->linear = true;
+    lar_material_from_young(&material->value, young, poisson);
+    return check_law(deck, material);
+}
+
+static lar_status read_constants(inp_deck *deck, const inp_card *card, inp_material *material,
+                                 const lar_span *field, int count, bool mooney) {
+    double c10, c01 = 0.0, d1 = 0.0;
+    int last = mooney ? 2 : 1;
+    lar_status status = inp_number(deck, field, count, 0, "C10", &c10);
+    if (!status && mooney) status = inp_number(deck, field, count, 1, "C01", &c01);
+    if (!status) status = inp_optional(deck, field, count, last, "D1", 0.0, &d1);
+    if (status) return status;
+    if (!(d1 > 0.0))
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "D1 is %g, which asks for a material that cannot change its volume; give "
+                        "it D1 = 2 / K, with a bulk modulus K of some hundred times C10",
+                        d1);
+    bool plain = c01 == 0.0; /* then our law is theirs to the letter */
+    status = take_law(deck, card, material, plain ? LAR_LAW_neo_hookean : LAR_LAW_mooney_rivlin);
+    if (status) return status;
+    double *p = material->value.parameter;
+    if (plain) {
+        p[0] = 2.0 * c10;
+        p[1] = 2.0 / d1;
+    } else {
+        p[0] = c10;
+        p[1] = c01;
+        p[2] = 2.0 / d1;
+    }
+    return check_law(deck, material);
+}
+
+lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"NEO HOOKE", "MOONEY-RIVLIN", "MODULI", NULL};
+    lar_span ignored, field[4];
+    int count;
+    inp_material *material;
+    bool mooney = inp_parameter(card, "MOONEY-RIVLIN", &ignored);
+    if (!mooney && !inp_parameter(card, "NEO HOOKE", &ignored))
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "this kind of *HYPERELASTIC is not read; Lariat has NEO HOOKE and "
+                        "MOONEY-RIVLIN, with constants");
+    lar_status status = inp_only(deck, card, known);
+    if (!status) status = read_option(deck, card, field, 4, &count, &material);
+    return status ? status : read_constants(deck, card, material, field, count, mooney);
+}
+
+lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {NULL};
+    lar_span field[2];
+    int count;
+    inp_material *material;
+    lar_status status = inp_only(deck, card, known);
+    if (!status) status = read_option(deck, card, field, 2, &count, &material);
+    if (!status) status = inp_number(deck, field, count, 0, "a density", &material->value.density);
+    if (status) return status;
+    if (!(material->value.density > 0.0))
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL,
+                        "the density is %g; it must be positive", material->value.density);
+    material->has_density = true;
+    return LAR_OK;
+}
+
+/* Rayleigh damping: ALPHA in proportion to mass, as Lariat's. */
+lar_status inp_read_damping(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"ALPHA", "BETA", NULL};
+    lar_span alpha, beta;
+    double value = 0.0, other = 0.0;
+    lar_status status = inp_only(deck, card, known);
+    if (status) return status;
+    if (deck->current < 0)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "*DAMPING stands outside of a material; put it behind its *MATERIAL");
+    if (inp_parameter(card, "ALPHA", &alpha))
+        status = inp_number(deck, &alpha, 1, 0, "ALPHA, a number in 1/s", &value);
+    if (!status && inp_parameter(card, "BETA", &beta))
+        status = inp_number(deck, &beta, 1, 0, "BETA, a number", &other);
+    if (status) return status;
+    if (other != 0.0 || value < 0.0)
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "Lariat damps in proportion to mass only; leave BETA out and give ALPHA, "
+                        "not negative");
+    deck->material[deck->current].damping = value;
+    return LAR_OK;
+}
+
+/* ---- sections ------------------------------------------------------------------------------ */
+
+/* Puts a material into the model when the first section uses it. */
+static lar_status use_material(inp_deck *deck, inp_material *material) {
+    if (material->index >= 0) return LAR_OK;
+    if (!material->has_law)
+        return inp_fail(deck, material->line, LAR_ERROR_MODEL,
+                        "the material '%.60s' has no law; give it *ELASTIC or *HYPERELASTIC",
+                        material->name);
+    int index = deck->model->material_count;
+    lar_material *made = LAR_MODEL_APPEND(deck->model, material);
+    if (!made) return inp_no_memory(deck, "the materials");
+    *made = material->value;
+    made->name = lar_strdup(material->name);
+    if (!made->name) return inp_no_memory(deck, "the materials");
+    material->index = index;
+    return LAR_OK;
+}
+
+lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"ELSET", "MATERIAL", "CONTROLS", NULL};
+    lar_span name, elements, ignored;
+    const int32_t *index;
+    int32_t own, count;
+    lar_status status = inp_only(deck, card, known);
+    if (!status) status = inp_need(deck, card, "ELSET", &elements);
+    if (!status) status = inp_need(deck, card, "MATERIAL", &name);
+    if (status) return status;
+    inp_material *material = find_material(deck, name);
+    deck->reader.line = card->line;
+    if (!material)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "there is no *MATERIAL called '%.*s'; define it or correct the name",
+                        inp_shown(name), name.at);
+    status = inp_elements(deck, elements, &own, &index, &count);
+    if (!status) status = use_material(deck, material);
+    if (!status && inp_parameter(card, "CONTROLS", &ignored))
+        status = inp_notice(deck, card->line, "CONTROLS of *SOLID SECTION was left out");
+    for (int32_t i = 0; i < count && !status; i++) {
+        int32_t *assigned = &deck->model->element_material[index[i]];
+        if (*assigned >= 0 && *assigned != material->index)
+            status = inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                              "element %lld gets a second material; it stands in two sections",
+                              (long long)deck->mesh->element_id[index[i]]);
+        *assigned = material->index;
+    }
+    return status;
+}
+
+/* ---- the end of the deck ------------------------------------------------------------------- */
+
+static lar_status notice_law(inp_deck *deck, const inp_material *material) {
+    if (material->index < 0)
+        return inp_notice(deck, material->line,
+                          "material '%.60s' is not used by any section and was left out",
+                          material->name);
+    if (material->linear)
+        return inp_notice(deck, material->line,
+                          "material '%.60s' is linear elastic; Lariat takes the neo-Hookean law "
+                          "with the same moduli, which is equal at small strain only",
+                          material->name);
+    if (material->value.law == LAR_LAW_mooney_rivlin)
+        return inp_notice(deck, material->line,
+                          "material '%.60s': Lariat's Mooney-Rivlin law answers a change of volume "
+                          "by K/2 (ln J)^2 instead of (J - 1)^2 / D1, which is equal where the "
+                          "volume changes little",
+                          material->name);
+    return LAR_OK;
+}
+
+/* A static answer does not depend on density unless gravity pulls, and decks leave it out: then a
+ * shear wave shall cross the body ten times in the step, whatever the deck's units are. */
+static lar_status choose_density(inp_deck *deck, const inp_material *material) {
+    enum { PERIODS = 10 };
+    lar_model *model = deck->model;
+    if (deck->step.procedure != INP_STATIC || deck->gravity_line > 0)
+        return inp_fail(deck, material->line, LAR_ERROR_MODEL,
+                        "the material '%.60s' has no density; give it *DENSITY", material->name);
+    for (int i = 0; i < model->material_count; i++) model->material[i].density = 1.0;
+    double wanted = deck->step.period / PERIODS / lar_model_slow_period(model);
+    for (int i = 0; i < model->material_count; i++) model->material[i].density = wanted * wanted;
+    return inp_notice(deck, material->line,
+                      "no *DENSITY: the static answer does not depend on it, Lariat takes %.3g for "
+                      "all materials",
+                      wanted * wanted);
+}
+
+static lar_status finish_densities(inp_deck *deck) {
+    const inp_material *missing = NULL, *given = NULL;
+    for (size_t i = 0; i < deck->material_count; i++) {
+        const inp_material *material = &deck->material[i];
+        if (material->index < 0) continue;
+        if (material->has_density)
+            given = material;
+        else if (!missing)
+            missing = material;
+    }
+    if (!missing) return LAR_OK;
+    if (given)
+        return inp_fail(deck, missing->line, LAR_ERROR_MODEL,
+                        "the material '%.60s' has no density, others have; give it *DENSITY",
+                        missing->name);
+    return choose_density(deck, missing);
+}
+
+static lar_status finish_damping(inp_deck *deck) {
+    const inp_material *first = NULL;
+    for (size_t i = 0; i < deck->material_count; i++) {
+        const inp_material *material = &deck->material[i];
+        if (material->index < 0) continue;
+        if (first && first->damping != material->damping)
+            return inp_fail(deck, material->line, LAR_ERROR_UNSUPPORTED,
+                            "the materials '%.60s' and '%.60s' have different *DAMPING; Lariat has "
+                            "one for the whole model",
+                            first->name, material->name);
+        first = material;
+    }
+    deck->model->damping = first ? first->damping : 0.0;
+    return LAR_OK;
+}
+
+lar_status inp_finish_materials(inp_deck *deck) {
+    for (int32_t e = 0; e < deck->mesh->element_count; e++)
+        if (deck->model->element_material[e] < 0)
+            return lar_fail(deck->reader.error, LAR_ERROR_MODEL,
+                            "%s: element %lld has no material; put it into a *SOLID SECTION",
+                            deck->reader.path, (long long)deck->mesh->element_id[e]);
+    lar_status status = finish_densities(deck);
+    if (!status) status = finish_damping(deck);
+    for (size_t i = 0; i < deck->material_count && !status; i++)
+        status = notice_law(deck, &deck->material[i]);
+    return status;
+}

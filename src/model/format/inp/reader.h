@@ -1,0 +1,98 @@
+/* Inside the Abaqus reader: cards, and the sets they name.
+ *
+ *     *ELEMENT, TYPE=C3D8, ELSET=EB1      a card: keyword and parameters
+ *     1, 1, 2, 7, 6, 31, 32, 37, 36       its data lines
+ *
+ * The file is walked three times: nodes and elements, then sets (they may name anything above or
+ * below), then surfaces (they may name any set). Keywords that say nothing about the mesh are
+ * passed over.
+ */
+#ifndef LAR_MODEL_FORMAT_INP_READER_H
+#define LAR_MODEL_FORMAT_INP_READER_H
+
+#include "base/text.h"
+#include "model/mesh/builder.h"
+
+/* A keyword line, continuation lines joined. */
+typedef struct inp_card {
+    char text[1024];
+    lar_span keyword; /* without the star */
+    lar_span parameters;
+    int line;
+} inp_card;
+
+typedef struct inp_entry {
+    int64_t id;
+    int line;
+} inp_entry;
+
+typedef struct inp_set {
+    char *name;
+    bool of_nodes;
+    int32_t tag; /* element sets on *ELEMENT lines: 1, 2, ... ; 0 for others */
+    size_t count, capacity;
+    inp_entry *entry;
+} inp_set;
+
+/* An element that carries no volume; its nodes are kept when it is a quadrilateral. */
+typedef struct inp_boundary {
+    int64_t id;
+    int64_t node_ids[4];
+    bool is_quad;
+    int line;
+} inp_boundary;
+
+typedef struct inp_ids {
+    size_t count, capacity;
+    int64_t *id;
+} inp_ids;
+
+typedef struct inp_reader {
+    const char *path;
+    lar_text text;
+    int line; /* of the last data line */
+    lar_error *error;
+    lar_mesh_builder *builder;
+    int part_count, instance_count;
+    int32_t tag_count;
+
+    inp_ids nodes, elements; /* every id of the file; ascending after the first walk */
+    size_t boundary_count, boundary_capacity;
+    inp_boundary *boundary; /* ascending id after the first walk */
+    size_t set_count, set_capacity;
+    inp_set *set;
+
+    /* Set entries that the file may still ask for: a set may contain another one twice, and so
+     * on, and few bytes could ask for any amount. */
+    size_t entries_left;
+} inp_reader;
+
+/* Reads a keyword line; a comma at its end continues it. False at the end of the file, and when
+ * something else stands there (*status then says so). */
+bool inp_next_card(inp_reader *reader, inp_card *card, lar_status *status);
+
+/* Next data line of the card; false at the next card or the end. */
+bool inp_data_line(inp_reader *reader, lar_span *line);
+
+/* Value of a parameter ("" when it has none); false when the card does not have it. */
+bool inp_parameter(const inp_card *card, const char *name, lar_span *value);
+
+/* The set, made when new. */
+lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set);
+inp_set *inp_find_set(const inp_reader *reader, lar_span name, bool of_nodes);
+lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line);
+
+/* Fails with "expected WHAT, found 'text'". */
+lar_status inp_expected(inp_reader *reader, int line, const char *what, lar_span found);
+
+/* Our local face of the digit in S1 to S6 or P1 to P6; -1: no such face. */
+int inp_face_of(char digit);
+
+/* *NSET and *ELSET, *SURFACE. */
+lar_status inp_read_nset(inp_reader *reader, const inp_card *card);
+lar_status inp_read_elset(inp_reader *reader, const inp_card *card);
+lar_status inp_read_surface(inp_reader *reader, const inp_card *card);
+/* Hands the sets to the builder. */
+lar_status inp_build_sets(inp_reader *reader);
+
+#endif

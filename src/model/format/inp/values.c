@@ -1,0 +1,231 @@
+/* Abaqus and CalculiX decks: messages, fields, names. See deck.h. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "model/format/inp/deck.h"
+
+/* ---- messages ------------------------------------------------------------------------------ */
+
+lar_status inp_fail(const inp_deck *deck, int line, lar_status status, const char *format, ...) {
+    char text[sizeof deck->reader.error->message];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return lar_fail(deck->reader.error, status, "%s:%d: %s", deck->reader.path, line, text);
+}
+
+lar_status inp_notice(const inp_deck *deck, int line, const char *format, ...) {
+    char text[sizeof deck->reader.error->message];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return lar_model_notice(deck->model, deck->reader.error, "%s:%d: %s", deck->reader.path, line,
+                            text);
+}
+
+lar_status inp_no_memory(const inp_deck *deck, const char *what) {
+    return lar_fail(deck->reader.error, LAR_ERROR_MEMORY,
+                    "%s: no memory for %s; close other programs", deck->reader.path, what);
+}
+
+int inp_shown(lar_span word) {
+    return word.length < 60 ? (int)word.length : 60;
+}
+
+/* ---- parameters ---------------------------------------------------------------------------- */
+
+lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *const *known) {
+    lar_span rest = card->parameters, one, key, value;
+    while (rest.length > 0) {
+        lar_span_split(rest, ',', &one, &rest);
+        lar_span_split(one, '=', &key, &value);
+        key = lar_span_trim(key);
+        bool found = key.length == 0;
+        for (int i = 0; known[i] && !found; i++) found = lar_span_equal_nocase(key, known[i]);
+        if (!found)
+            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                            "the parameter %.*s of *%.*s is not read and could change the answer; "
+                            "remove it",
+                            inp_shown(key), key.at, inp_shown(card->keyword), card->keyword.at);
+    }
+    return LAR_OK;
+}
+
+lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name, lar_span *value) {
+    if (inp_parameter(card, name, value) && value->length > 0) return LAR_OK;
+    return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                    "*%.*s has no %s; add %s=", inp_shown(card->keyword), card->keyword.at, name,
+                    name);
+}
+
+/* ---- data lines ---------------------------------------------------------------------------- */
+
+lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int most, int *count) {
+    lar_span rest = line;
+    *count = 0;
+    for (bool more = true; more && rest.length > 0;) {
+        lar_span one;
+        more = lar_span_split(rest, ',', &one, &rest);
+        one = lar_span_trim(one);
+        if (*count == most) {
+            if (one.length == 0) continue;
+            return inp_expected(&deck->reader, deck->reader.line, "the end of the line", one);
+        }
+        field[(*count)++] = one;
+    }
+    return LAR_OK;
+}
+
+lar_status inp_number(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
+                      double *value) {
+    lar_span nothing = {"", 0}, text = at < count ? field[at] : nothing;
+    if (lar_span_double(text, value) && isfinite(*value)) return LAR_OK;
+    return inp_expected(&deck->reader, deck->reader.line, what, text);
+}
+
+lar_status inp_optional(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
+                        double fallback, double *value) {
+    *value = fallback;
+    if (at >= count || field[at].length == 0) return LAR_OK;
+    return inp_number(deck, field, count, at, what, value);
+}
+
+/* ---- names --------------------------------------------------------------------------------- */
+
+static const lar_set *find_set(const lar_mesh *mesh, lar_span name, lar_set_kind kind) {
+    for (int32_t i = 0; i < mesh->set_count; i++)
+        if (mesh->set[i].kind == kind && lar_span_equal_nocase(name, mesh->set[i].name))
+            return &mesh->set[i];
+    return NULL;
+}
+
+/* "Part-1-1.Wall": behind the instance's name. */
+static lar_span without_instance(lar_span name) {
+    size_t dot = name.length;
+    while (dot > 0 && name.at[dot - 1] != '.') dot--;
+    return (lar_span){name.at + dot, name.length - dot};
+}
+
+static lar_span without_quotes(lar_span name) {
+    if (name.length < 2 || name.at[0] != '"' || name.at[name.length - 1] != '"') return name;
+    return (lar_span){name.at + 1, name.length - 2};
+}
+
+const lar_set *inp_mesh_set(const inp_deck *deck, lar_span name, lar_set_kind kind) {
+    name = without_quotes(name);
+    const lar_set *set = find_set(deck->mesh, name, kind);
+    return set ? set : find_set(deck->mesh, without_instance(name), kind);
+}
+
+static lar_status spend(inp_deck *deck, size_t count) {
+    if (count <= deck->reader.entries_left) {
+        deck->reader.entries_left -= count;
+        return LAR_OK;
+    }
+    return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                    "the conditions name the same nodes or elements more often than such a deck "
+                    "can mean; remove those that are not used");
+}
+
+static lar_status find_many(inp_deck *deck, lar_span field, bool of_nodes, int32_t *own,
+                            const int32_t **index, int32_t *count) {
+    const char *what = of_nodes ? "node" : "element";
+    int64_t id;
+    if (lar_span_int64(field, &id) || lar_span_int64(without_instance(field), &id)) {
+        *own = lar_id_map_find(of_nodes ? &deck->nodes : &deck->elements, id);
+        *index = own;
+        *count = 1;
+        if (*own >= 0) return LAR_OK;
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_FORMAT,
+                        "there is no %s %lld that %s; correct the number", what, (long long)id,
+                        of_nodes ? "belongs to a hexahedron" : "is a hexahedron");
+    }
+    const lar_set *set = inp_mesh_set(deck, field, of_nodes ? LAR_SET_NODES : LAR_SET_ELEMENTS);
+    if (!set)
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_FORMAT,
+                        "'%.*s' is neither a number nor a set of %ss of the hexahedra; define it "
+                        "or correct the name",
+                        inp_shown(field), field.at, what);
+    *index = set->index;
+    *count = set->count;
+    return spend(deck, (size_t)set->count);
+}
+
+lar_status inp_nodes(inp_deck *deck, lar_span field, int32_t *own, const int32_t **index,
+                     int32_t *count) {
+    return find_many(deck, field, true, own, index, count);
+}
+
+lar_status inp_elements(inp_deck *deck, lar_span field, int32_t *own, const int32_t **index,
+                        int32_t *count) {
+    return find_many(deck, field, false, own, index, count);
+}
+
+lar_status inp_faces(inp_deck *deck, lar_span field, const lar_set **set) {
+    *set = inp_mesh_set(deck, field, LAR_SET_FACES);
+    if (*set) return spend(deck, (size_t)(*set)->count);
+    bool nodes = inp_mesh_set(deck, field, LAR_SET_NODES) != NULL;
+    return inp_fail(deck, deck->reader.line, nodes ? LAR_ERROR_UNSUPPORTED : LAR_ERROR_FORMAT,
+                    nodes ? "the surface '%.*s' is one of nodes; define it by faces of elements "
+                            "(*SURFACE, TYPE=ELEMENT)"
+                          : "there is no surface '%.*s' of faces; define it (*SURFACE) or correct "
+                            "the name",
+                    inp_shown(field), field.at);
+}
+
+/* ---- curves -------------------------------------------------------------------------------- */
+
+static lar_status add_curve(inp_deck *deck, const lar_curve *like, int *curve) {
+    int index = deck->model->curve_count;
+    lar_curve *made = LAR_MODEL_APPEND(deck->model, curve);
+    if (!made) return inp_no_memory(deck, "a curve");
+    *made = *like;
+    *curve = index;
+    return LAR_OK;
+}
+
+/* 1 from the start, or from 0 to 1 over the step. */
+static lar_status step_curve(inp_deck *deck, bool ramps, int *curve) {
+    int *known = ramps ? &deck->ramp : &deck->constant;
+    lar_curve made = {.kind = LAR_CURVE_RAMP};
+    lar_status status = LAR_OK;
+    if (*known < 0 && ramps) {
+        made = (lar_curve){.kind = LAR_CURVE_TABLE, .shape = LAR_CURVE_LINEAR, .count = 2};
+        made.point = lar_calloc(2, sizeof *made.point);
+        if (!made.point) return inp_no_memory(deck, "a curve");
+        made.point[1][0] = deck->step.period;
+        made.point[1][1] = 1.0;
+    }
+    if (*known < 0) status = add_curve(deck, &made, known);
+    if (status) free(made.point);
+    *curve = *known;
+    return status;
+}
+
+lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve) {
+    lar_span name;
+    bool ramps =
+        deck->step.amplitude ? deck->step.amplitude == 2 : deck->step.procedure == INP_STATIC;
+    if (!inp_parameter(card, "AMPLITUDE", &name)) return step_curve(deck, ramps, curve);
+    for (size_t i = 0; i < deck->amplitude_count; i++)
+        if (lar_span_equal_nocase(name, deck->amplitude[i].name)) {
+            *curve = deck->amplitude[i].curve;
+            return LAR_OK;
+        }
+    return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                    "there is no *AMPLITUDE called '%.*s'; define it or correct the name",
+                    inp_shown(name), name.at);
+}
+
+lar_status inp_in_step(const inp_deck *deck, const inp_card *card) {
+    if (deck->step.open) return LAR_OK;
+    return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                    "*%.*s stands outside of a step; move it between *STEP and *END STEP",
+                    inp_shown(card->keyword), card->keyword.at);
+}

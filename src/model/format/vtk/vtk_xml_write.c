@@ -1,0 +1,195 @@
+#include "model/format/vtk/vtk_xml_write.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "model/format/vtk/vtk_scalar.h"
+
+enum { BLOCK = 32768, LEVEL = 1, LEVEL_SMALL = 6 };
+
+/* ---- a file that appears whole --------------------------------------------------------- */
+
+static lar_status part_failed(lar_part_file *out, const char *verb, int cause) {
+    return lar_fail(out->error, LAR_ERROR_IO,
+                    "%s: cannot be %s: %s; check the folder, its permissions and the free space",
+                    out->path, verb, strerror(cause));
+}
+
+lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error) {
+    static const char suffix[] = ".part";
+    size_t length = strlen(path);
+    *out = (lar_part_file){.path = path, .error = error, .part = malloc(length + sizeof suffix)};
+    if (!out->part) return lar_fail_memory(error, length + sizeof suffix, path);
+    memcpy(out->part, path, length);
+    memcpy(out->part + length, suffix, sizeof suffix);
+    out->file = fopen(out->part, "wb");
+    return out->file ? LAR_OK : part_failed(out, "opened for writing", errno);
+}
+
+lar_status lar_part_close(lar_part_file *out, lar_status status) {
+    if (out->file) {
+        errno = 0;
+        bool whole = fflush(out->file) == 0 && !ferror(out->file);
+        if (!status && !whole) status = part_failed(out, "written", errno ? errno : EIO);
+        if (fclose(out->file) != 0 && !status) status = part_failed(out, "written", errno);
+        if (!status && rename(out->part, out->path) != 0)
+            status = part_failed(out, "given its name", errno);
+        if (status) remove(out->part);
+    }
+    free(out->part);
+    *out = (lar_part_file){0};
+    return status;
+}
+
+lar_status lar_part_write(lar_part_file *out, const void *data, size_t size) {
+    errno = 0;
+    return fwrite(data, 1, size, out->file) == size
+               ? LAR_OK
+               : part_failed(out, "written", errno ? errno : EIO);
+}
+
+lar_status lar_part_print(lar_part_file *out, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    errno = 0;
+    int written = vfprintf(out->file, format, args);
+    int cause = errno ? errno : EIO;
+    va_end(args);
+    return written >= 0 ? LAR_OK : part_failed(out, "written", cause);
+}
+
+lar_status lar_part_attribute(lar_part_file *out, const char *text) {
+    lar_status status = LAR_OK;
+    for (const char *c = text; *c && !status; c++) {
+        const char *escaped = *c == '&'   ? "&amp;"
+                              : *c == '<' ? "&lt;"
+                              : *c == '"' ? "&quot;"
+                                          : NULL;
+        char plain = (unsigned char)*c < ' ' ? '?' : *c;
+        status = escaped ? lar_part_write(out, escaped, strlen(escaped))
+                         : lar_part_write(out, &plain, 1);
+    }
+    return status;
+}
+
+const char *lar_vtk_byte_order(void) {
+    return lar_vtk_must_swap(true) ? "LittleEndian" : "BigEndian";
+}
+
+/* ---- arrays and their compressed bytes -------------------------------------------------- */
+
+static void writer_clear(lar_vtk_writer *w) {
+    for (size_t i = 0; i < w->count; i++) {
+        free(w->array[i].name);
+        free(w->array[i].owned);
+    }
+    free(w->array);
+    free(w->packed);
+}
+
+lar_status lar_vtk_writer_add(lar_vtk_writer *w, char *name, lar_vtk_out_array array) {
+    array.name = name;
+    if (!name || !LAR_GROW(w->array, w->capacity, w->count)) {
+        free(name);
+        free(array.owned);
+        return lar_fail_memory(w->error, sizeof array, w->out.path);
+    }
+    w->array[w->count++] = array;
+    return LAR_OK;
+}
+
+static lar_status reserve_packed(lar_vtk_writer *w, size_t more) {
+    if (w->packed_capacity - w->packed_size >= more) return LAR_OK;
+    size_t wanted = w->packed_capacity * 2 + more;
+    unsigned char *grown = realloc(w->packed, wanted);
+    if (!grown) return lar_fail_memory(w->error, wanted, w->out.path);
+    w->packed = grown;
+    w->packed_capacity = wanted;
+    return LAR_OK;
+}
+
+/* Appends header and zlib blocks of one array. VTK wants all three words even for no blocks. */
+static lar_status pack_array(lar_vtk_writer *w, lar_vtk_out_array *array) {
+    size_t bytes = array->values * array->value_size;
+    size_t blocks = bytes / BLOCK + (bytes % BLOCK != 0);
+    size_t header = (3 + blocks) * sizeof(uint64_t);
+    array->offset = w->packed_size;
+    lar_status status = reserve_packed(w, header);
+    if (status) return status;
+    uint64_t words[3] = {blocks, BLOCK, bytes % BLOCK};
+    memcpy(w->packed + array->offset, words, sizeof words);
+    w->packed_size += header;
+    for (size_t i = 0; i < blocks && !status; i++) {
+        size_t from = i * BLOCK, size = bytes - from < BLOCK ? bytes - from : BLOCK;
+        uLongf packed = compressBound(size);
+        status = reserve_packed(w, packed);
+        if (status) break;
+        if (compress2(w->packed + w->packed_size, &packed, (const Bytef *)array->data + from, size,
+                      w->small ? LEVEL_SMALL : LEVEL) != Z_OK)
+            return lar_fail_memory(w->error, packed, w->out.path);
+        uint64_t word = packed;
+        memcpy(w->packed + array->offset + (3 + i) * sizeof word, &word, sizeof word);
+        w->packed_size += packed;
+    }
+    return status;
+}
+
+/* ---- the file --------------------------------------------------------------------------- */
+
+static const char field_data[] = "FieldData";
+
+static lar_status print_arrays(lar_vtk_writer *w, const char *where) {
+    lar_part_file *out = &w->out;
+    bool any = false;
+    for (size_t i = 0; i < w->count; i++) any = any || strcmp(w->array[i].where, where) == 0;
+    if (!any) return LAR_OK;
+    lar_status status = lar_part_print(out, "<%s>\n", where);
+    for (size_t i = 0; i < w->count && !status; i++) {
+        const lar_vtk_out_array *array = &w->array[i];
+        if (strcmp(array->where, where) != 0) continue;
+        status = lar_part_print(out, "<DataArray type=\"%s\" Name=\"", array->type);
+        if (!status) status = lar_part_attribute(out, array->name);
+        if (!status && strcmp(where, field_data) == 0)
+            status = lar_part_print(out, "\" NumberOfTuples=\"%zu", array->values);
+        if (!status)
+            status = lar_part_print(
+                out, "\" NumberOfComponents=\"%d\" format=\"appended\" offset=\"%zu\"/>\n",
+                array->components, array->offset);
+    }
+    return status ? status : lar_part_print(out, "</%s>\n", where);
+}
+
+lar_status lar_vtk_writer_open(lar_vtk_writer *w, const char *path, lar_error *error) {
+    *w = (lar_vtk_writer){.error = error};
+    return lar_part_open(&w->out, path, error);
+}
+
+lar_status lar_vtk_writer_print(lar_vtk_writer *w, const char *type, const char *attributes,
+                                const char *const *elements) {
+    lar_part_file *out = &w->out;
+    lar_status status = LAR_OK;
+    for (size_t i = 0; i < w->count && !status; i++) status = pack_array(w, &w->array[i]);
+    if (!status)
+        status = lar_part_print(out,
+                                "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+                                "byte_order=\"%s\" header_type=\"UInt64\" "
+                                "compressor=\"vtkZLibDataCompressor\">\n<%s>\n",
+                                type, lar_vtk_byte_order(), type);
+    if (!status) status = print_arrays(w, field_data);
+    if (!status) status = lar_part_print(out, "<Piece%s>\n", attributes);
+    for (; *elements && !status; elements++) status = print_arrays(w, *elements);
+    if (!status)
+        status = lar_part_print(out, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type);
+    if (!status) status = lar_part_write(out, w->packed, w->packed_size);
+    return status ? status : lar_part_print(out, "\n</AppendedData>\n</VTKFile>\n");
+}
+
+lar_status lar_vtk_writer_close(lar_vtk_writer *w, lar_status status) {
+    status = lar_part_close(&w->out, status);
+    writer_clear(w);
+    return status;
+}

@@ -1,0 +1,251 @@
+/* The step of one thread over its batches (T 6.6.1, fig. 6.15): recover, wait, receive, positions,
+ * send. See divide/schedule/schedule.h for what makes this order safe. */
+#include <sched.h>
+#include <string.h>
+#include <time.h>
+
+#include "parallel/contact_exchange.h"
+
+/* ---- force sums, or lists of elements ------------------------------------------------------ */
+
+static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_t *part) {
+    if (p->check) {
+        lar_list_join(sum, part);
+        return;
+    }
+    /* Unsigned: a run that is about to be stopped may wrap around. */
+    for (int i = 0; i < 3; i++) sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)part[i]);
+}
+
+/* What all threads of the processor together have at some values, one vector after the other. */
+static void collect(const lar_processor *p, const int32_t *value, int32_t count,
+                    int64_t *restrict vector) {
+    const int64_t *force = p->worker[0].state.force;
+    for (int32_t i = 0; i < count; i++) memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
+    for (int32_t t = 1; t < p->thread_count; t++)
+        for (int32_t i = 0; i < count; i++)
+            add_vector(p, vector + 3 * i, p->worker[t].state.force + value[i]);
+}
+
+/* Adds vectors, one after the other, at some values. */
+static void spread(const lar_processor *p, const int32_t *value, int32_t count,
+                   const int64_t *restrict vector, int64_t *restrict force) {
+    if (p->check)
+        for (int32_t i = 0; i < count; i++) lar_list_join(force + value[i], vector + 3 * i);
+    else
+        for (int32_t i = 0; i < count; i++)
+            for (int k = 0; k < 3; k++)
+                force[value[i] + k] =
+                    (int64_t)((uint64_t)force[value[i] + k] + (uint64_t)vector[3 * i + k]);
+}
+
+/* Packs what this thread has for the nodes of others that wait for batch b. The sums themselves
+ * stay: who sends such a node reads them until the end of the step. */
+static void pack_parcels(const lar_worker *worker, int32_t b) {
+    const lar_processor *p = worker->processor;
+    for (int32_t to = 0; to < p->thread_count; to++) {
+        const lar_parcel *parcel = &worker->parcel[to];
+        if (parcel->batch != b) continue;
+        for (int32_t i = 0; i < parcel->count; i++)
+            memcpy(parcel->vector + 3 * i, worker->state.force + parcel->value[i],
+                   LAR_VECTOR_BYTES);
+    }
+}
+
+/* At the end of the step, when nobody reads them any more. */
+static void clear_parcels(const lar_worker *worker) {
+    const lar_processor *p = worker->processor;
+    for (int32_t to = 0; to < p->thread_count; to++) {
+        const lar_parcel *parcel = &worker->parcel[to];
+        for (int32_t i = 0; i < parcel->count; i++)
+            memset(worker->state.force + parcel->value[i], 0, LAR_VECTOR_BYTES);
+    }
+}
+
+/* Takes the sums of the other threads over into the one that moves the nodes. */
+static void join_sums(lar_worker *worker) {
+    const lar_processor *p = worker->processor;
+    int64_t *force = worker->state.force;
+    for (int32_t t = 0; t < p->thread_count; t++) {
+        if (t == worker->thread) continue;
+        const lar_parcel *parcel = &p->worker[t].parcel[worker->thread];
+        spread(p, parcel->value, parcel->count, parcel->vector, force);
+        int64_t *other = p->worker[t].state.force;
+        for (int32_t i = 0; i < worker->joint_count; i++) {
+            int32_t value = worker->joint[i];
+            add_vector(p, force + value, other + value);
+            memset(other + value, 0, LAR_VECTOR_BYTES);
+        }
+    }
+}
+
+/* ---- packets ------------------------------------------------------------------------------- */
+
+static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uint64_t round,
+                          lar_error *error) {
+    lar_processor *p = worker->processor;
+    const void *payload;
+    lar_status status =
+        lar_comm_wait(p->comm, packet->peer, packet->offset, packet->bytes, round, &payload, error);
+    if (status) return status;
+    uint64_t stop;
+    memcpy(&stop, payload, sizeof stop);
+    if (stop) lar_processor_ask_stop(p, stop);
+    const int64_t *vector =
+        (const int64_t *)(const void *)((const char *)payload + LAR_SIGNAL_BYTES);
+    const int32_t *value = p->value + packet->first;
+    int64_t *force = worker->state.force;
+    spread(p, value, packet->added, vector, force);
+    for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
+        for (int32_t t = 0; t < p->thread_count; t++)
+            memset(p->worker[t].state.force + value[i], 0, LAR_VECTOR_BYTES);
+        memcpy(force + value[i], vector + 3 * i, LAR_VECTOR_BYTES);
+    }
+    return LAR_OK;
+}
+
+static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64_t round,
+                       lar_error *error) {
+    const lar_processor *p = worker->processor;
+    unsigned char *bytes =
+        lar_comm_room(p->comm, packet->peer, packet->offset, packet->bytes, round);
+    if (!bytes) bytes = worker->gather;
+    uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
+    memcpy(bytes, &stop, sizeof stop);
+    int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
+    collect(p, p->value + packet->first, packet->added + packet->whole, vector);
+    return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, round, error);
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
+/* Random delays, to see that nothing depends on who is first (T 6.9): mostly none, sometimes a few
+ * microseconds, now and then long enough for others to run ahead as far as they can. */
+static void dawdle(lar_worker *worker) {
+    if (!worker->random) return;
+    worker->random ^= worker->random << 13;
+    worker->random ^= worker->random >> 7;
+    worker->random ^= worker->random << 17;
+    uint64_t dice = worker->random >> 40;
+    if (dice % 8 == 0) sched_yield();
+    if (dice % 128 != 1) return;
+    struct timespec nap = {0, (long)(dice / 128 % 60000)};
+    nanosleep(&nap, NULL);
+}
+
+/* The displacements that other threads have computed are in their cores' caches. */
+static void fetch_foreign(const lar_worker *worker) {
+    for (int32_t i = 0; i < worker->foreign_count; i++)
+        __builtin_prefetch(worker->state.u + worker->foreign[i]);
+}
+
+/* How far the memory of a batch's packets has been asked for. */
+typedef struct near_cursor {
+    lar_range packets;
+    size_t at; /* in the first of them */
+} near_cursor;
+
+/* Asks for at most so many bytes of the packets that will be sent, or have come. */
+static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, size_t bytes,
+                       uint64_t round) {
+    while (cursor->packets.count > 0 && bytes > 0) {
+        const lar_packet_plan *packet = &p->packet[cursor->packets.first];
+        size_t left = lar_comm_packet_bytes(packet->bytes) - cursor->at;
+        size_t part = left < bytes ? left : bytes;
+        if (sends)
+            lar_comm_prepare(p->comm, packet->peer, packet->offset + cursor->at, part, round);
+        else if (lar_comm_expect(p->comm, packet->offset, packet->bytes, round))
+            lar_comm_fetch(p->comm, packet->offset + cursor->at, part, round);
+        else
+            return;
+        bytes -= part;
+        cursor->at += part;
+        if (part < left) return;
+        cursor->packets.first++;
+        cursor->packets.count--;
+        cursor->at = 0;
+    }
+}
+
+/* Between the runs of elements the memory of the batch's packets comes near, a little each time:
+ * a core can wait for a few dozen lines at once, and does not compute while it asks for more. */
+static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t round) {
+    enum { PORTION = 4096 };
+    lar_processor *p = worker->processor;
+    if (p->check) {
+        lar_verification_recover(p->check, &p->domain, batch->run_first, batch->run_count,
+                                 &worker->state);
+        return;
+    }
+    near_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
+    for (int32_t r = 0; r < batch->run_count; r++) {
+        if (r > 0 || batch->run_count == 1) {
+            bring_near(p, &sends, true, PORTION, round);
+            bring_near(p, &receives, false, PORTION, round);
+        }
+        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->trip);
+    }
+}
+
+static lar_status move(lar_worker *worker, lar_error *error) {
+    lar_processor *p = worker->processor;
+    join_sums(worker);
+    if (p->check)
+        return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
+                                        worker->context.end, &worker->state, error);
+    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+    return LAR_OK;
+}
+
+static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_error *error) {
+    lar_processor *p = worker->processor;
+    const lar_batch_plan *batch = &p->batch[b];
+    lar_status status = LAR_OK;
+    dawdle(worker);
+    recover(worker, batch, round);
+    /* Before anybody can wait for this thread's sums, like loads; behind the first elements, while
+     * whose recovery the places of others come. */
+    if (p->board && b == worker->batch_first) status = lar_contact_apply(worker, round, error);
+    for (int32_t i = 0; i < batch->waits.count && !status; i++)
+        status =
+            lar_processor_await(p, &p->mark[p->wait[batch->waits.first + i]].round, round, error);
+    dawdle(worker);
+    for (int32_t i = 0; i < batch->receives.count && !status; i++)
+        status = receive(worker, &p->packet[batch->receives.first + i], round, error);
+    if (batch->moves && !status) status = move(worker, error);
+    if (batch->sends.count) dawdle(worker);
+    for (int32_t i = 0; i < batch->sends.count && !status; i++)
+        status = send(worker, &p->packet[batch->sends.first + i], round, error);
+    pack_parcels(worker, b);
+    if (!status) __atomic_store_n(&p->mark[b].round, round, __ATOMIC_RELEASE);
+    return status;
+}
+
+lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
+    lar_processor *p = worker->processor;
+    uint64_t round = worker->round + 1; /* comm and marks count from 1 */
+    lar_status status = LAR_OK;
+    lar_step_enter(&p->domain, &worker->acting, &worker->context, &worker->state);
+    fetch_foreign(worker);
+    if (p->board) status = lar_contact_send(worker, round, error);
+    if (!p->check && !status)
+        lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
+                       &worker->trip);
+    for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
+        status = run_batch(worker, b, round, error);
+    if (p->board && worker->batch_first == worker->batch_end && !status)
+        status = lar_contact_apply(worker, round, error);
+    if (status) {
+        worker->follows = __atomic_exchange_n(&p->failed, 1, __ATOMIC_ACQ_REL) != 0;
+        if (!worker->follows && status != LAR_ERROR_PEER && p->comm) lar_comm_abort(p->comm);
+        return status;
+    }
+    clear_parcels(worker);
+    worker->round = round;
+    if (p->board) lar_contact_publish(worker, round + 1);
+    if (p->check)
+        worker->state.step++;
+    else
+        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+    return LAR_OK;
+}

@@ -1,0 +1,492 @@
+#include "parallel/computer.h"
+
+#include <assert.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "base/pin.h"
+#include "step/identity.h"
+
+static int32_t seats(const lar_computer *computer) {
+    return computer->hosted * computer->threads;
+}
+
+static lar_processor *processor_of(const lar_computer *computer, int32_t seat) {
+    return &computer->processor[seat / computer->threads];
+}
+
+/* ---- what went wrong ----------------------------------------------------------------------- */
+
+/* How little a seat's failure says: it may be a consequence of another one. */
+static int consequence(const lar_computer *computer, int32_t seat) {
+    const lar_processor *p = processor_of(computer, seat);
+    if (p->worker && p->worker[seat % computer->threads].follows) return 2;
+    return computer->seat[seat].status == LAR_ERROR_PEER;
+}
+
+static lar_status first_failure(lar_computer *computer, lar_error *error) {
+    const lar_seat *chosen = NULL;
+    int least = 3;
+    for (int32_t i = 0; i < seats(computer); i++) {
+        if (!computer->seat[i].status || consequence(computer, i) >= least) continue;
+        chosen = &computer->seat[i];
+        least = consequence(computer, i);
+    }
+    if (!chosen) return LAR_OK;
+    computer->broken = true;
+    if (error) *error = chosen->error;
+    return chosen->status;
+}
+
+/* Of what several have found in a step the one that a processor alone would have found: elements
+ * before nodes, the first element, the fastest node. */
+static bool earlier(const lar_trip *a, const lar_trip *b) {
+    if (!a->kind || !b->kind) return a->kind;
+    if (a->step != b->step) return a->step < b->step;
+    if (a->part != b->part) return a->part < b->part;
+    if (a->kind != b->kind) return a->kind < b->kind;
+    if (a->speed != b->speed) return a->speed > b->speed;
+    return a->element < b->element;
+}
+
+static void first_trip(const lar_computer *computer, lar_trip *trip) {
+    for (int32_t i = 0; i < computer->hosted; i++)
+        for (int32_t t = 0; t < computer->threads; t++) {
+            const lar_trip *other = &computer->processor[i].worker[t].trip;
+            if (earlier(other, trip)) *trip = *other;
+        }
+}
+
+/* ---- opening ------------------------------------------------------------------------------- */
+
+static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error *error) {
+    const lar_options *options = computer->options;
+    const lar_schedule *schedule = &computer->division.schedules.of[p->self];
+    lar_comm_options comm = lar_comm_options_default();
+    if (options->comm) comm.backend = options->comm;
+    comm.self = p->self;
+    comm.count = computer->division.grid.count;
+    comm.receive_bytes = computer->shift[p->self] + (size_t)schedule->receive_bytes +
+                         lar_contact_bytes(&computer->contact.map);
+    comm.identity = computer->identity;
+    comm.team = computer->team;
+    comm.master = options->master;
+    comm.listener = p->self == 0 ? options->listener : -1;
+    /* A processor that lives may be slow on a busy machine; whether it lives is watched anyway, and
+     * within one process it cannot die alone. */
+    comm.patience = computer->team ? 120 : 20;
+    return lar_comm_open(&comm, &p->comm, error);
+}
+
+static bool shares_memory(const lar_options *options) {
+    return options->comm && strcmp(options->comm, "shm") == 0;
+}
+
+/* Every processor is compiled in its own first thread. */
+static void compile_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    lar_seat *seat = &computer->seat[number];
+    if (number % computer->threads != 0) return;
+    lar_processor *p = processor_of(computer, number);
+    const lar_schedule *schedule =
+        &computer->division.schedules.of[computer->first + number / computer->threads];
+    lar_processor_setting setting = {.whole = computer->whole,
+                                     .reporter = computer->division.reporter,
+                                     .check = computer->checking ? &computer->check : NULL,
+                                     .shift = computer->shift,
+                                     .delays = computer->options->delays,
+                                     .near = computer->team || shares_memory(computer->options)};
+    seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
+    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->state);
+}
+
+static void meet_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    lar_seat *seat = &computer->seat[number];
+    if (number % computer->threads != 0) return;
+    seat->status = open_comm(computer, processor_of(computer, number), &seat->error);
+}
+
+static lar_status size_buffers(lar_computer *computer, bool several, lar_error *error) {
+    int32_t count = computer->division.grid.count;
+    computer->shift = lar_calloc((size_t)count, sizeof *computer->shift);
+    computer->clock = lar_calloc((size_t)count, sizeof *computer->clock);
+    if (!computer->shift || !computer->clock)
+        return lar_fail_memory(error, 16 * (size_t)count, "the processors");
+    for (int32_t p = 0; several && p < count; p++) computer->shift[p] = lar_control_bytes(count, p);
+    return LAR_OK;
+}
+
+/* Whether so many threads, in this and other processes, get a core each. */
+static bool pins(const lar_options *options, int32_t threads) {
+    int32_t cores = options->pin ? lar_pin_cores() : 0;
+    return options->pin == 1 ? threads <= cores : cores > 0 && threads == cores;
+}
+
+static lar_status prepare(lar_computer *computer, lar_error *error) {
+    const lar_options *options = computer->options;
+    const lar_model *model = computer->whole->model;
+    lar_status status = lar_division_create(model, options, &computer->division, error);
+    if (status) return status;
+    int32_t count = computer->division.grid.count;
+    bool several = options->comm && strcmp(options->comm, "threads") != 0;
+    if (options->processor < 0 || options->processor >= count)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "processor %d of a grid of %d; they count from 0", (int)options->processor,
+                        (int)count);
+    computer->threads = computer->division.schedules.of[0].threads;
+    computer->first = several ? options->processor : 0;
+    computer->hosted = several ? 1 : count;
+    computer->checking = options->verify != 0;
+    computer->identity =
+        lar_identity(computer->whole, computer->state, computer->division.schedules.of[0].division);
+    /* Forces are nothing to who expects lists. */
+    computer->identity = lar_hash_word(computer->identity, computer->checking);
+    if (computer->checking) status = lar_verification_create(model, &computer->check, error);
+    if (!status) status = size_buffers(computer, several, error);
+    if (!status) status = lar_contact_open(computer, error);
+    if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
+    if (status) return status;
+    computer->processor = lar_calloc((size_t)computer->hosted, sizeof *computer->processor);
+    computer->seat = lar_calloc((size_t)seats(computer), sizeof *computer->seat);
+    if (!computer->processor || !computer->seat)
+        return lar_fail_memory(error, (size_t)seats(computer) * sizeof *computer->seat,
+                               "the processors");
+    return lar_crew_create(seats(computer), pins(options, count * computer->threads),
+                           computer->first * computer->threads, &computer->crew, error);
+}
+
+/* They meet when all here are compiled: otherwise the others would wait for one that does not come.
+ */
+static lar_status open_processors(lar_computer *computer, bool *met, lar_error *error) {
+    lar_crew_run(computer->crew, compile_seat, computer);
+    lar_status status = first_failure(computer, error);
+    if (status) return status;
+    *met = true;
+    lar_crew_run(computer->crew, meet_seat, computer);
+    status = first_failure(computer, error);
+    if (!status && computer->hosted < computer->division.grid.count)
+        status = lar_control_create(computer->processor[0].comm, &computer->control, error);
+    return status;
+}
+
+lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
+                               const lar_options *options, lar_computer **out, lar_error *error) {
+    lar_computer *computer = lar_calloc(1, sizeof *computer);
+    lar_status status = LAR_OK;
+    bool met = false;
+    if (!computer) {
+        status = lar_fail_memory(error, sizeof *computer, "the parallel computer");
+    } else {
+        computer->options = options;
+        computer->whole = whole;
+        computer->state = state;
+        computer->tools = tools;
+        status = prepare(computer, error);
+        if (!status) status = open_processors(computer, &met, error);
+        lar_schedule_set_clear(&computer->division.schedules);
+        computer->options = NULL;
+    }
+    /* Only the meeting of processor zero takes the listener over. */
+    if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
+    if (status)
+        lar_computer_destroy(computer);
+    else
+        *out = computer;
+    return status;
+}
+
+static void close_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    if (number % computer->threads != 0) return;
+    lar_processor *p = processor_of(computer, number);
+    lar_comm_close(p->comm);
+    lar_processor_destroy(p);
+}
+
+/* Processor zero lets the other processes go. Who goes before that, or cannot say so, is given up:
+ * after a goodbye alone the others would wait for as long as they live. */
+static void take_leave(lar_computer *computer) {
+    lar_comm *comm = computer->processor ? computer->processor[0].comm : NULL;
+    if (!comm || computer->hosted == computer->division.grid.count) return;
+    const lar_order finish = {.kind = LAR_ORDER_FINISH};
+    if (computer->first == 0 && computer->control && !computer->broken)
+        computer->finished = lar_control_order(computer->control, &finish, NULL, 0, NULL) == LAR_OK;
+    if (!computer->finished) lar_comm_abort(comm);
+}
+
+void lar_computer_destroy(lar_computer *computer) {
+    if (!computer) return;
+    take_leave(computer);
+    lar_control_destroy(computer->control);
+    if (computer->crew) lar_crew_run(computer->crew, close_seat, computer);
+    lar_crew_destroy(computer->crew);
+    lar_comm_team_destroy(computer->team);
+    lar_contact_close(computer);
+    lar_verification_destroy(&computer->check);
+    lar_division_destroy(&computer->division);
+    free(computer->processor);
+    free(computer->seat);
+    free(computer->shift);
+    free(computer->clock);
+    free(computer);
+}
+
+/* ---- advancing ----------------------------------------------------------------------------- */
+
+/* T 6.5.2: no two processors are further apart than the exchanges between them. Only those of one
+ * process see each other's clocks. Every thread sets its processor's clock forward before it sends
+ * again: another thread may be late, a step at most. */
+static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
+#ifndef NDEBUG
+    uint64_t *own = &computer->clock[self], shown = __atomic_load_n(own, __ATOMIC_RELAXED);
+    while (shown < round && !__atomic_compare_exchange_n(own, &shown, round, false,
+                                                         __ATOMIC_ACQ_REL, __ATOMIC_RELAXED))
+        continue;
+    for (int32_t i = 0; i < computer->hosted; i++) {
+        int32_t other = computer->first + i;
+        uint64_t theirs = __atomic_load_n(&computer->clock[other], __ATOMIC_ACQUIRE);
+        uint64_t apart = theirs > round ? theirs - round : round - theirs;
+        int32_t most = computer->division.distance[self * computer->division.grid.count + other];
+        assert(apart <= (uint64_t)most + (computer->threads > 1));
+    }
+#else
+    (void)computer, (void)self, (void)round;
+#endif
+}
+
+/* After a step: does somebody here want everyone to stop? One step more than the way to the
+ * farthest processor, because other threads of this one may have sent already. */
+static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *tripped) {
+    lar_processor *p = worker->processor;
+    uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
+    if (p->board) lar_contact_watch(worker, stop - done);
+    if (worker->trip.kind && !*tripped) {
+        *tripped = true;
+        lar_trip_examine(&p->domain, &worker->state, &worker->trip);
+        lar_processor_ask_stop(p, stop);
+    }
+    if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
+        !computer->watch(computer->watch_context, done)) {
+        computer->called_off = true;
+        lar_processor_ask_stop(p, stop);
+    }
+    check_clocks(computer, p->self, worker->round);
+}
+
+static void advance_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    lar_seat *seat = &computer->seat[number];
+    lar_processor *p = processor_of(computer, number);
+    lar_worker *worker = &p->worker[number % computer->threads];
+    bool tripped = false;
+    if (p->board) lar_contact_publish(worker, worker->round + 1);
+    while (worker->state.step < computer->until) {
+        uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
+        if (stop && worker->state.step >= stop) break;
+        seat->status = lar_worker_step(worker, &seat->error);
+        if (seat->status) break;
+        after_step(computer, worker, number, &tripped);
+    }
+    /* Nobody shall wait for this processor; after a verdict this changes nothing. */
+    if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
+}
+
+/* What the threads here have felt in the last advance. */
+static void report_here(const lar_computer *computer, lar_report *report) {
+    *report = (lar_report){0};
+    for (int32_t i = 0; i < seats(computer); i++) {
+        const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
+        lar_report_add(report, &worker->acting, &worker->state);
+    }
+}
+
+static void stiffen_seat(void *context, int32_t number) {
+    lar_computer *computer = context;
+    if (number % computer->threads == 0)
+        lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
+}
+
+/* What has been set since the last stretch: gravity and damping are read in every step, materials
+ * are made anew. */
+static void take_settings(lar_computer *computer) {
+    const lar_settings *settings = &computer->tools->settings;
+    const lar_domain *domain = &computer->processor[0].domain;
+    if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
+        lar_crew_run(computer->crew, stiffen_seat, computer);
+}
+
+/* `first`: of the stretches of an advance. */
+static lar_status advance_here(lar_computer *computer, uint64_t until, bool first,
+                               lar_error *error) {
+    computer->until = until;
+    take_settings(computer);
+    for (int32_t i = 0; i < seats(computer); i++) {
+        lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
+        if (first) lar_report_begin(acting);
+        lar_touch_forget_depths(&acting->touch);
+        processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
+    }
+    for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
+    lar_crew_run(computer->crew, advance_seat, computer);
+    for (int32_t i = 0; i < computer->hosted; i++) lar_processor_pause(&computer->processor[i]);
+    report_here(computer, &computer->report);
+    return first_failure(computer, error);
+}
+
+static lar_status hear_all(lar_computer *computer, lar_trip *trip, lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
+        const lar_answer *answer;
+        const void *report;
+        status = lar_control_hear(computer->control, p, &answer, &report, error);
+        if (status) break;
+        if (earlier(&answer->trip, trip)) *trip = answer->trip;
+        lar_report own = {0}; /* a payload is aligned to 8 only */
+        if (answer->bytes == sizeof own) memcpy(&own, report, sizeof own);
+        lar_report_join(&computer->report, &own);
+    }
+    return status;
+}
+
+lar_status lar_computer_refuse(lar_error *error) {
+    return lar_fail(error, LAR_ERROR_PEER,
+                    "the parallel computer has lost a processor and cannot go on; start it again");
+}
+
+/* Where the tools go travels with the order to go on, when it has changed: so all use it from the
+ * same step on (T 6.5.1). */
+static lar_status order_advance(lar_computer *computer, uint64_t until, bool first,
+                                lar_error *error) {
+    const lar_order order = {first ? LAR_ORDER_ADVANCE : LAR_ORDER_CONTINUE, until};
+    size_t bytes = computer->tools_sent ? 0 : lar_tools_bytes(computer->tools);
+    lar_status status = lar_control_order(computer->control, &order, computer->tools, bytes, error);
+    if (!status) computer->tools_sent = true;
+    return status;
+}
+
+static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_trip *trip,
+                              lar_error *error) {
+    lar_status status = computer->control ? order_advance(computer, until, first, error) : LAR_OK;
+    if (!status) status = advance_here(computer, until, first, error);
+    first_trip(computer, trip);
+    if (!status && computer->control) status = hear_all(computer, trip, error);
+    return status;
+}
+
+/* The step at which all stop next: for a search, or where an interval ends. */
+static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t end) {
+    uint64_t interval = lar_interval_end(computer->whole, &computer->tools->division, step);
+    return lar_contact_until(computer, interval < end ? interval : end);
+}
+
+/* Without contact of bodies and tools one stretch. */
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
+                                void *context, lar_trip *trip, lar_error *error) {
+    if (computer->broken) return lar_computer_refuse(error);
+    const uint64_t *step = &computer->processor[0].worker[0].state.step;
+    uint64_t end = *step + steps;
+    lar_status status = LAR_OK;
+    computer->watch = watch;
+    computer->watch_context = context;
+    computer->called_off = false;
+    /* A trip before the first stretch leaves no step over which these could be a mean. */
+    memset(computer->report.tool, 0, sizeof computer->report.tool);
+    lar_interval_restart(&computer->interval);
+    if (steps == 0) return LAR_OK; /* what is decided before a step is decided once */
+    for (bool first = true; first || *step < end; first = false) {
+        uint64_t begin = *step;
+        status = lar_contact_refresh(computer, trip, error);
+        if (status || trip->kind) break;
+        if (lar_interval_decide(computer->whole, begin, computer->tools))
+            computer->tools_sent = false;
+        status = advance_all(computer, next_stop(computer, begin, end), first, trip, error);
+        lar_interval_harvest(&computer->interval, &computer->report, *step - begin,
+                             computer->tools);
+        lar_contact_count(computer, *step - begin);
+        if (status || trip->kind || computer->called_off) break;
+    }
+    trip->crowded = trip->kind == LAR_TRIP_RUSH && computer->contact.crowded;
+    if (status) computer->broken = true;
+    return status;
+}
+
+/* ---- the other processes ------------------------------------------------------------------- */
+
+static lar_status refuse_order(lar_error *error) {
+    return lar_fail(error, LAR_ERROR_PEER,
+                    "processor 0 asks for what this processor does not know; start all processors "
+                    "again, from the same installation");
+}
+
+/* Faces and tools are looked up by these. */
+static bool holds_fit(const lar_computer *computer, const lar_tools *tools) {
+    int32_t faces = computer->whole->model->surface.face_count;
+    for (int32_t i = 0; i < tools->hold_count; i++) {
+        const lar_hold *hold = &tools->hold[i];
+        if (hold->tool < 0 || hold->tool >= tools->count || hold->face < 0 || hold->face >= faces)
+            return false;
+    }
+    return true;
+}
+
+static lar_status take_tools(lar_computer *computer, const void *payload, size_t bytes,
+                             lar_error *error) {
+    if (bytes == 0) return LAR_OK;
+    lar_tools *tools = computer->tools;
+    if (bytes < offsetof(lar_tools, hold) || bytes > sizeof *tools) return refuse_order(error);
+    int32_t count = tools->count;
+    memcpy(tools, payload, bytes);
+    bool fits = tools->count == count && tools->hold_count >= 0 &&
+                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
+                holds_fit(computer, tools) &&
+                lar_settings_good(&tools->settings, computer->whole->time_step);
+    return fits ? LAR_OK : refuse_order(error);
+}
+
+static lar_status obey(lar_computer *computer, const lar_order *order, const void *payload,
+                       size_t bytes, lar_error *error) {
+    const lar_processor *p = &computer->processor[0];
+    lar_control *control = computer->control;
+    lar_answer answer = {0};
+    if (order->kind == LAR_ORDER_GATHER)
+        return lar_computer_answer_nodes(computer, order->argument, error);
+    lar_status status = LAR_OK;
+    if (order->kind == LAR_ORDER_ADVANCE || order->kind == LAR_ORDER_CONTINUE) {
+        bool first = order->kind == LAR_ORDER_ADVANCE;
+        status = take_tools(computer, payload, bytes, error);
+        if (!status) status = advance_here(computer, order->argument, first, error);
+        first_trip(computer, &answer.trip);
+        answer.step = p->worker[0].state.step;
+        if (status) return status;
+        return lar_control_answer(control, &answer, &computer->report, sizeof computer->report,
+                                  error);
+    }
+    if (order->kind == LAR_ORDER_SCATTER)
+        status = lar_computer_take_state(computer, order->argument, payload, bytes, error);
+    else if (order->kind == LAR_ORDER_CONTACT)
+        status = lar_contact_obey(computer, payload, bytes, error);
+    else
+        status = refuse_order(error);
+    return status ? status : lar_control_answer(control, &answer, NULL, 0, error);
+}
+
+lar_status lar_computer_serve(lar_computer *computer, lar_error *error) {
+    lar_status status = LAR_OK;
+    while (computer->control && !status && !computer->finished) {
+        lar_order order;
+        const void *payload;
+        size_t bytes;
+        status = lar_control_obey(computer->control, &order, &payload, &bytes, error);
+        if (status) break;
+        if (order.kind == LAR_ORDER_FINISH)
+            computer->finished = true;
+        else
+            status = obey(computer, &order, payload, bytes, error);
+    }
+    if (status) computer->broken = true;
+    return status;
+}

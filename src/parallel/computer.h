@@ -1,0 +1,128 @@
+/* The parallel computer: processors, the threads they run on, and how they are told what to do
+ * (T 5.3.1, 6.1).
+ *
+ *     one process (threads)               several processes (shm, tcp, ucx, mpi)
+ *       caller   processor 0, thread 0      process 0: caller, processor 0     \  control.h:
+ *       crew     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
+ *
+ * The caller belongs to processor zero and computes with it. The whole model's domain and state
+ * stay beside the parts: the state of the parts is gathered into it on demand, and everything that
+ * looks at a simulation (hash, energies, results) looks there.
+ *
+ * Stopping early. Processors are a step apart from their neighbours, so they cannot simply stop.
+ * Who wants to stop (an element turned inside out, the caller was interrupted) names a step that
+ * all can hear of in time, and packets carry that number on from neighbour to neighbour: a step
+ * later they know it, and so on, for `spread` steps. All stop before the same step, as the thesis's
+ * snapshots are taken in the same one (T 6.5.1).
+ */
+#ifndef LAR_PARALLEL_COMPUTER_H
+#define LAR_PARALLEL_COMPUTER_H
+
+#include "base/crew.h"
+#include "parallel/contact_exchange.h"
+#include "parallel/control.h"
+#include "parallel/division.h"
+#include "step/interval.h"
+#include "parallel/processor.h"
+#include "step/report.h"
+
+/* One thread of one processor of this process: seat = processor * threads + thread. */
+typedef struct lar_seat {
+    lar_status status;
+    lar_error error;
+} lar_seat;
+
+/* Contact of bodies (computer_contact.c). */
+typedef struct lar_computer_contact {
+    lar_contact_map map; /* map.surface NULL: there is none */
+    size_t *shift;       /* [processors] bytes of a receive buffer before contact's */
+    /* of processor zero: */
+    lar_contact_search *search;     /* the whole model's, not owned */
+    double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
+    double skin;                    /* of that search [m] */
+    double moved, way;              /* since then, and in the last step, at most [m] */
+    bool valid;                     /* the search belongs to the state */
+    bool crowded;                   /* it had to be made with a thinner skin than asked for */
+    bool always;                    /* search in every step */
+    lar_contact_info info;          /* what concerns all processors together */
+} lar_computer_contact;
+
+typedef struct lar_computer {
+    lar_division division;
+    lar_verification check;
+    bool checking;
+    int32_t threads;       /* of a processor */
+    int32_t first, hosted; /* the processors of this process */
+    lar_processor *processor;
+    lar_comm_team *team;  /* comm threads only */
+    lar_control *control; /* several processes only */
+    lar_crew *crew;
+    lar_seat *seat;  /* [hosted * threads] */
+    size_t *shift;   /* [processors] what control needs of their buffers */
+    uint64_t *clock; /* [processors] atomic: rounds done, of those in this process */
+    uint64_t until;  /* the step before which this advance ends */
+    lar_computer_contact contact;
+    lar_watch *watch;
+    void *watch_context;
+    bool called_off;   /* by the watch */
+    lar_report report; /* of the last advance; at processor zero, of all processors */
+    lar_state *state;  /* of the whole model: gathered into at zero, scattered from elsewhere */
+    lar_tools *tools;  /* of this process: zero's are those that count */
+    lar_interval interval;
+    bool tools_sent; /* to the other processes, as they are */
+    bool broken;     /* a processor failed: nothing goes on */
+    bool finished;   /* processor zero has let everyone go */
+    /* for opening */
+    const lar_options *options;
+    const lar_domain *whole;
+    uint64_t identity;
+} lar_computer;
+
+/* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
+ * the whole model at the start; they and `tools` must outlive the computer. Takes options->listener
+ * over, whatever it returns. */
+lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
+                               const lar_options *options, lar_computer **computer,
+                               lar_error *error);
+/* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
+ * Accepts NULL. */
+void lar_computer_destroy(lar_computer *computer);
+
+/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
+ * stopped everyone: *trip is then the first one. Processor zero only. */
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
+                                void *context, lar_trip *trip, lar_error *error);
+
+/* The state of all processors into that of the whole model, and back to all processors: they go on
+ * from there, whatever has tripped before. Processor zero only. */
+lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
+lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
+
+/* Every other process: does what processor zero says until it ends. */
+lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
+
+/* ---- between computer.c, computer_state.c and computer_contact.c ------------------------------
+ */
+
+/* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
+lar_status lar_contact_open(lar_computer *computer, lar_error *error);
+void lar_contact_close(lar_computer *computer); /* idempotent */
+/* Processor zero, before a stretch of steps: looks and searches where that is due. *trip: too many
+ * pairs. */
+lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error);
+/* The step that a stretch towards `end` may reach at most. */
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
+/* After a stretch of so many steps. */
+void lar_contact_count(lar_computer *computer, uint64_t steps);
+/* Another process: takes what processor zero found. */
+lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
+                            lar_error *error);
+
+/* The sentence for calls after a failure. */
+lar_status lar_computer_refuse(lar_error *error);
+/* Another process: answers a round of gathering; takes a scattered state. */
+lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar_error *error);
+lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
+                                   size_t bytes, lar_error *error);
+
+#endif

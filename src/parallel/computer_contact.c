@@ -1,0 +1,256 @@
+/* Contact of bodies on all processors: processor zero looks and searches between two stretches of
+ * steps, and everyone takes the same list (contact_exchange.h). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "parallel/computer.h"
+
+/* Steps that a search should last, and those that it must last besides the way of a stop. */
+enum { SEARCH_STEPS = 200, LEAST_STEPS = 16 };
+
+/* What is sent: the groups of the list and its faces follow. */
+typedef struct list_head {
+    double skin, moved;
+    int32_t group_count, face_count; /* -1: the list stays */
+} list_head;
+
+/* ---- opening --------------------------------------------------------------------------------- */
+
+static void list_elements(const lar_computer *computer, int32_t *elements, size_t *shift) {
+    for (int32_t p = 0; p < computer->division.grid.count; p++) {
+        const lar_schedule *schedule = &computer->division.schedules.of[p];
+        for (int32_t i = 0; i < schedule->element_count; i++) elements[schedule->element[i]] = p;
+        shift[p] = computer->shift[p] + (size_t)schedule->receive_bytes;
+    }
+}
+
+lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    const lar_collide *whole = &computer->whole->acting.collide;
+    if (!whole->surface || computer->checking) return LAR_OK;
+    const lar_model *model = computer->whole->model;
+    size_t nodes = (size_t)whole->surface->node_count;
+    size_t elements = (size_t)model->mesh.element_count;
+    int32_t count = computer->division.grid.count;
+    int32_t *owner = lar_calloc(elements, sizeof *owner);
+    contact->shift = lar_calloc((size_t)count, sizeof *contact->shift);
+    contact->x = lar_calloc(nodes, sizeof *contact->x);
+    contact->searched = lar_calloc(nodes, sizeof *contact->searched);
+    lar_status status = LAR_OK;
+    if (!owner || !contact->shift || !contact->x || !contact->searched)
+        status = lar_fail_memory(error, 4 * elements + 48 * nodes, "contact of bodies");
+    if (!status) {
+        list_elements(computer, owner, contact->shift);
+        status =
+            lar_contact_map_create(model, whole->surface, count, owner, computer->division.reporter,
+                                   contact->shift, &contact->map, error);
+    }
+    contact->search = whole->motion->search;
+    contact->always = whole->motion->always;
+    free(owner);
+    return status;
+}
+
+void lar_contact_close(lar_computer *computer) {
+    lar_computer_contact *contact = &computer->contact;
+    lar_contact_map_clear(&contact->map);
+    free(contact->shift);
+    free(contact->x);
+    free(contact->searched);
+    *contact = (lar_computer_contact){0};
+}
+
+/* ---- looking --------------------------------------------------------------------------------- */
+
+/* A node's displacement, and its velocity. */
+static void values_of(const lar_computer *computer, int32_t n, const double **u, const double **v) {
+    const lar_contact_map *map = &computer->contact.map;
+    const lar_state *state = computer->state;
+    size_t value;
+    if (computer->control) {
+        value = 4 * (size_t)computer->whole->layout.local[map->surface->node[n].node];
+    } else {
+        const lar_processor *p = &computer->processor[map->reporter[n]];
+        state = &p->worker[0].state;
+        value = (size_t)p->board->value[n];
+    }
+    *u = state->u + value;
+    *v = state->v + value;
+}
+
+/* Fetches the places of all contact nodes; returns how far the farthest has moved since the search,
+ * *way what it goes in a step. */
+static lar_status fetch_places(lar_computer *computer, double *moved, double *way,
+                               lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    const lar_contact_surface *surface = contact->map.surface;
+    double farthest = 0, fastest = 0;
+    if (computer->control) {
+        lar_status status = lar_computer_gather(computer, error);
+        if (status) return status;
+    }
+    for (int32_t n = 0; n < surface->node_count; n++) {
+        const double *u, *v;
+        values_of(computer, n, &u, &v);
+        for (int i = 0; i < 3; i++) {
+            contact->x[n][i] = surface->rest[n][i] + u[i];
+            farthest = lar_most(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
+            fastest = lar_most(fastest, fabs(v[i]));
+        }
+    }
+    *moved = farthest;
+    *way = fastest * computer->whole->time_step;
+    return LAR_OK;
+}
+
+/* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
+ * little more. */
+static double reserve(const lar_computer *computer, double way) {
+    double most = fmax(2 * way, LAR_CONTACT_RUSH * computer->whole->time_step);
+    return (computer->division.spread + 3) * most + LEAST_STEPS * way;
+}
+
+/* ---- handing out ----------------------------------------------------------------------------- */
+
+/* What a processor does with a list. */
+static void take_list(lar_processor *p, const lar_contact_map *map, const lar_contact_list *list,
+                      double moved) {
+    if (list) lar_contact_compile(p, map, list);
+    for (int32_t t = 0; t < p->thread_count; t++) p->worker[t].acting.collide.moved = moved;
+}
+
+static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double moved,
+                            lar_error *error) {
+    list_head head = {.moved = moved, .group_count = -1};
+    size_t groups = 0, faces = 0;
+    if (list) {
+        head = (list_head){list->skin, moved, list->group_count, list->face_count};
+        groups = (size_t)list->group_count * sizeof *list->group;
+        faces = (size_t)list->face_count * sizeof *list->face;
+    }
+    size_t bytes = sizeof head + groups + faces;
+    unsigned char *payload = lar_calloc_aligned(bytes, 1);
+    if (!payload) return lar_fail_memory(error, bytes, "pairs in contact");
+    memcpy(payload, &head, sizeof head);
+    if (groups) memcpy(payload + sizeof head, list->group, groups);
+    if (faces) memcpy(payload + sizeof head + groups, list->face, faces);
+    const lar_order order = {LAR_ORDER_CONTACT, 0};
+    lar_status status = lar_control_order(computer->control, &order, payload, bytes, error);
+    for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
+        const lar_answer *answer;
+        status = lar_control_hear(computer->control, p, &answer, NULL, error);
+    }
+    free(payload);
+    return status;
+}
+
+/* NULL: the list stays. */
+static lar_status hand_out(lar_computer *computer, const lar_contact_list *list, double moved,
+                           lar_error *error) {
+    for (int32_t i = 0; i < computer->hosted; i++)
+        take_list(&computer->processor[i], &computer->contact.map, list, moved);
+    return computer->control ? send_list(computer, list, moved, error) : LAR_OK;
+}
+
+static bool list_fits(const lar_contact_surface *surface, const lar_contact_list *list) {
+    int64_t from = 0;
+    for (int32_t g = 0; g < list->group_count; g++) {
+        const lar_contact_group *group = &list->group[g];
+        if (group->node < 0 || group->node >= surface->point_count || group->first != from ||
+            group->count < 1 || group->count > LAR_GROUP_FACES_MOST)
+            return false;
+        from += group->count;
+    }
+    for (int32_t i = 0; i < list->face_count; i++)
+        if (list->face[i] < 0 || list->face[i] >= surface->face_count) return false;
+    return from == list->face_count;
+}
+
+lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
+                            lar_error *error) {
+    const lar_contact_map *map = &computer->contact.map;
+    list_head head = {0};
+    if (bytes >= sizeof head) memcpy(&head, payload, sizeof head);
+    bool fits = map->surface && bytes >= sizeof head && head.group_count >= -1;
+    lar_contact_list list = {.skin = head.skin};
+    if (fits && head.group_count >= 0) {
+        /* Handed out again by each thread: nothing here is changed. */
+        lar_contact_group *group = (lar_contact_group *)((uintptr_t)payload + sizeof head);
+        list.group = group;
+        list.group_count = head.group_count;
+        list.face = (int32_t *)(group + head.group_count);
+        list.face_count = head.face_count;
+        const lar_contact_list *room = &computer->contact.search->list; /* of every thread, too */
+        fits = head.face_count >= 0 && head.group_count <= room->group_room &&
+               head.face_count <= room->face_room &&
+               bytes == sizeof head + (size_t)head.group_count * sizeof *list.group +
+                            (size_t)head.face_count * sizeof *list.face &&
+               list_fits(map->surface, &list);
+    }
+    if (!fits)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "processor 0 sends pairs for contact that do not fit this model; start all "
+                        "processors again, from the same installation");
+    take_list(&computer->processor[0], map, head.group_count >= 0 ? &list : NULL, head.moved);
+    return LAR_OK;
+}
+
+/* ---- searching ------------------------------------------------------------------------------- */
+
+static lar_status search(lar_computer *computer, double way, lar_trip *trip, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    const lar_contact_surface *surface = contact->map.surface;
+    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_most);
+    double skin = 2 * (reserve(computer, way) + room);
+    if (!lar_contact_search_run(contact->search, (const double(*)[3])contact->x, skin)) {
+        *trip = (lar_trip){.kind = LAR_TRIP_CROWD,
+                           .element = -1,
+                           .step = computer->processor[0].worker[0].state.step};
+        return LAR_OK;
+    }
+    const lar_contact_list *list = &contact->search->list;
+    memcpy(contact->searched, contact->x, (size_t)surface->node_count * sizeof *contact->x);
+    contact->skin = list->skin;
+    contact->crowded = list->skin < skin;
+    contact->moved = 0;
+    contact->info.searches++;
+    contact->info.boxed += (uint64_t)list->face_count;
+    return hand_out(computer, list, 0, error);
+}
+
+lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    if (!contact->map.surface) return LAR_OK;
+    bool due = !contact->valid || contact->always;
+    if (!due && contact->moved + reserve(computer, contact->way) < 0.5 * contact->skin)
+        return LAR_OK;
+    double moved, way;
+    lar_status status = fetch_places(computer, &moved, &way, error);
+    if (status) return status;
+    due = due || !(moved < 0.125 * contact->skin) ||
+          !(moved + reserve(computer, way) < 0.5 * contact->skin);
+    if (due) {
+        status = search(computer, way, trip, error);
+    } else {
+        contact->moved = moved;
+        status = hand_out(computer, NULL, moved, error);
+    }
+    contact->valid = !status;
+    return status;
+}
+
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t end) {
+    uint64_t step = computer->processor[0].worker[0].state.step;
+    return computer->contact.always && step < end ? step + 1 : end;
+}
+
+void lar_contact_count(lar_computer *computer, uint64_t steps) {
+    lar_computer_contact *contact = &computer->contact;
+    if (!contact->map.surface) return;
+    contact->moved = computer->report.moved;
+    contact->way = computer->report.way;
+    contact->info.steps += steps;
+    contact->info.possible += steps * contact->map.surface->possible;
+    lar_report_contact(&computer->report.contact, &contact->info);
+}

@@ -1,0 +1,197 @@
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "parallel/computer.h"
+
+/* What travels for a node: u with the level behind it, and v. */
+typedef double node_values[7];
+
+/* ---- gathering ----------------------------------------------------------------------------- */
+
+static void take_node(const lar_domain *whole, lar_gid node, const double *u, const double *v,
+                      lar_state *state) {
+    size_t there = 4 * (size_t)whole->layout.local[node];
+    memcpy(state->u + there, u, 4 * sizeof *u);
+    memcpy(state->v + there, v, 3 * sizeof *v);
+}
+
+/* A node of several processors has moved by the same bits on each. */
+static void check_copies(const lar_computer *computer, const lar_processor *p) {
+#ifndef NDEBUG
+    const lar_layout *layout = &p->domain.layout, *whole = &computer->whole->layout;
+    const lar_state *state = computer->state;
+    for (lar_lid n = 0; n < layout->node_padded; n++) {
+        if (layout->global[n] < 0) continue;
+        size_t there = 4 * (size_t)whole->local[layout->global[n]], here = 4 * (size_t)n;
+        assert(!memcmp(state->u + there, p->worker[0].state.u + here, 4 * sizeof(double)));
+        assert(!memcmp(state->v + there, p->worker[0].state.v + here, 3 * sizeof(double)));
+    }
+#else
+    (void)computer, (void)p;
+#endif
+}
+
+static void add_work(const lar_processor *p, int32_t threads, double *external, double *damped,
+                     double *contact) {
+    for (int32_t t = 0; t < threads; t++) {
+        *external += p->worker[t].state.external;
+        *damped += p->worker[t].state.damped;
+        *contact += p->worker[t].state.contact;
+    }
+}
+
+static void gather_here(const lar_computer *computer) {
+    lar_state *state = computer->state;
+    const lar_domain *whole = computer->whole;
+    for (int32_t i = 0; i < computer->hosted; i++) {
+        const lar_processor *p = &computer->processor[i];
+        const lar_layout *layout = &p->domain.layout;
+        const lar_state *own = &p->worker[0].state;
+        for (lar_lid n = 0; n < layout->node_padded; n++) {
+            lar_gid node = layout->global[n];
+            if (node >= 0 && computer->division.reporter[node] == p->self)
+                take_node(whole, node, own->u + 4 * (size_t)n, own->v + 4 * (size_t)n, state);
+        }
+        add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
+    }
+    for (int32_t i = 0; i < computer->hosted; i++) check_copies(computer, &computer->processor[i]);
+}
+
+/* Nodes from `node` on that processor p reports, as its answer has them. Returns where to go on. */
+static lar_gid take_answer(const lar_computer *computer, int32_t p, lar_gid node,
+                           const node_values *value, int64_t count) {
+    const lar_mesh *mesh = &computer->whole->model->mesh;
+    for (int64_t i = 0; i < count && node < mesh->node_count; node++)
+        if (computer->division.reporter[node] == p) {
+            take_node(computer->whole, node, value[i], value[i] + 4, computer->state);
+            i++;
+        }
+    return node;
+}
+
+static lar_status gather_others(lar_computer *computer, lar_error *error) {
+    int32_t count = computer->division.grid.count;
+    lar_state *state = computer->state;
+    lar_gid *from = lar_calloc((size_t)count, sizeof *from);
+    if (!from) return lar_fail_memory(error, 4 * (size_t)count, "the state");
+    lar_status status = LAR_OK;
+    bool more = true;
+    for (uint64_t round = 0; more && !status; round++) {
+        const lar_order order = {LAR_ORDER_GATHER, round};
+        more = false;
+        status = lar_control_order(computer->control, &order, NULL, 0, error);
+        for (int32_t p = 1; p < count && !status; p++) {
+            const lar_answer *answer;
+            const void *value;
+            status = lar_control_hear(computer->control, p, &answer, &value, error);
+            if (status) break;
+            int64_t nodes = (int64_t)(answer->bytes / sizeof(node_values));
+            from[p] = take_answer(computer, p, from[p], value, nodes);
+            more = more || nodes == LAR_ANSWER_NODES;
+            if (round > 0) continue;
+            state->external += answer->external;
+            state->damped += answer->damped;
+            state->contact += answer->contact;
+        }
+    }
+    free(from);
+    return status;
+}
+
+lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
+    if (computer->broken) return lar_computer_refuse(error);
+    lar_state *state = computer->state;
+    state->step = computer->processor[0].worker[0].state.step;
+    state->external = state->damped = state->contact = 0;
+    gather_here(computer);
+    lar_status status = computer->control ? gather_others(computer, error) : LAR_OK;
+    if (status) computer->broken = true;
+    return status;
+}
+
+/* The nodes of one round of gathering. */
+lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar_error *error) {
+    const lar_processor *p = &computer->processor[0];
+    const lar_state *own = &p->worker[0].state;
+    lar_answer answer = {.step = own->step};
+    node_values value[LAR_ANSWER_NODES];
+    size_t count = 0;
+    uint64_t skip = round * LAR_ANSWER_NODES;
+    add_work(p, computer->threads, &answer.external, &answer.damped, &answer.contact);
+    for (lar_gid node = 0;
+         node < computer->whole->model->mesh.node_count && count < LAR_ANSWER_NODES; node++) {
+        if (computer->division.reporter[node] != p->self) continue;
+        if (skip > 0) {
+            skip--;
+            continue;
+        }
+        size_t n = 4 * (size_t)p->domain.layout.local[node];
+        memcpy(value[count], own->u + n, 4 * sizeof(double));
+        memcpy(value[count] + 4, own->v + n, 3 * sizeof(double));
+        count++;
+    }
+    return lar_control_answer(computer->control, &answer, value, count * sizeof *value, error);
+}
+
+/* ---- scattering ---------------------------------------------------------------------------- */
+
+static void scatter_here(lar_computer *computer) {
+    for (int32_t i = 0; i < computer->hosted; i++)
+        lar_processor_scatter(&computer->processor[i], computer->whole, computer->state);
+}
+
+/* All nodes to everyone: each keeps what it has. */
+static lar_status scatter_others(lar_computer *computer, lar_error *error) {
+    const lar_domain *whole = computer->whole;
+    size_t nodes = (size_t)whole->model->mesh.node_count;
+    node_values *value = lar_calloc(nodes, sizeof *value);
+    if (!value) return lar_fail_memory(error, nodes * sizeof *value, "the state");
+    for (size_t node = 0; node < nodes; node++) {
+        size_t there = 4 * (size_t)whole->layout.local[node];
+        memcpy(value[node], computer->state->u + there, 4 * sizeof(double));
+        memcpy(value[node] + 4, computer->state->v + there, 3 * sizeof(double));
+    }
+    const lar_order order = {LAR_ORDER_SCATTER, computer->state->step};
+    lar_status status =
+        lar_control_order(computer->control, &order, value, nodes * sizeof *value, error);
+    for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
+        const lar_answer *answer;
+        status = lar_control_hear(computer->control, p, &answer, NULL, error);
+    }
+    free(value);
+    return status;
+}
+
+lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
+                                   size_t bytes, lar_error *error) {
+    const node_values *value = payload;
+    lar_gid nodes = computer->whole->model->mesh.node_count;
+    if (bytes != (size_t)nodes * sizeof *value)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "processor 0 sends a state of %zu bytes for %d nodes; start all processors "
+                        "again, from the same installation",
+                        bytes, (int)nodes);
+    for (lar_gid node = 0; node < nodes; node++)
+        take_node(computer->whole, node, value[node], value[node] + 4, computer->state);
+    computer->state->step = step;
+    scatter_here(computer);
+    return LAR_OK;
+}
+
+/* Nobody computes: everyone has answered the last advance. The work that has been done belongs to
+ * nobody in particular; processor zero keeps it. */
+lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
+    if (computer->broken) return lar_computer_refuse(error);
+    scatter_here(computer);
+    lar_state *first = &computer->processor[0].worker[0].state;
+    first->external = computer->state->external;
+    first->damped = computer->state->damped;
+    first->contact = computer->state->contact;
+    computer->tools_sent = false;
+    computer->contact.valid = false;
+    computer->contact.info = (lar_contact_info){0};
+    lar_status status = computer->control ? scatter_others(computer, error) : LAR_OK;
+    if (status) computer->broken = true;
+    return status;
+}

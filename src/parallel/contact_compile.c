@@ -1,0 +1,333 @@
+/* Who has to do with which groups, once per search, and what that is decided from, once. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "divide/incidence.h"
+#include "parallel/contact_exchange.h"
+
+/* ---- the map --------------------------------------------------------------------------------- */
+
+static size_t region_bytes(int32_t nodes) {
+    size_t bytes = (size_t)nodes * sizeof(double[LAR_PLACE_VALUES]) + LAR_PACKET_ALIGN;
+    return (bytes + LAR_PACKET_ALIGN - 1) / LAR_PACKET_ALIGN * LAR_PACKET_ALIGN;
+}
+
+/* The processors of the elements around a node, each once, ascending, behind `has`. */
+static int32_t list_owners(const lar_incidence *around, const int32_t *elements, int32_t node,
+                           int32_t *has) {
+    int32_t count = 0;
+    for (int64_t i = around->first[node]; i < around->first[node + 1]; i++) {
+        int32_t owner = elements[around->element[i]], at = 0;
+        while (at < count && has[at] < owner) at++;
+        if (at < count && has[at] == owner) continue;
+        memmove(has + at + 1, has + at, (size_t)(count - at) * sizeof *has);
+        has[at] = owner;
+        count++;
+    }
+    return count;
+}
+
+static lar_status allocate_map(lar_contact_map *map, const lar_incidence *around,
+                               lar_error *error) {
+    size_t nodes = (size_t)map->surface->node_count, faces = (size_t)map->surface->face_count;
+    size_t owners = 0;
+    for (size_t n = 0; n < nodes; n++) {
+        int32_t node = map->surface->node[n].node;
+        owners += (size_t)(around->first[node + 1] - around->first[node]);
+    }
+    map->reporter = lar_calloc(nodes, sizeof *map->reporter);
+    map->recoverer = lar_calloc(faces, sizeof *map->recoverer);
+    map->has_first = lar_calloc(nodes + 1, sizeof *map->has_first);
+    map->has = lar_calloc(owners, sizeof *map->has);
+    map->region = lar_calloc((size_t)map->processors + 1, sizeof *map->region);
+    if (map->reporter && map->recoverer && map->has_first && map->has && map->region) return LAR_OK;
+    return lar_fail_memory(error, 4 * (2 * nodes + faces + owners), "who has which surfaces");
+}
+
+lar_status lar_contact_map_create(const lar_model *model, const lar_contact_surface *surface,
+                                  int32_t processors, const int32_t *elements,
+                                  const int32_t *reporter, const size_t *shift,
+                                  lar_contact_map *map, lar_error *error) {
+    *map = (lar_contact_map){.surface = surface, .processors = processors, .shift = shift};
+    lar_incidence around = {0};
+    lar_status status = lar_incidence_build(&model->mesh, &around, error);
+    if (!status) status = allocate_map(map, &around, error);
+    for (int32_t n = 0; n < surface->node_count && !status; n++) {
+        int32_t node = surface->node[n].node, first = map->has_first[n];
+        map->reporter[n] = reporter[node];
+        map->has_first[n + 1] = first + list_owners(&around, elements, node, map->has + first);
+        map->region[reporter[node] + 1]++;
+    }
+    for (int32_t f = 0; f < surface->face_count && !status; f++)
+        map->recoverer[f] = elements[surface->face[f].element];
+    for (int32_t p = 0; p < processors && !status; p++)
+        map->region[p + 1] = map->region[p] + region_bytes((int32_t)map->region[p + 1]);
+    lar_incidence_clear(&around);
+    return status;
+}
+
+void lar_contact_map_clear(lar_contact_map *map) {
+    free(map->reporter);
+    free(map->recoverer);
+    free(map->has_first);
+    free(map->has);
+    free(map->region);
+    *map = (lar_contact_map){0};
+}
+
+static bool has_node(const lar_contact_map *map, int32_t processor, int32_t node) {
+    for (int32_t i = map->has_first[node]; i < map->has_first[node + 1]; i++)
+        if (map->has[i] == processor) return true;
+    return false;
+}
+
+/* ---- who takes part -------------------------------------------------------------------------- */
+
+static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *list,
+                        const lar_contact_group *group) {
+    return s->face[list->face[group->first]].body == s->node[group->node].body;
+}
+
+/* Whether a processor adds forces of a group, or has the node and keeps its level. */
+static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
+                     const lar_contact_group *group, int32_t processor) {
+    const lar_contact_surface *s = map->surface;
+    int32_t parent[2];
+    double weight[2];
+    int count = lar_contact_parents(s, group->node, parent, weight);
+    for (int k = 0; k < count; k++)
+        if (map->reporter[parent[k]] == processor) return true;
+    if (is_own_body(s, list, group) && has_node(map, processor, group->node)) return true;
+    for (int32_t i = group->first; i < group->first + group->count; i++) {
+        int32_t f = list->face[i];
+        if (map->recoverer[f] == processor &&
+            lar_contact_active(&s->node[group->node], &s->face[f]))
+            return true;
+    }
+    return false;
+}
+
+/* Marks the nodes of a group. */
+static void mark_nodes(const lar_contact_map *map, const lar_contact_list *list,
+                       const lar_contact_group *group, uint8_t *marked) {
+    int32_t parent[2];
+    double weight[2];
+    lar_contact_parents(map->surface, group->node, parent, weight);
+    marked[parent[0]] = marked[parent[1]] = 1;
+    for (int32_t i = group->first; i < group->first + group->count; i++)
+        for (int a = 0; a < 4; a++) marked[map->surface->face[list->face[i]].corner[a]] = 1;
+}
+
+/* Marks all nodes whose places a processor needs. */
+static void mark_needed(const lar_contact_map *map, const lar_contact_list *list, int32_t processor,
+                        uint8_t *marked) {
+    memset(marked, 0, (size_t)map->surface->node_count);
+    for (int32_t g = 0; g < list->group_count; g++)
+        if (concerns(map, list, &list->group[g], processor))
+            mark_nodes(map, list, &list->group[g], marked);
+}
+
+/* ---- one processor --------------------------------------------------------------------------- */
+
+static void add_slot(lar_contact_board *board, int32_t node) {
+    if (board->slot[node] >= 0) return;
+    int32_t slot = board->slot[node] = board->slot_count++;
+    if (board->mover[node] < 0) return;
+    lar_contact_page *page = &board->page[board->mover[node]];
+    page->slot[page->count] = slot;
+    page->node[page->count++] = node;
+}
+
+/* What `other` needs of this processor's nodes goes on its own board too. */
+static void plan_peer(lar_contact_board *board, const lar_contact_list *list, int32_t self,
+                      int32_t other) {
+    const lar_contact_map *map = board->map;
+    lar_contact_peer *peer = &board->peer[board->peer_count];
+    peer->peer = other;
+    peer->send_count = peer->receive_count = 0;
+    mark_needed(map, list, other, board->marked);
+    for (int32_t n = 0; n < map->surface->node_count; n++) {
+        if (!board->marked[n] || map->reporter[n] != self || has_node(map, other, n)) continue;
+        add_slot(board, n);
+        peer->send[peer->send_count++] = board->slot[n];
+    }
+    for (int32_t n = 0; n < map->surface->node_count; n++)
+        if (board->slot[n] >= 0 && board->mover[n] < 0 && map->reporter[n] == other)
+            peer->receive[peer->receive_count++] = board->slot[n];
+    if (peer->send_count + peer->receive_count > 0) board->peer_count++;
+}
+
+/* The groups in which a thread adds something, or whose node's level it keeps. */
+static void take_groups(lar_worker *worker, const lar_contact_list *list) {
+    lar_collide *collide = &worker->acting.collide;
+    lar_contact_list *own = &collide->list;
+    own->group_count = own->face_count = 0;
+    own->skin = list->skin;
+    for (int32_t g = 0; g < list->group_count; g++) {
+        const lar_contact_group *group = &list->group[g];
+        const int32_t *face = list->face + group->first;
+        int32_t parent[2];
+        double weight[2];
+        lar_contact_parents(collide->surface, group->node, parent, weight);
+        bool takes = collide->adds_node[parent[0]] || collide->adds_node[parent[1]] ||
+                     (is_own_body(collide->surface, list, group) && collide->keeps[group->node]);
+        for (int32_t i = 0; i < group->count && !takes; i++)
+            takes = collide->adds_corner[face[i]] &&
+                    lar_contact_active(&collide->surface->node[group->node],
+                                       &collide->surface->face[face[i]]);
+        if (!takes) continue;
+        own->group[own->group_count++] =
+            (lar_contact_group){group->node, own->face_count, group->count, group->gap};
+        memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);
+        own->face_count += group->count;
+    }
+    lar_collide_restart(collide);
+}
+
+void lar_contact_compile(lar_processor *p, const lar_contact_map *map,
+                         const lar_contact_list *list) {
+    lar_contact_board *board = p->board;
+    board->map = map;
+    board->slot_count = board->peer_count = 0;
+    memset(board->slot, -1, (size_t)map->surface->node_count * sizeof *board->slot);
+    for (int32_t t = 0; t < p->thread_count; t++) board->page[t].count = 0;
+    mark_needed(map, list, p->self, board->marked);
+    for (int32_t n = 0; n < map->surface->node_count; n++)
+        if (board->marked[n]) add_slot(board, n);
+    for (int32_t other = 0; other < map->processors; other++)
+        if (other != p->self) plan_peer(board, list, p->self, other);
+    for (int32_t t = 0; t < p->thread_count; t++) take_groups(&p->worker[t], list);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_processor *p,
+                                 lar_error *error) {
+    const lar_contact_surface *surface = whole->surface;
+    const lar_contact_board *board = p->board;
+    lar_collide *collide = &p->worker[thread].acting.collide;
+    size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
+    size_t groups = (size_t)whole->list.group_room, pairs = (size_t)whole->list.face_room;
+    uint8_t *adds_node = lar_calloc(nodes, 1), *adds_corner = lar_calloc(faces, 1);
+    uint8_t *keeps = lar_calloc(nodes, 1);
+    *collide = (lar_collide){.surface = surface,
+                             .law = whole->law,
+                             .time_step = whole->time_step,
+                             .view = {.value = board->value, .slot = board->slot},
+                             .adds_node = adds_node,
+                             .adds_corner = adds_corner,
+                             .keeps = keeps,
+                             .due = lar_calloc(groups, sizeof *collide->due),
+                             .last = lar_calloc(groups, sizeof *collide->last),
+                             .near = lar_calloc(groups, sizeof *collide->near),
+                             .away = lar_calloc(pairs, sizeof *collide->away),
+                             .part = lar_calloc(groups, sizeof *collide->part),
+                             .level = lar_calloc(groups, sizeof *collide->level)};
+    collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
+    collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
+    if (!adds_node || !adds_corner || !keeps || !collide->due || !collide->last || !collide->near ||
+        !collide->away || !collide->part || !collide->level || !collide->list.group ||
+        !collide->list.face)
+        return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
+                               "contact of bodies");
+    for (size_t n = 0; n < nodes; n++) {
+        adds_node[n] = board->loader[n] == thread;
+        keeps[n] = board->mover[n] == thread;
+    }
+    for (size_t f = 0; f < faces; f++) adds_corner[f] = board->pusher[f] == thread;
+    return LAR_OK;
+}
+
+static lar_status allocate_board(int32_t processors, int32_t threads, size_t nodes, size_t faces,
+                                 lar_contact_board *board, lar_error *error) {
+    bool fits = true;
+#define LAR_BOARD_ARRAY(name, count)                                                               \
+    fits = fits && (board->name = lar_calloc_aligned((count), sizeof *board->name)) != NULL
+    LAR_BOARD_ARRAY(value, nodes);
+    LAR_BOARD_ARRAY(mover, nodes);
+    LAR_BOARD_ARRAY(loader, nodes);
+    LAR_BOARD_ARRAY(pusher, faces);
+    LAR_BOARD_ARRAY(slot, nodes);
+    LAR_BOARD_ARRAY(place[0], nodes);
+    LAR_BOARD_ARRAY(place[1], nodes);
+    LAR_BOARD_ARRAY(page, (size_t)threads);
+    LAR_BOARD_ARRAY(mark, (size_t)threads);
+    LAR_BOARD_ARRAY(peer, (size_t)processors);
+    LAR_BOARD_ARRAY(marked, nodes);
+#undef LAR_BOARD_ARRAY
+    fits = fits &&
+           (board->gather = lar_calloc_aligned(nodes, sizeof(double[LAR_PLACE_VALUES]))) != NULL;
+    for (int32_t t = 0; t < threads && fits; t++) {
+        board->page[t].slot = lar_calloc(nodes, sizeof *board->page[t].slot);
+        board->page[t].node = lar_calloc(nodes, sizeof *board->page[t].node);
+        fits = board->page[t].slot && board->page[t].node;
+    }
+    board->peer_room = fits ? processors : 0;
+    for (int32_t i = 0; i < processors && fits; i++) {
+        board->peer[i].send = lar_calloc(nodes, sizeof *board->peer[i].send);
+        board->peer[i].receive = lar_calloc(nodes, sizeof *board->peer[i].receive);
+        fits = board->peer[i].send && board->peer[i].receive;
+    }
+    return fits ? LAR_OK
+                : lar_fail_memory(error, nodes * (200 + 8 * (size_t)processors), "contact places");
+}
+
+lar_status lar_contact_board_create(const lar_collide *whole, const lar_condition_share *share,
+                                    const int32_t *reporter, int32_t processors, lar_processor *p,
+                                    lar_error *error) {
+    const lar_contact_surface *surface = whole->surface;
+    if (!surface) return LAR_OK;
+    const int32_t *local = p->domain.layout.local;
+    lar_contact_board *board = p->board = lar_calloc_aligned(1, sizeof *board);
+    if (!board) return lar_fail_memory(error, sizeof *board, "contact places");
+    lar_status status = allocate_board(processors, p->thread_count, (size_t)surface->node_count,
+                                       (size_t)surface->face_count, board, error);
+    if (status) return status;
+    for (int32_t n = 0; n < surface->node_count; n++) {
+        int32_t node = surface->node[n].node;
+        board->value[n] = local[node] < 0 ? -1 : 4 * local[node];
+        board->mover[n] = share->holds[node];
+        board->loader[n] = reporter[node] == p->self ? share->loads[node] : -1;
+    }
+    for (int32_t f = 0; f < surface->face_count; f++)
+        board->pusher[f] = share->presses[surface->face[f].element];
+    for (int32_t t = 0; t < p->thread_count && !status; t++)
+        status = create_collide(whole, t, p, error);
+    return status;
+}
+
+void lar_contact_board_destroy(lar_processor *p) {
+    lar_contact_board *board = p->board;
+    if (!board) return;
+    for (int32_t t = 0; t < p->thread_count; t++) {
+        lar_collide *collide = &p->worker[t].acting.collide;
+        free((uint8_t *)collide->adds_node);
+        free((uint8_t *)collide->adds_corner);
+        free((uint8_t *)collide->keeps);
+        free(collide->list.group);
+        free(collide->list.face);
+        collide->adds_node = collide->adds_corner = collide->keeps = NULL;
+        collide->list = (lar_contact_list){0};
+        if (!board->page) continue;
+        free(board->page[t].slot);
+        free(board->page[t].node);
+    }
+    for (int32_t i = 0; board->peer && i < board->peer_room; i++) {
+        free(board->peer[i].send);
+        free(board->peer[i].receive);
+    }
+    free(board->value);
+    free(board->mover);
+    free(board->loader);
+    free(board->pusher);
+    free(board->slot);
+    free(board->place[0]);
+    free(board->place[1]);
+    free(board->page);
+    free(board->mark);
+    free(board->peer);
+    free(board->gather);
+    free(board->marked);
+    free(board);
+    p->board = NULL;
+}

@@ -1,0 +1,250 @@
+/* What viewers wish for is done. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "server/state.h"
+
+lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
+    lar_viewer *viewer = server->first;
+    while (viewer && viewer->number != number) viewer = viewer->next;
+    return viewer;
+}
+
+/* ---- files that are saved ---------------------------------------------------------------------
+ */
+
+static const char CHECKPOINT[] = "checkpoint", RECORDING[] = "recording";
+
+/* The next free name of a kind: uterus-3.checkpoint. A number is given out once, also while its
+ * file is not there yet. False when the folder is full of them. */
+static bool choose_name(lar_server *server, const char *extension, lar_job *job) {
+    while (server->saved_number < LAR_SAVE_NUMBERS) {
+        int length = snprintf(job->name, sizeof job->name, "%s-%d.%s", server->stem,
+                              ++server->saved_number, extension);
+        int whole = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
+        if (length < 0 || (size_t)length >= sizeof job->name || whole < 0 ||
+            (size_t)whole >= sizeof job->path)
+            return false;
+        if (access(job->path, F_OK) != 0 && errno == ENOENT) return true;
+    }
+    return false;
+}
+
+/* Twice a second is often enough for people; whoever wants to fill the disk has to wait. */
+static bool saves_too_often(lar_server *server) {
+    int64_t now = lar_clock_ns();
+    bool often = server->saved_at && now - server->saved_at < LAR_SECOND_NS / 2;
+    if (!often) server->saved_at = now;
+    return often;
+}
+
+/* One of those that lie in the folder: a viewer cannot name any other file. */
+static bool find_saved(const lar_server *server, const lar_wish *wish, lar_job *job) {
+    const lar_saved_list *list =
+        wish->kind == LAR_WISH_LOAD ? &server->states : &server->recordings;
+    const char *found = lar_saved_find(list, wish->name);
+    if (!found) return false;
+    snprintf(job->name, sizeof job->name, "%s", found);
+    int length = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
+    return length > 0 && (size_t)length < sizeof job->path;
+}
+
+static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish,
+                        lar_job *job) {
+    bool leaves = wish->kind == LAR_WISH_REPLAY && !wish->name[0];
+    if (wish->kind == LAR_WISH_RESET || leaves) return true;
+    if (!server->save_folder) {
+        lar_viewer_note(server, viewer,
+                        "saving, loading and recording are not allowed here; start the engine with "
+                        "--save-folder");
+        return false;
+    }
+    if (wish->kind == LAR_WISH_LOAD && !find_saved(server, wish, job)) {
+        lar_viewer_note(server, viewer, "there is no saved state of this name; save one first");
+        return false;
+    }
+    if (wish->kind == LAR_WISH_REPLAY && !find_saved(server, wish, job)) {
+        lar_viewer_note(server, viewer, "there is no recording of this name; make one first");
+        return false;
+    }
+    bool names = wish->kind == LAR_WISH_SAVE || (wish->kind == LAR_WISH_RECORD && wish->on);
+    if (names && saves_too_often(server)) {
+        lar_viewer_note(server, viewer, "this is too often; save or record again in a second");
+        return false;
+    }
+    if (names && !choose_name(server, wish->kind == LAR_WISH_SAVE ? CHECKPOINT : RECORDING, job)) {
+        lar_viewer_note(server, viewer,
+                        "no name is left in the folder for saved states, or it cannot be read; "
+                        "move some files away");
+        return false;
+    }
+    return true;
+}
+
+static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .on = wish->on};
+    if (prepare_job(server, viewer, wish, &job) && !lar_work_ask(&server->work, &job))
+        lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+}
+
+static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .setting = *wish};
+    if (!lar_work_ask(&server->work, &job))
+        lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+}
+
+static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what, const char *name) {
+    lar_json *json = &server->json;
+    lar_json_begin(json);
+    lar_json_text(json, "kind", "saved");
+    lar_json_text(json, "what", what);
+    lar_json_text(json, "name", name);
+    lar_json_end(json);
+    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+}
+
+void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
+    if (end->job.kind == LAR_WISH_INSPECT) return lar_server_tell_reading(server, end);
+    lar_viewer *viewer = lar_server_find(server, end->job.viewer);
+    bool done = end->error.status == LAR_OK;
+    if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
+    if (!done) return;
+    if (end->job.kind == LAR_WISH_SAVE) {
+        lar_saved_add(&server->states, end->job.name);
+        if (viewer) tell_saved(server, viewer, CHECKPOINT, end->job.name);
+    } else if (end->job.kind == LAR_WISH_RECORD && end->job.on) {
+        snprintf(server->recording, sizeof server->recording, "%s", end->job.name);
+    } else if (end->job.kind == LAR_WISH_REPLAY) {
+        snprintf(server->played, sizeof server->played, "%s", end->job.name);
+    } else if (end->job.kind == LAR_WISH_RECORD && server->recording[0]) {
+        lar_saved_add(&server->recordings, server->recording);
+        if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
+        server->recording[0] = '\0';
+    }
+}
+
+/* ---- wishes -----------------------------------------------------------------------------------
+ */
+
+static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
+    int field = lar_field_index(wish->field);
+    if (!viewer->asks || field != viewer->field) viewer->asked_at = lar_clock_ns();
+    if (field != viewer->field) viewer->due &= ~(unsigned)LAR_DUE_PICTURE;
+    viewer->field = field;
+    viewer->asks = true;
+}
+
+static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    const int32_t *size = server->scan.image.size;
+    char sentence[160];
+    if (!lar_scan_is_there(&server->scan)) {
+        lar_viewer_note(server, viewer,
+                        "there is no scan here; start the engine with --scan and the image that "
+                        "the scene was meshed from");
+        return;
+    }
+    if (wish->index >= size[wish->axis]) {
+        snprintf(sentence, sizeof sentence,
+                 "the scan has %d x %d x %d voxels, counted from 0; ask for a slice of these",
+                 (int)size[0], (int)size[1], (int)size[2]);
+        lar_viewer_note(server, viewer, sentence);
+        return;
+    }
+    viewer->slice_axis = wish->axis;
+    viewer->slice_index = wish->index;
+    lar_viewer_wants(viewer, LAR_DUE_SLICE);
+}
+
+/* What is played moves its tools itself. */
+static bool is_played(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (!server->status.replaying) return false;
+    lar_viewer_note(server, viewer,
+                    "a recording is being played; leave it to pull and to move instruments");
+    if (wish->kind == LAR_WISH_GRAB)
+        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    return true;
+}
+
+static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    lar_error error;
+    if (is_played(server, viewer, wish)) return;
+    if (lar_hands_move(&server->hands, viewer->number, wish, lar_clock_ns(), &error))
+        lar_viewer_note(server, viewer, error.message);
+}
+
+/* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
+ * grab that was refused: they need no sentence of their own. */
+static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    bool looks = wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES ||
+                 wish->kind == LAR_WISH_INSPECT || wish->kind == LAR_WISH_SLICE;
+    if (!viewer->watches || looks) return false;
+    if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
+    lar_viewer_note(server, viewer,
+                    "this viewer may only watch; to act on the run, open the address that has the "
+                    "other token");
+    if (wish->kind == LAR_WISH_GRAB)
+        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    return true;
+}
+
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+    if (is_refused(server, viewer, wish)) return;
+    switch (wish->kind) {
+    case LAR_WISH_FRAME:
+        ask_frame(viewer, wish);
+        break;
+    case LAR_WISH_FORCES:
+        viewer->forces_tool = wish->tool;
+        viewer->forces_after = wish->after;
+        lar_viewer_wants(viewer, LAR_DUE_FORCES);
+        break;
+    case LAR_WISH_GRAB:
+        if (is_played(server, viewer, wish)) break;
+        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+        break;
+    case LAR_WISH_PULL:
+    case LAR_WISH_RELEASE:
+        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+        break;
+    case LAR_WISH_TOOL:
+        move_tool(server, viewer, wish);
+        break;
+    case LAR_WISH_PLAY:
+        lar_session_play(server->session);
+        break;
+    case LAR_WISH_PAUSE:
+        lar_session_pause(server->session);
+        break;
+    case LAR_WISH_STEP:
+        lar_session_step(server->session, wish->steps);
+        break;
+    case LAR_WISH_PACE:
+        lar_session_set_pace(server->session, wish->pace);
+        server->pace = wish->pace;
+        break;
+    case LAR_WISH_SEEK:
+        lar_session_seek(server->session, wish->time);
+        break;
+    case LAR_WISH_SLICE:
+        ask_slice(server, viewer, wish);
+        break;
+    case LAR_WISH_INSPECT:
+        lar_server_inspect(server, viewer, wish);
+        break;
+    case LAR_WISH_RESET:
+    case LAR_WISH_SAVE:
+    case LAR_WISH_LOAD:
+    case LAR_WISH_RECORD:
+    case LAR_WISH_REPLAY:
+        ask_job(server, viewer, wish);
+        break;
+    case LAR_WISH_GRAVITY:
+    case LAR_WISH_DAMPING:
+    case LAR_WISH_STIFFNESS:
+        ask_setting(server, viewer, wish);
+        break;
+    }
+}

@@ -1,0 +1,221 @@
+#include "server/hands.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+/* An instrument is its mover's for so long after the last move [ns]. */
+static const int64_t OWNED = 1000000000;
+/* What a viewer sends before it knows of a reset is here by then [ns]: status comes every 0.1 s. */
+static const int64_t ON_ITS_WAY = 300000000;
+/* A hand is where it was sent when it is this close [m]; the session may take a moment to get it
+ * there, and one that does not arrive at all closes where it is. */
+static const double NEAR = 1e-4;
+static const int64_t PATIENCE = 1000000000;
+/* Ticks after which a hand that closed must hold something. */
+enum { TICKS_TO_HOLD = 3 };
+
+void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context) {
+    *hands = (lar_hands){.session = session, .tell = tell, .context = context};
+    for (int32_t i = 0; i < session->tools; i++) {
+        if (session->tool[i].info.shape == LAR_TOOL_HAND)
+            hands->hand[hands->count++] = (lar_hand){.tool = i};
+        hands->owner[i].pose = session->tool[i].info.rest;
+    }
+}
+
+/* The run was put somewhere else: instruments are where its state has them, and nobody's. */
+static void look_where_it_is(lar_hands *hands, const lar_session_status *status, int64_t now) {
+    if (status->placed == hands->placed) return;
+    hands->placed = status->placed;
+    for (int32_t i = 0; i < hands->session->tools; i++) {
+        lar_owner *owner = &hands->owner[i];
+        if (owner->viewer == 0) continue;
+        *owner = (lar_owner){.deaf_to = owner->viewer, .deaf_until = now + ON_ITS_WAY};
+    }
+}
+
+static void look_again(lar_hands *hands, int64_t now) {
+    lar_session_status status;
+    lar_session_status_get(hands->session, &status);
+    look_where_it_is(hands, &status, now);
+}
+
+/* ---- hands ---------------------------------------------------------------------------------- */
+
+static void put(lar_hands *hands, const lar_hand *hand, const double at[3], double opening) {
+    lar_tool_pose pose = {.orientation = {1, 0, 0, 0}, .opening = opening};
+    memcpy(pose.position, at, sizeof pose.position);
+    lar_session_tool_move(hands->session, hand->tool, &pose, NULL);
+}
+
+static void enter(lar_hand *hand, lar_hand_state state, int64_t now) {
+    hand->state = state;
+    hand->since = now;
+}
+
+static void let_go(lar_hands *hands, lar_hand *hand) {
+    put(hands, hand, hand->to, 1);
+    hand->state = LAR_HAND_FREE;
+    hand->viewer = 0;
+}
+
+static void tell(lar_hands *hands, const lar_hand *hand, const char *state) {
+    hands->tell(hands->context, hand->viewer, hand->number, hand->tool, state);
+}
+
+static lar_hand *find(lar_hands *hands, uint64_t viewer, int32_t number) {
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].state != LAR_HAND_FREE && hands->hand[i].viewer == viewer &&
+            hands->hand[i].number == number)
+            return &hands->hand[i];
+    return NULL;
+}
+
+static lar_hand *find_free(lar_hands *hands, int64_t now) {
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].state == LAR_HAND_FREE &&
+            strcmp(lar_hands_by(hands, hands->hand[i].tool, 0, now), "nobody") == 0)
+            return &hands->hand[i];
+    return NULL;
+}
+
+static void grab(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now) {
+    lar_hand *hand = find(hands, viewer, wish->hand);
+    if (!hand) hand = find_free(hands, now);
+    if (!hand) {
+        hands->tell(hands->context, viewer, wish->hand, -1, "refused");
+        return;
+    }
+    hand->viewer = viewer;
+    hand->number = wish->hand;
+    memcpy(hand->point, wish->point, sizeof hand->point);
+    memcpy(hand->to, wish->point, sizeof hand->to);
+    enter(hand, LAR_HAND_GOING, now);
+    put(hands, hand, hand->point, 1);
+}
+
+void lar_hands_wish(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now) {
+    lar_hand *hand = find(hands, viewer, wish->hand);
+    if (wish->kind == LAR_WISH_GRAB) {
+        grab(hands, viewer, wish, now);
+    } else if (hand && wish->kind == LAR_WISH_PULL) {
+        memcpy(hand->to, wish->point, sizeof hand->to);
+        if (hand->state == LAR_HAND_HOLDING) put(hands, hand, hand->to, 0);
+    } else if (hand && wish->kind == LAR_WISH_RELEASE) {
+        let_go(hands, hand);
+    }
+}
+
+static void go_on(lar_hands *hands, lar_hand *hand, const lar_session_status *status, int64_t now) {
+    lar_tool_pose pose;
+    lar_tool_force force;
+    if (lar_session_tool_force(hands->session, hand->tool, &pose, &force, NULL)) return;
+    double distance = 0;
+    for (int i = 0; i < 3; i++) distance = fmax(distance, fabs(pose.position[i] - hand->point[i]));
+    bool playing = status->state == LAR_SESSION_PLAYING;
+    if (!playing) hand->since = now;
+    switch (hand->state) {
+    case LAR_HAND_GOING:
+        if (!playing || pose.opening < 0.5) break;
+        if (distance > NEAR && now - hand->since < PATIENCE) break;
+        put(hands, hand, hand->point, 0);
+        hand->tick = status->ticks;
+        enter(hand, LAR_HAND_CLOSING, now);
+        break;
+    case LAR_HAND_CLOSING:
+        if (force.held > 0) {
+            enter(hand, LAR_HAND_HOLDING, now);
+            tell(hands, hand, "holding");
+            put(hands, hand, hand->to, 0);
+        } else if (status->ticks >= hand->tick + TICKS_TO_HOLD && pose.opening < 0.25) {
+            tell(hands, hand, "missed");
+            let_go(hands, hand);
+        } else if (pose.opening > 0.5 && status->ticks >= hand->tick + TICKS_TO_HOLD) {
+            /* A reset in between: what was sent before it does not count. */
+            put(hands, hand, hand->point, 1);
+            enter(hand, LAR_HAND_GOING, now);
+        }
+        break;
+    case LAR_HAND_HOLDING:
+        if (force.held > 0 || !playing) break;
+        tell(hands, hand, "lost");
+        let_go(hands, hand);
+        break;
+    default:
+        break;
+    }
+}
+
+void lar_hands_look(lar_hands *hands, int64_t now) {
+    lar_session_status status;
+    lar_session_status_get(hands->session, &status);
+    look_where_it_is(hands, &status, now);
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status, now);
+}
+
+bool lar_hands_busy(const lar_hands *hands) {
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].state == LAR_HAND_GOING || hands->hand[i].state == LAR_HAND_CLOSING)
+            return true;
+    return false;
+}
+
+/* ---- instruments ----------------------------------------------------------------------------- */
+
+const char *lar_hands_by(const lar_hands *hands, int32_t tool, uint64_t viewer, int64_t now) {
+    const lar_owner *owner = &hands->owner[tool];
+    uint64_t who = owner->viewer && now - owner->moved < OWNED ? owner->viewer : 0;
+    if (__atomic_load_n(&hands->session->tool[tool].device, __ATOMIC_RELAXED)) return "device";
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].tool == tool && hands->hand[i].state != LAR_HAND_FREE)
+            who = hands->hand[i].viewer;
+    return who == 0 ? "nobody" : who == viewer ? "you" : "other";
+}
+
+lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
+                          lar_error *error) {
+    lar_owner *owner = &hands->owner[wish->tool];
+    const lar_tool_info *info = &hands->session->tool[wish->tool].info;
+    if (info->shape == LAR_TOOL_HAND)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is a hand; take hold of the surface with grab", info->name);
+    look_again(hands, now);
+    if (owner->deaf_to == viewer && now < owner->deaf_until) return LAR_OK;
+    const char *by = lar_hands_by(hands, wish->tool, viewer, now);
+    if (strcmp(by, "device") == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s is moved by a device", info->name);
+    if (strcmp(by, "other") == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is moved by another viewer; try again when it rests", info->name);
+    lar_tool_pose pose;
+    lar_status status = lar_session_tool_force(hands->session, wish->tool, &pose, NULL, error);
+    if (status) return status;
+    if (owner->viewer == viewer && now - owner->moved < OWNED) pose = owner->pose;
+    memcpy(pose.position, wish->point, sizeof pose.position);
+    if (wish->turns) memcpy(pose.orientation, wish->orientation, sizeof pose.orientation);
+    if (wish->opens) pose.opening = wish->opening;
+    status = lar_session_tool_move(hands->session, wish->tool, &pose, error);
+    if (status) return status;
+    owner->viewer = viewer;
+    owner->moved = now;
+    owner->pose = pose;
+    return LAR_OK;
+}
+
+void lar_hands_leave(lar_hands *hands, uint64_t viewer) {
+    look_again(hands, lar_clock_ns());
+    for (int32_t i = 0; i < hands->count; i++)
+        if (hands->hand[i].state != LAR_HAND_FREE && hands->hand[i].viewer == viewer)
+            let_go(hands, &hands->hand[i]);
+    for (int32_t tool = 0; tool < hands->session->tools; tool++) {
+        lar_owner *owner = &hands->owner[tool];
+        if (owner->viewer != viewer) continue;
+        owner->viewer = 0;
+        if (hands->session->tool[tool].info.shape != LAR_TOOL_GRASPER) continue;
+        owner->pose.opening = 1;
+        lar_session_tool_move(hands->session, tool, &owner->pose, NULL);
+    }
+}

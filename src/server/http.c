@@ -1,0 +1,245 @@
+/* Connections that are no viewers: who is let in, and the viewer's files. */
+#include <errno.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "server/state.h"
+
+/* ---- who is let in --------------------------------------------------------------------------- */
+
+static lar_server *server_of(struct lws *wsi) {
+    return lws_context_user(lws_get_context(wsi));
+}
+
+/* A header that is there once and fits. */
+static bool copy_header(struct lws *wsi, enum lws_token_indexes which, char *out, int size) {
+    int length = lws_hdr_copy(wsi, out, size, which);
+    return length > 0 && (size_t)length == strlen(out);
+}
+
+static bool is_host(const lar_server *server, const char *host, const char *name) {
+    char wanted[LAR_HOST_BYTES + 8];
+    snprintf(wanted, sizeof wanted, "%s:%d", name, server->port);
+    return strcmp(host, wanted) == 0 || (server->port == 80 && strcmp(host, name) == 0);
+}
+
+/* Against DNS rebinding: a page of somebody else's whose name suddenly stands for this machine has
+ * that name here. Where all addresses of the machine are listened at we cannot know what it is
+ * called; there the token stands alone. */
+static bool trusts_host(const lar_server *server, const char *host) {
+    static const char *const own[] = {"localhost", "127.0.0.1", "[::1]"};
+    if (server->any || is_host(server, host, server->host)) return true;
+    for (int i = 0; server->loopback && i < 3; i++)
+        if (is_host(server, host, own[i])) return true;
+    return false;
+}
+
+bool lar_server_trusts(const lar_server *server, struct lws *wsi) {
+    char host[LAR_HOST_BYTES + 8], origin[LAR_HOST_BYTES + 16];
+    if (!copy_header(wsi, WSI_TOKEN_HOST, host, sizeof host) || !trusts_host(server, host))
+        return false;
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) == 0) return true;
+    return copy_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof origin) &&
+           strncmp(origin, "http://", 7) == 0 && strcmp(origin + 7, host) == 0;
+}
+
+/* ---- answers --------------------------------------------------------------------------------- */
+
+static int refuse(struct lws *wsi, unsigned code, const char *sentence) {
+    if (lws_return_http_status(wsi, code, sentence) < 0) return -1;
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+static int add_header(struct lws *wsi, const char *name, const char *value, unsigned char **at,
+                      unsigned char *end) {
+    return lws_add_http_header_by_name(wsi, (const unsigned char *)name,
+                                       (const unsigned char *)value, (int)strlen(value), at, end);
+}
+
+/* Nothing from elsewhere, no inline scripts, nobody may frame it. */
+static const char *const header_table[][2] = {
+    {"content-security-policy:",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+     "font-src "
+     "'self'; connect-src 'self'; worker-src 'self' blob:; manifest-src 'self'; base-uri 'none'; "
+     "form-action 'none'; frame-ancestors 'none'"},
+    {"x-content-type-options:", "nosniff"},
+    {"referrer-policy:", "no-referrer"},
+    {"cross-origin-opener-policy:", "same-origin"},
+    {"cross-origin-resource-policy:", "same-origin"}};
+
+static int begin_file(struct lws *wsi, lar_download *download, const lar_file *file, bool body) {
+    unsigned char buffer[LWS_PRE + 2048], *begin = buffer + LWS_PRE, *at = begin;
+    unsigned char *end = buffer + sizeof buffer - 1;
+    const char *cache = file->lasting ? "public, max-age=31536000, immutable" : "no-cache";
+    int failed = lws_add_http_common_headers(wsi, HTTP_STATUS_OK, file->type, file->size, &at, end);
+    failed = failed || add_header(wsi, "cache-control:", cache, &at, end);
+    for (size_t i = 0; i < sizeof header_table / sizeof header_table[0] && !failed; i++)
+        failed = add_header(wsi, header_table[i][0], header_table[i][1], &at, end);
+    if (failed || lws_finalize_write_http_header(wsi, begin, &at, end)) return 1;
+    if (!body) return lws_http_transaction_completed(wsi) ? -1 : 0;
+    *download = (lar_download){.file = file};
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+static int send_part(struct lws *wsi, lar_download *download) {
+    enum { PART = 16384 };
+    unsigned char buffer[LWS_PRE + PART];
+    if (!download || !download->file) return 0;
+    size_t left = download->file->size - download->sent, part = left < PART ? left : PART;
+    memcpy(buffer + LWS_PRE, download->file->data + download->sent, part);
+    enum lws_write_protocol kind = part == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
+    if (lws_write(wsi, buffer + LWS_PRE, part, kind) != (int)part) return -1;
+    download->sent += part;
+    if (part < left) {
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    download->file = NULL;
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+static int answer(lar_server *server, struct lws *wsi, lar_download *download, const char *path) {
+    bool get = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
+    bool head = lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
+    if (!download) return -1;
+    download->file = NULL;
+    if (!lar_server_trusts(server, wsi))
+        return refuse(wsi, HTTP_STATUS_FORBIDDEN, "This address is not the server's own.");
+    if (!get && !head) return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "Only GET and HEAD.");
+    const lar_file *file = path ? lar_files_find(&server->files, path) : NULL;
+    if (!file) return refuse(wsi, HTTP_STATUS_NOT_FOUND, "There is no such file.");
+    return begin_file(wsi, download, file, get);
+}
+
+/* An upgrade is a viewer's: to a WebSocket, at its path, in our protocol. */
+static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
+    char path[16], protocol[64];
+    bool good = to && strcasecmp(to, "websocket") == 0 && lar_server_trusts(server, wsi) &&
+                copy_header(wsi, WSI_TOKEN_GET_URI, path, sizeof path) &&
+                strcmp(path, "/socket") == 0 &&
+                copy_header(wsi, WSI_TOKEN_PROTOCOL, protocol, sizeof protocol) &&
+                strcmp(protocol, LAR_PROTOCOL) == 0;
+    if (good) return 0;
+    int sent = lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN,
+                                      "This is not the address, origin or protocol of a viewer.");
+    return sent < 0 ? -1 : 1;
+}
+
+/* ---- connections ----------------------------------------------------------------------------- */
+
+/* A page, its files and then the viewer take a moment; libwebsockets' own limits do not hold for
+ * everything that can be asked (a tunnel waits for ever). */
+static const int64_t LIFE = 30 * LAR_SECOND_NS;
+
+static void add_connection(lar_server *server, struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (server->connection[i].wsi) continue;
+        server->connection[i].wsi = wsi;
+        server->connection[i].since = lar_clock_ns();
+        server->connection[i].viewer = server->connection[i].leaves = false;
+        server->connections++;
+        return;
+    }
+}
+
+static void drop_connection(lar_server *server, const struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (server->connection[i].wsi != wsi) continue;
+        server->connection[i].wsi = NULL;
+        server->connections--;
+    }
+}
+
+void lar_server_promote(lar_server *server, const struct lws *wsi) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+        if (server->connection[i].wsi == wsi) server->connection[i].viewer = true;
+}
+
+static bool is_stranger(const lar_server *server, int i) {
+    return server->connection[i].wsi && !server->connection[i].viewer &&
+           !server->connection[i].leaves;
+}
+
+static void show_out(lar_server *server, int i) {
+    server->connection[i].leaves = true;
+    lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+}
+
+void lar_server_sweep(lar_server *server, int64_t now) {
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+        if (is_stranger(server, i) && now - server->connection[i].since > LIFE) show_out(server, i);
+}
+
+/* Who opens many connections and says nothing keeps nobody out: the oldest of those that have not
+ * become viewers makes room for one that comes. */
+static void make_room(lar_server *server) {
+    int strangers = 0, oldest = -1;
+    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+        if (!is_stranger(server, i)) continue;
+        strangers++;
+        if (oldest < 0 || server->connection[i].since < server->connection[oldest].since)
+            oldest = i;
+    }
+    if (strangers >= LAR_STRANGERS_MOST) show_out(server, oldest);
+}
+
+/* All that have come. When the process has no numbers for sockets left, the spare one takes the
+ * connection and drops it: it would wait at the door, and wake us, forever. */
+static void accept_all(lar_server *server) {
+    for (;;) {
+        int on = 1, fd = accept4(server->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (fd < 0 && (errno == EMFILE || errno == ENFILE) && server->spare >= 0) {
+            close(server->spare);
+            fd = accept4(server->listener, NULL, NULL, SOCK_CLOEXEC);
+            if (fd >= 0) close(fd);
+            server->spare = dup(server->listener);
+            if (fd >= 0) continue;
+        }
+        if (fd < 0) return;
+        make_room(server);
+        if (server->connections >= LAR_CONNECTIONS_MOST) {
+            close(fd);
+            continue;
+        }
+        setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+        struct lws *wsi = lws_adopt_socket_vhost(server->vhost, fd);
+        if (wsi) add_connection(server, wsi);
+    }
+}
+
+int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                    size_t length) {
+    lar_server *server = server_of(wsi);
+    (void)length;
+    switch (reason) {
+    case LWS_CALLBACK_RAW_RX_FILE:
+        accept_all(server);
+        return 0;
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+        lar_server_collect(server);
+        return 0;
+    case LWS_CALLBACK_WSI_DESTROY:
+        drop_connection(server, wsi);
+        return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+        return check_upgrade(server, wsi, in);
+    /* Upgrades in another protocol end here. */
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+        return -1;
+    case LWS_CALLBACK_HTTP:
+        return answer(server, wsi, user, in);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+        return send_part(wsi, user);
+    case LWS_CALLBACK_HTTP_BODY:
+        return -1;
+    default:
+        return 0;
+    }
+}

@@ -1,0 +1,391 @@
+#include "server/message.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "server/json.h"
+
+const lar_field_name lar_field_names[LAR_FIELDS] = {
+    {"none", "", "", 0},
+    {"displacement", "displacement", "m", LAR_FIELD_DISPLACEMENT},
+    {"von_mises", "von Mises stress", "Pa", LAR_FIELD_VON_MISES},
+    {"pressure", "pressure", "Pa", LAR_FIELD_PRESSURE},
+    {"energy", "strain energy density", "J/m³", LAR_FIELD_ENERGY},
+    {"processor", "processor", "", LAR_FIELD_PROCESSOR}};
+
+int lar_field_index(lar_field field) {
+    for (int i = 0; i < LAR_FIELDS; i++)
+        if (lar_field_names[i].field == field) return i;
+    return 0;
+}
+
+/* ---- the language ----------------------------------------------------------------------- */
+
+typedef enum key_id {
+    KEY_DO,
+    KEY_FIELD,
+    KEY_NAME,
+    KEY_TOOL,
+    KEY_HAND,
+    KEY_AFTER,
+    KEY_STEPS,
+    KEY_VALUE,
+    KEY_TIME,
+    KEY_OPENING,
+    KEY_ON,
+    KEY_POINT,
+    KEY_TO,
+    KEY_POSITION,
+    KEY_ORIENTATION,
+    KEY_NODE,
+    KEY_FACE,
+    KEY_ENERGY,
+    KEY_AXIS,
+    KEY_INDEX,
+    KEY_MATERIAL,
+    KEYS
+} key_id;
+
+typedef enum key_kind { IS_STRING, IS_WHOLE, IS_REAL, IS_BOOLEAN, IS_VECTOR } key_kind;
+
+typedef struct key_row {
+    const char *name;
+    key_kind kind;
+    double least, most; /* of numbers */
+    int count;          /* of a vector's numbers */
+} key_row;
+
+/* Whole numbers stay below 2^53, where every one is a double. */
+static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
+                                        [KEY_FIELD] = {"field", IS_STRING, 0, 0, 0},
+                                        [KEY_NAME] = {"name", IS_STRING, 0, 0, 0},
+                                        [KEY_TOOL] = {"tool", IS_WHOLE, 0, 9007199254740991.0, 0},
+                                        [KEY_HAND] = {"hand", IS_WHOLE, 0, LAR_VIEWER_HANDS - 1, 0},
+                                        [KEY_AFTER] = {"after", IS_WHOLE, 0, 9007199254740991.0, 0},
+                                        [KEY_STEPS] = {"steps", IS_WHOLE, 1, 100000, 0},
+                                        [KEY_VALUE] = {"value", IS_REAL, 0, 1e6, 0},
+                                        [KEY_TIME] = {"time", IS_REAL, 0, 1e9, 0},
+                                        [KEY_OPENING] = {"opening", IS_REAL, 0, 1, 0},
+                                        [KEY_ON] = {"on", IS_BOOLEAN, 0, 0, 0},
+                                        [KEY_POINT] = {"point", IS_VECTOR, -1000, 1000, 3},
+                                        [KEY_TO] = {"to", IS_VECTOR, -1000, 1000, 3},
+                                        [KEY_POSITION] = {"position", IS_VECTOR, -1000, 1000, 3},
+                                        [KEY_ORIENTATION] = {"orientation", IS_VECTOR, -2, 2, 4},
+                                        [KEY_NODE] = {"node", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_FACE] = {"face", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_ENERGY] = {"energy", IS_BOOLEAN, 0, 0, 0},
+                                        [KEY_AXIS] = {"axis", IS_WHOLE, 0, 2, 0},
+                                        [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0},
+                                        [KEY_MATERIAL] = {"material", IS_WHOLE, 0, INT32_MAX, 0}};
+
+#define BIT(key) (1u << KEY_##key)
+
+/* Beside `do`, by lar_wish_kind. */
+static const struct {
+    const char *name;
+    uint32_t needed, allowed;
+} wish_table[] = {
+    [LAR_WISH_FRAME] = {"frame", 0, BIT(FIELD)},
+    [LAR_WISH_FORCES] = {"forces", BIT(TOOL) | BIT(AFTER), 0},
+    [LAR_WISH_GRAB] = {"grab", BIT(HAND) | BIT(POINT), 0},
+    [LAR_WISH_PULL] = {"pull", BIT(HAND) | BIT(TO), 0},
+    [LAR_WISH_RELEASE] = {"release", BIT(HAND), 0},
+    [LAR_WISH_TOOL] = {"tool", BIT(TOOL) | BIT(POSITION), BIT(ORIENTATION) | BIT(OPENING)},
+    [LAR_WISH_PLAY] = {"play", 0, 0},
+    [LAR_WISH_PAUSE] = {"pause", 0, 0},
+    [LAR_WISH_STEP] = {"step", BIT(STEPS), 0},
+    [LAR_WISH_RESET] = {"reset", 0, 0},
+    [LAR_WISH_PACE] = {"pace", BIT(VALUE), 0},
+    [LAR_WISH_RECORD] = {"record", BIT(ON), 0},
+    [LAR_WISH_SAVE] = {"save", 0, 0},
+    [LAR_WISH_LOAD] = {"load", 0, BIT(NAME)},
+    [LAR_WISH_REPLAY] = {"replay", 0, BIT(NAME)},
+    [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0},
+    [LAR_WISH_INSPECT] = {"inspect", 0, BIT(NODE) | BIT(FACE) | BIT(ENERGY)},
+    [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0},
+    [LAR_WISH_GRAVITY] = {"gravity", 0, BIT(TO)},
+    [LAR_WISH_DAMPING] = {"damping", 0, BIT(VALUE)},
+    [LAR_WISH_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)}};
+enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
+
+/* ---- reading ---------------------------------------------------------------------------- */
+
+typedef struct reader {
+    const char *at, *end;
+    uint32_t seen; /* keys, as bits */
+    char text[KEYS][LAR_NAME_MOST + 1];
+    double number[KEYS][4];
+    lar_close close;
+    char *reason;
+} reader;
+
+static bool refuse(reader *r, lar_close close, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The first reason stays. Always false. */
+static bool refuse(reader *r, lar_close close, const char *format, ...) {
+    if (r->close != LAR_CLOSE_NOT) return false;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(r->reason, LAR_REASON_BYTES, format, args);
+    va_end(args);
+    r->close = close;
+    return false;
+}
+
+static void skip_space(reader *r) {
+    while (r->at < r->end && memchr(" \t\r\n", *r->at, 4)) r->at++;
+}
+
+/* The next character, when it is this one. */
+static bool take(reader *r, char wanted) {
+    skip_space(r);
+    if (r->at >= r->end || *r->at != wanted) return false;
+    r->at++;
+    return true;
+}
+
+static int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+/* One character of a string behind a backslash. What is not ASCII can be no word of the protocol:
+ * it becomes 0x7f, which is none either. */
+static bool read_escape(reader *r, char *out) {
+    static const char names[] = "\"\\/bfnrt", values[] = "\"\\/\b\f\n\r\t";
+    char c = r->at < r->end ? *r->at++ : '\0';
+    const char *found = c ? strchr(names, c) : NULL;
+    if (found) {
+        *out = values[found - names];
+        return true;
+    }
+    if (c != 'u' || r->end - r->at < 4) return false;
+    int code = 0;
+    for (int i = 0; i < 4; i++) {
+        int digit = hex_digit(*r->at++);
+        if (digit < 0) return false;
+        code = code * 16 + digit;
+    }
+    *out = code > 0 && code < 0x7f ? (char)code : 0x7f;
+    return true;
+}
+
+/* A string of at most LAR_NAME_MOST characters; longer ones can be nothing we know. */
+static bool read_string(reader *r, char text[LAR_NAME_MOST + 1]) {
+    size_t length = 0;
+    if (!take(r, '"')) return false;
+    while (r->at < r->end && *r->at != '"') {
+        char c = *r->at++;
+        if ((unsigned char)c < 0x20) return false;
+        if (c == '\\' && !read_escape(r, &c)) return false;
+        if (length < LAR_NAME_MOST)
+            text[length++] = c;
+        else
+            text[LAR_NAME_MOST - 1] = 0x7f;
+    }
+    text[length] = '\0';
+    return take(r, '"');
+}
+
+static bool is_digit(const reader *r, const char *at) {
+    return at < r->end && *at >= '0' && *at <= '9';
+}
+
+/* JSON's own grammar (RFC 8259, 6): no plus sign, no leading zero, no hexadecimal, no nan. */
+static bool read_number(reader *r, double *value) {
+    skip_space(r);
+    const char *from = r->at, *at = from;
+    if (at < r->end && *at == '-') at++;
+    if (!is_digit(r, at)) return false;
+    if (*at == '0' && is_digit(r, at + 1)) return false;
+    while (is_digit(r, at)) at++;
+    if (at < r->end && *at == '.') {
+        at++;
+        if (!is_digit(r, at)) return false;
+        while (is_digit(r, at)) at++;
+    }
+    if (at < r->end && (*at == 'e' || *at == 'E')) {
+        at++;
+        if (at < r->end && (*at == '+' || *at == '-')) at++;
+        if (!is_digit(r, at)) return false;
+        while (is_digit(r, at)) at++;
+    }
+    r->at = at;
+    return lar_span_double((lar_span){from, (size_t)(at - from)}, value) && isfinite(*value);
+}
+
+static bool read_boolean(reader *r, double *value) {
+    skip_space(r);
+    for (int i = 0; i < 2; i++) {
+        const char *word = i ? "true" : "false";
+        size_t length = strlen(word);
+        if ((size_t)(r->end - r->at) < length || memcmp(r->at, word, length) != 0) continue;
+        r->at += length;
+        *value = i;
+        return true;
+    }
+    return false;
+}
+
+static bool read_numbers(reader *r, const key_row *row, double *value) {
+    bool vector = row->kind == IS_VECTOR;
+    int count = vector ? row->count : 1;
+    if (vector && !take(r, '['))
+        return refuse(r, LAR_CLOSE_POLICY, "%s must be an array of %d numbers", row->name, count);
+    for (int i = 0; i < count; i++) {
+        if ((i > 0 && !take(r, ',')) || !read_number(r, &value[i]))
+            return refuse(r, LAR_CLOSE_POLICY, "%s must be %s%.0d number%s", row->name,
+                          vector ? "an array of " : "a", vector ? count : 0, vector ? "s" : "");
+        if (value[i] < row->least || value[i] > row->most)
+            return refuse(r, LAR_CLOSE_POLICY, "%s must lie between %g and %g", row->name,
+                          row->least, row->most);
+        if (row->kind == IS_WHOLE && value[i] != floor(value[i]))
+            return refuse(r, LAR_CLOSE_POLICY, "%s must be a whole number", row->name);
+    }
+    if (vector && !take(r, ']'))
+        return refuse(r, LAR_CLOSE_POLICY, "%s must be an array of %d numbers", row->name, count);
+    return true;
+}
+
+static bool read_value(reader *r, key_id key) {
+    const key_row *row = &key_table[key];
+    switch (row->kind) {
+    case IS_STRING:
+        return read_string(r, r->text[key]) ||
+               refuse(r, LAR_CLOSE_POLICY, "%s must be a string", row->name);
+    case IS_BOOLEAN:
+        return read_boolean(r, r->number[key]) ||
+               refuse(r, LAR_CLOSE_POLICY, "%s must be true or false", row->name);
+    default:
+        return read_numbers(r, row, r->number[key]);
+    }
+}
+
+static bool read_member(reader *r) {
+    char name[LAR_NAME_MOST + 1];
+    if (!read_string(r, name)) return refuse(r, LAR_CLOSE_POLICY, "a key must be a string");
+    key_id key = 0;
+    while (key < KEYS && strcmp(key_table[key].name, name) != 0) key++;
+    /* Names of others are not repeated: they may hold anything. */
+    if (key == KEYS) return refuse(r, LAR_CLOSE_POLICY, "there is a key that is none of ours");
+    if (r->seen & 1u << key)
+        return refuse(r, LAR_CLOSE_POLICY, "the key %s is there twice", key_table[key].name);
+    r->seen |= 1u << key;
+    if (!take(r, ':')) return refuse(r, LAR_CLOSE_POLICY, "a colon is missing behind a key");
+    return read_value(r, key);
+}
+
+static bool read_object(reader *r) {
+    if (!take(r, '{')) return refuse(r, LAR_CLOSE_POLICY, "a message must be a JSON object");
+    if (!take(r, '}')) {
+        do {
+            if (!read_member(r)) return false;
+        } while (take(r, ','));
+        if (!take(r, '}')) return refuse(r, LAR_CLOSE_POLICY, "the object does not end");
+    }
+    skip_space(r);
+    return r->at == r->end || refuse(r, LAR_CLOSE_POLICY, "there is more behind the object");
+}
+
+/* ---- meaning ---------------------------------------------------------------------------- */
+
+static bool check_keys(reader *r, lar_wish_kind *kind) {
+    if (!(r->seen & BIT(DO))) return refuse(r, LAR_CLOSE_POLICY, "the key do is missing");
+    int found = 0;
+    while (found < WISHES && strcmp(wish_table[found].name, r->text[KEY_DO]) != 0) found++;
+    if (found == WISHES) return refuse(r, LAR_CLOSE_POLICY, "do has a value that is none of ours");
+    *kind = (lar_wish_kind)found;
+    uint32_t needed = wish_table[found].needed, given = r->seen & ~BIT(DO);
+    for (int key = 0; key < KEYS; key++) {
+        uint32_t bit = 1u << key;
+        if (needed & ~given & bit)
+            return refuse(r, LAR_CLOSE_POLICY, "%s needs the key %s", wish_table[found].name,
+                          key_table[key].name);
+        if (given & ~needed & ~wish_table[found].allowed & bit)
+            return refuse(r, LAR_CLOSE_POLICY, "%s has no key %s", wish_table[found].name,
+                          key_table[key].name);
+    }
+    return true;
+}
+
+static bool set_field(reader *r, lar_wish *wish) {
+    if (!(r->seen & BIT(FIELD))) return true;
+    for (int i = 0; i < LAR_FIELDS; i++)
+        if (strcmp(lar_field_names[i].name, r->text[KEY_FIELD]) == 0) {
+            wish->field = lar_field_names[i].field;
+            return true;
+        }
+    return refuse(r, LAR_CLOSE_POLICY, "field has a value that is none of ours");
+}
+
+static bool set_tool(reader *r, int32_t tools, lar_wish *wish) {
+    if (!(r->seen & BIT(TOOL))) return true;
+    if (r->number[KEY_TOOL][0] >= tools)
+        return refuse(r, LAR_CLOSE_POLICY, "there are %d tools, counted from 0", (int)tools);
+    wish->tool = (int32_t)r->number[KEY_TOOL][0];
+    wish->turns = r->seen & BIT(ORIENTATION);
+    wish->opens = r->seen & BIT(OPENING);
+    wish->opening = r->number[KEY_OPENING][0];
+    if (!wish->turns) return true;
+    double square = 0;
+    for (int i = 0; i < 4; i++)
+        square += r->number[KEY_ORIENTATION][i] * r->number[KEY_ORIENTATION][i];
+    if (!(fabs(square - 1) < 1e-3))
+        return refuse(r, LAR_CLOSE_POLICY, "orientation must be a unit quaternion w, x, y, z");
+    for (int i = 0; i < 4; i++) wish->orientation[i] = r->number[KEY_ORIENTATION][i] / sqrt(square);
+    return true;
+}
+
+static bool set_pace(reader *r, lar_wish *wish) {
+    double pace = r->number[KEY_VALUE][0];
+    if (wish->kind != LAR_WISH_PACE) return true;
+    wish->pace = pace;
+    if (pace == 0 || (pace >= 0.001 && pace <= 100)) return true;
+    return refuse(r, LAR_CLOSE_POLICY, "value must lie between 0.001 and 100, or be 0");
+}
+
+static bool set_rest(reader *r, lar_wish *wish) {
+    key_id point = wish->kind == LAR_WISH_GRAB                                     ? KEY_POINT
+                   : wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_GRAVITY ? KEY_TO
+                                                                                   : KEY_POSITION;
+    memcpy(wish->point, r->number[point], sizeof wish->point);
+    wish->hand = (int32_t)r->number[KEY_HAND][0];
+    wish->after = (uint64_t)r->number[KEY_AFTER][0];
+    wish->steps = (uint64_t)r->number[KEY_STEPS][0];
+    wish->on = r->number[KEY_ON][0] != 0;
+    wish->time = r->number[KEY_TIME][0];
+    wish->node = r->seen & BIT(NODE) ? (int32_t)r->number[KEY_NODE][0] : -1;
+    wish->face = r->seen & BIT(FACE) ? (int32_t)r->number[KEY_FACE][0] : -1;
+    wish->axis = (int32_t)r->number[KEY_AXIS][0];
+    wish->index = (int32_t)r->number[KEY_INDEX][0];
+    wish->valued = r->seen & (BIT(TO) | BIT(VALUE));
+    wish->value = r->number[KEY_VALUE][0];
+    wish->material = r->seen & BIT(MATERIAL) ? (int32_t)r->number[KEY_MATERIAL][0] : -1;
+    wish->energy = r->number[KEY_ENERGY][0] != 0;
+    memcpy(wish->name, r->text[KEY_NAME], sizeof wish->name);
+    return true;
+}
+
+lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish *wish,
+                        char reason[LAR_REASON_BYTES]) {
+    reader r = {.at = text, .end = text + length, .reason = reason};
+    lar_wish found = {0};
+    if (length > LAR_MESSAGE_MOST)
+        refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MOST);
+    for (size_t i = 0; i < length && r.close == LAR_CLOSE_NOT;) {
+        int bytes = lar_utf8_length((const unsigned char *)text + i, length - i);
+        if (bytes == 0) refuse(&r, LAR_CLOSE_TEXT, "a message must be UTF-8");
+        i += (size_t)bytes;
+    }
+    bool good = r.close == LAR_CLOSE_NOT && read_object(&r) && check_keys(&r, &found.kind) &&
+                set_field(&r, &found) && set_tool(&r, tools, &found) && set_pace(&r, &found) &&
+                set_rest(&r, &found);
+    if (good) *wish = found;
+    return r.close;
+}

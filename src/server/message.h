@@ -1,0 +1,100 @@
+/* What a viewer says to the server, docs/viewer-protocol.md: one JSON object, read strictly.
+ *
+ * These bytes come from anybody who can reach the port, so every key, type and range is in one
+ * table, and what is not there is refused: the connection ends, with a sentence for whoever writes
+ * viewers. Pure functions; nothing is allocated.
+ */
+#ifndef LAR_SERVER_MESSAGE_H
+#define LAR_SERVER_MESSAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "lariat.h"
+
+enum {
+    LAR_MESSAGE_MOST = 1024, /* bytes */
+    LAR_NAME_MOST = 64,      /* of a saved state's name */
+    LAR_REASON_BYTES = 124,  /* a close frame has room for 123 and no zero */
+    LAR_VIEWER_HANDS = 4     /* that one viewer may have */
+};
+
+/* Why a connection is closed (RFC 6455, 7.4). */
+typedef enum lar_close {
+    LAR_CLOSE_NOT = 0,
+    LAR_CLOSE_AWAY = 1001,
+    LAR_CLOSE_BINARY = 1003,
+    LAR_CLOSE_TEXT = 1007,
+    LAR_CLOSE_POLICY = 1008,
+    LAR_CLOSE_SIZE = 1009,
+    LAR_CLOSE_TOKEN = 4001,
+    LAR_CLOSE_SLOW = 4002,
+    LAR_CLOSE_FULL = 4003
+} lar_close;
+
+typedef enum lar_wish_kind {
+    LAR_WISH_FRAME = 0,
+    LAR_WISH_FORCES,
+    LAR_WISH_GRAB,
+    LAR_WISH_PULL,
+    LAR_WISH_RELEASE,
+    LAR_WISH_TOOL,
+    LAR_WISH_PLAY,
+    LAR_WISH_PAUSE,
+    LAR_WISH_STEP,
+    LAR_WISH_RESET,
+    LAR_WISH_PACE,
+    LAR_WISH_RECORD,
+    LAR_WISH_SAVE,
+    LAR_WISH_LOAD,
+    LAR_WISH_REPLAY,
+    LAR_WISH_SEEK,
+    LAR_WISH_INSPECT,
+    LAR_WISH_SLICE,
+    LAR_WISH_GRAVITY,
+    LAR_WISH_DAMPING,
+    LAR_WISH_STIFFNESS
+} lar_wish_kind;
+
+/* One message. What its kind does not have is zero. */
+typedef struct lar_wish {
+    lar_wish_kind kind;
+    lar_field field; /* frame; 0: none */
+    int32_t tool;    /* forces, tool */
+    int32_t hand;    /* grab, pull, release: 0..LAR_VIEWER_HANDS-1 */
+    uint64_t after;  /* forces */
+    uint64_t steps;  /* step */
+    double pace;
+    bool valued;      /* gravity, damping, stiffness: else as the model says */
+    double value;     /* damping, stiffness */
+    int32_t material; /* stiffness; -1: all */
+    double time;      /* seek [s] */
+    double point[3];  /* grab, pull, tool, gravity */
+    double orientation[4];
+    double opening;
+    bool turns, opens;            /* tool: orientation, opening were given */
+    bool on;                      /* record */
+    int32_t axis, index;          /* slice */
+    int32_t node, face;           /* inspect: of the surface; -1: none */
+    bool energy;                  /* inspect */
+    char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
+} lar_wish;
+
+/* Reads `length` bytes. Returns LAR_CLOSE_NOT, or why the connection must end, with a sentence in
+ * `reason`; *wish is set on success only. `tools`: how many there are. */
+lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish *wish,
+                        char reason[LAR_REASON_BYTES]);
+
+/* Fields that a viewer can ask for, in the order of the protocol. */
+typedef struct lar_field_name {
+    const char *name, *title, *unit;
+    lar_field field;
+} lar_field_name;
+
+enum { LAR_FIELDS = 6 }; /* the first is "none" */
+extern const lar_field_name lar_field_names[LAR_FIELDS];
+/* Index into the table. */
+int lar_field_index(lar_field field);
+
+#endif

@@ -1,0 +1,104 @@
+#include "session/device/link.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/quaternion.h"
+
+static const uint64_t MILLISECOND = 1000000;
+enum { SILENCE = 20, FADE = 50, APPROACH = 300, LEAVE = 1000 }; /* [ms] */
+/* A device of 4 kHz sends as many in LEAVE; beyond it the numbers belong to something else. */
+enum { JUMP_MOST = 10000 };
+
+void lar_link_create(lar_link *link, const char *token, const lar_tool_pose *tool) {
+    *link = (lar_link){.tool = *tool, .pose = *tool, .from = *tool, .silent = true};
+    if (token) memcpy(link->token, token, strnlen(token, sizeof link->token));
+}
+
+/* In a time that does not depend on how much of it is right. */
+static bool is_token(const lar_link *link, const char token[LAR_PACKET_TOKEN]) {
+    int different = 0;
+    for (int i = 0; i < LAR_PACKET_TOKEN; i++) different |= link->token[i] ^ token[i];
+    return link->token[0] == '\0' || different == 0;
+}
+
+static bool is_gone(const lar_link *link, uint64_t now) {
+    return now > link->last_packet && now - link->last_packet > LEAVE * MILLISECOND;
+}
+
+static lar_link_verdict refuse(lar_link *link) {
+    link->refused++;
+    return LAR_LINK_REFUSED;
+}
+
+lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, const void *bytes,
+                               size_t size, uint64_t now) {
+    lar_position_packet packet;
+    if (!lar_position_packet_decode(bytes, size, &packet) || !is_token(link, packet.token))
+        return refuse(link);
+    if (link->owned && is_gone(link, now)) link->owned = false;
+    if (!link->owned) {
+        link->owned = true;
+        link->owner = *from;
+    } else {
+        if (memcmp(&link->owner, from, sizeof *from)) return refuse(link);
+        /* Numbers go round after 2^32; what lies less than half of that ahead is newer. */
+        uint32_t ahead = packet.sequence - link->newest.sequence;
+        if (ahead == 0 || ahead > UINT32_MAX / 2) {
+            link->late++;
+            return LAR_LINK_LATE;
+        }
+        if (ahead > JUMP_MOST) return refuse(link);
+        link->lost += ahead - 1;
+    }
+    if (packet.buttons & LAR_BUTTON_CLOSE) packet.pose.opening = 0;
+    link->newest = packet;
+    link->last_packet = now;
+    link->received++;
+    return LAR_LINK_TAKEN;
+}
+
+static double toward(double value, double target, double most) {
+    return value + fmax(-most, fmin(most, target - value));
+}
+
+/* Between the place where the approach began and the hand; starts and ends without a jerk. */
+static void approach(lar_link *link) {
+    double a = link->approach, share = a * a * (3 - 2 * a);
+    const lar_tool_pose *from = &link->from, *to = &link->newest.pose;
+    for (int i = 0; i < 3; i++)
+        link->pose.position[i] = (1 - share) * from->position[i] + share * to->position[i];
+    lar_quaternion_blend(from->orientation, to->orientation, share, link->pose.orientation);
+    link->pose.opening = to->opening;
+}
+
+bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
+    uint64_t passed = now > link->last_time ? now - link->last_time : 0;
+    if (link->last_time == 0) passed = 0;
+    link->last_time = now;
+    double ms = (double)passed / (double)MILLISECOND;
+    if (link->owned && is_gone(link, now)) link->owned = false;
+    bool here = link->owned &&
+                !(now > link->last_packet && now - link->last_packet > SILENCE * MILLISECOND);
+    if (!here && !link->silent && link->received) link->timeouts++;
+    /* The engine was held up: for the device, as long a silence. An engine that is always so slow
+     * is not. */
+    bool held_up = ms > SILENCE && link->last_gap <= SILENCE;
+    link->last_gap = ms;
+    if (held_up) {
+        link->silent = true;
+        link->strength = toward(link->strength, 0, (ms - SILENCE) / FADE);
+        ms = 0;
+    }
+    if ((here && link->silent) || paused) {
+        link->from = link->tool;
+        link->approach = 0;
+    }
+    link->silent = !here;
+    bool lively = here && !paused;
+    link->strength = toward(link->strength, lively, ms / (lively ? APPROACH : FADE));
+    if (!lively) return false;
+    link->approach = toward(link->approach, 1, ms / APPROACH);
+    approach(link);
+    return true;
+}

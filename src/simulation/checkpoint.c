@@ -1,0 +1,541 @@
+#include "simulation/checkpoint.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/folder.h"
+#include "base/hash.h"
+#include "contact/tool_body.h"
+#include "step/identity.h"
+
+/* ---- what stands in a file ------------------------------------------------------------------ */
+
+static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
+/* Version 3 had no settings: neither them nor what they take of a step. */
+enum { VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
+
+typedef struct file_head {
+    char magic[8];
+    uint32_t version, byte_order;
+    uint64_t bytes; /* of the file */
+    lar_model_identity identity;
+    uint64_t step;
+    double external, damped, contact;
+    uint64_t hash; /* of the state, as lar_simulation_hash */
+    int32_t tools, holds;
+} file_head;
+
+/* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
+_Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
+_Static_assert(sizeof(file_head) == 144, "the format");
+_Static_assert(sizeof(lar_step_division) == 56, "the format");
+_Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until there");
+_Static_assert(sizeof(lar_settings) == 552, "the format");
+_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
+_Static_assert(sizeof(lar_tool_follower) == 240, "the format");
+
+typedef double node_vector[3];
+
+static size_t settings_bytes(uint32_t version) {
+    return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
+                                      : sizeof(lar_step_division) + sizeof(lar_settings);
+}
+
+static size_t file_bytes(uint32_t version, size_t tools, size_t holds, size_t nodes) {
+    return sizeof(file_head) + settings_bytes(version) +
+           tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+           holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
+           sizeof(uint64_t);
+}
+
+uint64_t lar_checkpoint_sum(const void *data, size_t words) {
+    const unsigned char *at = data;
+    uint64_t sum = 0;
+    for (size_t i = 0; i < words; i++) {
+        uint64_t word;
+        memcpy(&word, at + 8 * i, sizeof word);
+        sum = lar_hash_word(sum, word);
+    }
+    return sum;
+}
+
+/* As lar_state_hash, for nodes in the mesh's order. */
+static uint64_t hash_state(uint64_t step, const double *level, const node_vector *u,
+                           const node_vector *v, lar_gid nodes) {
+    uint64_t hash = lar_hash_word(0, step);
+    for (lar_gid n = 0; n < nodes; n++) {
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
+        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
+        if (level[n] > 0) hash = lar_hash_double(hash, level[n]);
+    }
+    return hash;
+}
+
+/* ---- writing -------------------------------------------------------------------------------- */
+
+static lar_status check_finite(const char *path, const lar_domain *whole, const lar_state *state,
+                               lar_error *error) {
+    const lar_mesh *mesh = &whole->model->mesh;
+    bool finite = isfinite(state->external) && isfinite(state->damped) && isfinite(state->contact);
+    for (lar_gid g = 0; g < mesh->node_count; g++)
+        for (int i = 0; i < 4; i++) {
+            size_t value = 4 * (size_t)whole->layout.local[g] + (size_t)i;
+            finite = finite && isfinite(state->u[value]) && isfinite(state->v[value]);
+        }
+    if (finite) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "%s: the state has left the range of numbers and is not saved; go back to an "
+                    "earlier checkpoint or to the start",
+                    path);
+}
+
+static unsigned char *append(unsigned char *at, const void *from, size_t bytes) {
+    memcpy(at, from, bytes);
+    return at + bytes;
+}
+
+/* Returns where the nodes begin. */
+static unsigned char *fill_tools(unsigned char *at, const lar_tools *tools) {
+    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    at = append(at, &tools->division, sizeof tools->division);
+    at = append(at, &tools->settings, sizeof tools->settings);
+    at = append(at, tools->motion, count * sizeof tools->motion[0]);
+    at = append(at, tools->follower, count * sizeof tools->follower[0]);
+    return append(at, tools->hold, holds * sizeof tools->hold[0]);
+}
+
+static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
+                           size_t bytes) {
+    unsigned char *data = lar_calloc(bytes, 1);
+    if (!data) return NULL;
+    lar_gid nodes = whole->model->mesh.node_count;
+    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), tools);
+    node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
+    for (lar_gid g = 0; g < nodes; g++) {
+        size_t there = 4 * (size_t)whole->layout.local[g];
+        level[g] = state->u[there + 3];
+        memcpy(u[g], state->u + there, sizeof u[g]);
+        memcpy(v[g], state->v + there, sizeof v[g]);
+    }
+    file_head head = {.version = VERSION,
+                      .byte_order = BYTE_ORDER_MARK,
+                      .bytes = bytes,
+                      .step = state->step,
+                      .external = state->external,
+                      .damped = state->damped,
+                      .contact = state->contact,
+                      .hash = hash_state(state->step, level, (const node_vector *)u,
+                                         (const node_vector *)v, nodes),
+                      .tools = tools->count,
+                      .holds = tools->hold_count};
+    memcpy(head.magic, MAGIC, sizeof MAGIC);
+    lar_model_identify(whole, &head.identity);
+    memcpy(data, &head, sizeof head);
+    uint64_t sum = lar_checkpoint_sum(data, bytes / 8 - 1);
+    memcpy(data + bytes - 8, &sum, sizeof sum);
+    return data;
+}
+
+static bool write_all(int file, const unsigned char *data, size_t bytes) {
+    while (bytes > 0) {
+        ssize_t written = write(file, data, bytes);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        data += written;
+        bytes -= (size_t)written;
+    }
+    return true;
+}
+
+/* A name is safe when its folder is. */
+static void sync_folder(const char *path) {
+    char *folder = lar_path_beside(path, ".");
+    int file = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (file >= 0) {
+        fsync(file);
+        close(file);
+    }
+    free(folder);
+}
+
+/* A file of a name that nobody else has, "PATH.PROCESS-NUMBER.part" in `part` (`size` bytes):
+ * several may save to one path at once. Names that are there were left by a process that was
+ * killed. */
+static int open_part(const char *path, char *part, size_t size) {
+    static unsigned latest; /* atomic */
+    enum { TRIES = 1000 };
+    int file = -1;
+    errno = EEXIST;
+    for (int i = 0; i < TRIES && file < 0 && errno == EEXIST; i++) {
+        unsigned number = __atomic_add_fetch(&latest, 1, __ATOMIC_RELAXED);
+        snprintf(part, size, "%s.%ld-%u.part", path, (long)getpid(), number);
+        file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+    }
+    return file;
+}
+
+/* Whether a name in the folder of `name` is that of a part of it whose process is gone. Another
+ * machine may write to the same folder, and its processes are not known here: a part that has just
+ * been written to stays. */
+static bool is_left_over(int folder, const char *name, const char *found) {
+    static const double SURELY = 60; /* [s] */
+    size_t length = strlen(name);
+    long process = 0;
+    unsigned number;
+    char end[8] = "";
+    struct stat about;
+    if (strncmp(found, name, length) != 0 ||
+        sscanf(found + length, ".%ld-%u.%7s", &process, &number, end) != 3 ||
+        strcmp(end, "part") != 0 || process < 1)
+        return false;
+    bool gone = kill((pid_t)process, 0) != 0 && errno == ESRCH;
+    return gone && fstatat(folder, found, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
+           S_ISREG(about.st_mode) && difftime(time(NULL), about.st_mtime) > SURELY;
+}
+
+/* What processes have left that were killed while they saved to this path. */
+static void clean_up(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *above = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    DIR *folder = above ? opendir(above) : NULL;
+    for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;)
+        if (is_left_over(dirfd(folder), name, entry->d_name))
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder) closedir(folder);
+    free(above);
+}
+
+static lar_status write_file(const char *path, const unsigned char *data, size_t bytes,
+                             lar_error *error) {
+    size_t size = strlen(path) + sizeof ".-9223372036854775807-4294967295.part";
+    char *part = lar_calloc(size, 1);
+    if (!part) return lar_fail_memory(error, size, path);
+    int file = open_part(path, part, size);
+    bool good = file >= 0 && write_all(file, data, bytes) && fsync(file) == 0;
+    int cause = errno;
+    if (file >= 0 && close(file) != 0 && good) {
+        good = false;
+        cause = errno;
+    }
+    if (good && rename(part, path) != 0) {
+        good = false;
+        cause = errno;
+    }
+    if (good) sync_folder(path);
+    if (good) clean_up(path);
+    if (file >= 0 && !good) remove(part);
+    free(part);
+    if (good) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: cannot be written: %s; check the folder, its permissions and the free "
+                    "space",
+                    path, strerror(cause ? cause : EIO));
+}
+
+lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const lar_state *state,
+                               const lar_tools *tools, lar_bytes *bytes, lar_error *error) {
+    lar_status status = check_finite(path, whole, state, error);
+    if (status) return status;
+    lar_bytes made = {.size = file_bytes(VERSION, (size_t)tools->count, (size_t)tools->hold_count,
+                                         (size_t)whole->model->mesh.node_count)};
+    made.data = fill(whole, state, tools, made.size);
+    if (!made.data) return lar_fail_memory(error, made.size, path);
+    *bytes = made;
+    return LAR_OK;
+}
+
+lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
+    /* The new file takes the place of the old one, which may be a device. */
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return lar_fail(error, LAR_ERROR_IO, "%s: is there and is no file; choose another name",
+                        path);
+    lar_status status = lar_file_spare(path, MAGIC, "not a checkpoint", error);
+    return status ? status : write_file(path, bytes->data, bytes->size, error);
+}
+
+/* ---- reading -------------------------------------------------------------------------------- */
+
+static lar_status refuse(lar_error *error, const char *path, const char *why) {
+    return lar_fail(error, LAR_ERROR_FORMAT, "%s: %s", path, why);
+}
+
+/* Whether it is a whole file of ours. */
+static lar_status check_file(const char *path, const lar_bytes *bytes, file_head *head,
+                             lar_error *error) {
+    *head = (file_head){0};
+    memcpy(head, bytes->data, bytes->size < sizeof *head ? bytes->size : sizeof *head);
+    if (bytes->size < sizeof MAGIC || memcmp(head->magic, MAGIC, sizeof MAGIC) != 0)
+        return refuse(error, path, "is not a checkpoint of Lariat; name a file that it has saved");
+    if (bytes->size >= 16 && head->byte_order == 0x04030201)
+        return refuse(error, path,
+                      "was saved on a machine with another order of bytes; load it on one like "
+                      "that");
+    if (bytes->size >= 16 && head->version != VERSION && head->version != BEFORE_SETTINGS)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s: is a checkpoint of version %lu, this Lariat reads versions %d and %d; "
+                        "save it anew with this one",
+                        path, (unsigned long)head->version, BEFORE_SETTINGS, VERSION);
+    if (bytes->size < sizeof *head || bytes->size < head->bytes)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: is cut off after %zu bytes; take another checkpoint", path,
+                        bytes->size);
+    if (bytes->size > head->bytes || bytes->size % 8 != 0)
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "%s: has %zu bytes and says %llu; it has been altered, take another "
+                        "checkpoint",
+                        path, bytes->size, (unsigned long long)head->bytes);
+    uint64_t sum;
+    memcpy(&sum, bytes->data + bytes->size - 8, sizeof sum);
+    if (sum != lar_checkpoint_sum(bytes->data, bytes->size / 8 - 1) ||
+        head->byte_order != BYTE_ORDER_MARK)
+        return refuse(error, path,
+                      "is damaged: its checksum does not fit; take another checkpoint");
+    return LAR_OK;
+}
+
+lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *error) {
+    /* The head first: what is much longer than a checkpoint is not worth reading. */
+    file_head head, again;
+    struct stat about;
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool whole = file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
+                 read(file, &head, sizeof head) == (ssize_t)sizeof head;
+    if (file >= 0) close(file);
+    lar_bytes begin = {(unsigned char *)&head, whole ? (size_t)about.st_size : 0};
+    if (whole && begin.size != head.bytes) return check_file(path, &begin, &again, error);
+    return lar_bytes_read(path, bytes, error);
+}
+
+lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, lar_error *error) {
+    lar_bytes bytes = {0};
+    file_head head;
+    if (!path || !info)
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "lar_checkpoint_inspect needs the path of a saved state and a place for the "
+            "answer");
+    lar_status status = lar_checkpoint_read(path, &bytes, error);
+    if (!status) status = check_file(path, &bytes, &head, error);
+    lar_bytes_free(&bytes);
+    if (status) return status;
+    if (head.identity.element_kind > 2 || head.tools < 0)
+        return refuse(error, path, "has elements or tools that cannot be; take another checkpoint");
+    *info = (lar_checkpoint_info){.element = (lar_element_kind)head.identity.element_kind,
+                                  .nodes = (int32_t)head.identity.nodes,
+                                  .elements = (int32_t)head.identity.elements,
+                                  .tools = head.tools,
+                                  .time_step = head.identity.time_step,
+                                  .step = head.step};
+    return LAR_OK;
+}
+
+static lar_status refuse_model(lar_error *error, const char *path, const char *what) {
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: was saved from another model: %s; load it into the model that it was "
+                    "saved from",
+                    path, what);
+}
+
+/* The coarsest difference first. */
+static lar_status check_model(const char *path, const file_head *head, const lar_domain *whole,
+                              lar_error *error) {
+    static const char *const kinds[] = {"hex8", "hex8-full", "hex8-matrix"};
+    const lar_model_identity *there = &head->identity;
+    lar_model_identity here;
+    char what[200];
+    lar_model_identify(whole, &here);
+    if (there->nodes != here.nodes || there->elements != here.elements) {
+        snprintf(what, sizeof what,
+                 "%llu nodes and %llu elements instead of %llu nodes and %llu elements",
+                 (unsigned long long)there->nodes, (unsigned long long)there->elements,
+                 (unsigned long long)here.nodes, (unsigned long long)here.elements);
+        return refuse_model(error, path, what);
+    }
+    if (there->mesh != here.mesh)
+        return refuse_model(error, path, "its nodes or elements are at other places");
+    if (there->materials != here.materials)
+        return refuse_model(error, path, "its materials are others");
+    if (there->conditions != here.conditions)
+        return refuse_model(error, path, "its supports, loads, damping or gravity are others");
+    if (there->contact != here.contact)
+        return refuse_model(error, path, "what may touch what is different");
+    if (there->tools != here.tools)
+        return refuse_model(error, path, "its tools are others (hands count, too)");
+    if (there->element_kind != here.element_kind) {
+        const char *name = there->element_kind < 3 ? kinds[there->element_kind] : "of another kind";
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: was saved with elements %s, this simulation has %s; choose the same",
+                        path, name, kinds[here.element_kind]);
+    }
+    if (there->time_step != here.time_step)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: was saved with a time step of %.17g s, this simulation has %.17g s; "
+                        "choose the same",
+                        path, there->time_step, here.time_step);
+    return LAR_OK;
+}
+
+static bool all_finite(const double *value, size_t count) {
+    bool finite = true;
+    for (size_t i = 0; i < count; i++) finite = finite && isfinite(value[i]);
+    return finite;
+}
+
+static bool none_negative(const double *value, size_t count) {
+    bool good = true;
+    for (size_t i = 0; i < count; i++) good = good && value[i] >= 0;
+    return good;
+}
+
+static bool good_pose(const lar_tool_pose *pose) {
+    double square = 0;
+    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
+    return all_finite(pose->position, 3) && fabs(square - 1) <= 1e-5 && pose->opening >= 0 &&
+           pose->opening <= 1;
+}
+
+/* Numbers of steps are far below this: sums of two of them do not overflow. */
+static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+
+static bool good_motion(const lar_tool_motion *motion) {
+    return good_pose(&motion->from) && good_pose(&motion->to) && motion->start <= motion->end &&
+           motion->end <= STEPS_MOST && (motion->holding == 0 || motion->holding == 1) &&
+           motion->padding == 0;
+}
+
+static bool good_hold(const lar_hold *hold, const file_head *head, const lar_model *model) {
+    double sum = hold->weight[0] + hold->weight[1] + hold->weight[2] + hold->weight[3];
+    return hold->tool >= 0 && hold->tool < head->tools && hold->face >= 0 &&
+           hold->face < model->surface.face_count && all_finite(hold->weight, 4) &&
+           fabs(sum - 1) <= 1e-6 && all_finite(hold->anchor, 3) && isfinite(hold->stiffness) &&
+           hold->stiffness >= 0;
+}
+
+static bool power_of_two(int32_t parts) {
+    return parts >= 1 && parts <= LAR_PARTS_MOST && (parts & (parts - 1)) == 0;
+}
+
+static bool good_division(const lar_step_division *d, const file_head *head) {
+    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
+           d->decided <= head->step && d->hardness >= 1 &&
+           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MOST &&
+           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST && power_of_two(d->base) &&
+           (d->due == 0 || d->due == 1);
+}
+
+/* A way between two places is a number. Empty hands, which go no way, may be anywhere. */
+static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
+    static const double FARTHEST = 1e100;
+    bool near = true;
+    for (int i = 0; i < 3 && tool->shape != LAR_TOOL_HAND; i++)
+        near = near && fabs(motion->from.position[i]) <= FARTHEST &&
+               fabs(motion->to.position[i]) <= FARTHEST;
+    return near;
+}
+
+/* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
+static bool good_follower(const lar_tool *tool, const lar_tool_follower *follower) {
+    const lar_tool_felt *felt = &follower->felt;
+    int32_t lagging_most = tool->shape != LAR_TOOL_HAND;
+    return good_motion(&follower->hand) && follower->hand.holding == 0 &&
+           near_enough(tool, &follower->hand) && felt->depth >= 0 && felt->depth <= tool->radius &&
+           felt->steps <= STEPS_MOST && follower->load >= 0 && isfinite(follower->load) &&
+           follower->lagging >= 0 && follower->lagging <= lagging_most && follower->padding == 0;
+}
+
+static const unsigned char *extract(const unsigned char *at, void *to, size_t bytes) {
+    memcpy(to, at, bytes);
+    return at + bytes;
+}
+
+/* What fill_tools writes; *at moves behind it. */
+static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
+                       lar_tools *tools) {
+    const lar_tool_list *list = whole->acting.touch.list;
+    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds, .division = {.base = 1}};
+    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    bool settings = head->version != BEFORE_SETTINGS;
+    lar_settings_reset(&tools->settings);
+    *at = extract(*at, &tools->division,
+                  settings ? sizeof tools->division : offsetof(lar_step_division, base));
+    if (settings) *at = extract(*at, &tools->settings, sizeof tools->settings);
+    *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
+    *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
+    *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
+    bool good = good_division(&tools->division, head) &&
+                lar_settings_good(&tools->settings, whole->time_step);
+    for (int32_t i = 0; i < tools->count; i++)
+        good = good && good_motion(&tools->motion[i]) &&
+               near_enough(&list->tool[i], &tools->motion[i]) &&
+               good_follower(&list->tool[i], &tools->follower[i]);
+    for (int32_t i = 0; i < tools->hold_count; i++)
+        good = good && good_hold(&tools->hold[i], head, whole->model);
+    return good;
+}
+
+lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
+                                lar_checkpoint *checkpoint, lar_error *error) {
+    const lar_model *model = whole->model;
+    const lar_tool_list *list = whole->acting.touch.list;
+    size_t nodes = (size_t)model->mesh.node_count;
+    file_head head;
+    lar_status status = check_file(path, bytes, &head, error);
+    if (!status) status = check_model(path, &head, whole, error);
+    if (status) return status;
+    if (head.tools != (list ? list->count : 0) || head.holds < 0 || head.holds > LAR_HOLDS_MOST ||
+        bytes->size != file_bytes(head.version, (size_t)head.tools, (size_t)head.holds, nodes))
+        return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
+    lar_checkpoint found = {.step = head.step,
+                            .external = head.external,
+                            .damped = head.damped,
+                            .contact = head.contact};
+    if (head.version == BEFORE_SETTINGS) found.damped *= model->damping;
+    const unsigned char *at = bytes->data + sizeof head;
+    if (!take_tools(&head, whole, &at, &found.tools))
+        return refuse(error, path,
+                      "has a tool or a setting that cannot be so; take another checkpoint");
+    found.level = (const double *)(const void *)at;
+    found.u = (const node_vector *)(const void *)(found.level + nodes);
+    found.v = found.u + nodes;
+    bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
+    if (!finite || !all_finite(found.level, 7 * nodes) || !none_negative(found.level, nodes) ||
+        head.step > STEPS_MOST)
+        return refuse(error, path, "has numbers beyond all range; take another checkpoint");
+    if (head.hash != hash_state(head.step, found.level, found.u, found.v, (lar_gid)nodes))
+        return refuse(error, path, "has a state with another hash; take another checkpoint");
+    *checkpoint = found;
+    return LAR_OK;
+}
+
+void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *whole,
+                         lar_state *state, lar_tools *tools) {
+    size_t values = 4 * (size_t)state->node_count;
+    memset(state->u, 0, values * sizeof *state->u);
+    memset(state->v, 0, values * sizeof *state->v);
+    memset(state->force, 0, values * sizeof *state->force);
+    for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
+        size_t there = 4 * (size_t)whole->layout.local[g];
+        memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
+        state->u[there + 3] = checkpoint->level[g];
+        memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
+    }
+    state->step = checkpoint->step;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
+    state->external = checkpoint->external;
+    state->damped = checkpoint->damped;
+    state->contact = checkpoint->contact;
+    *tools = checkpoint->tools;
+}

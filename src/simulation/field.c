@@ -1,0 +1,194 @@
+#include "simulation/field.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simulation/simulation.h"
+#include "mechanics/hex8_full.h"
+
+struct lar_field_plan {
+    lar_hex8 *element; /* [elements]; NULL for the kinds that go the slow way */
+};
+
+/* ---- stress and energy ---------------------------------------------------------------------- */
+
+lar_status lar_field_plan_create(const lar_domain *whole, lar_field_plan **out, lar_error *error) {
+    const lar_mesh *mesh = &whole->model->mesh;
+    size_t elements = (size_t)mesh->element_count;
+    bool prepares = whole->kind == LAR_ELEMENT_HEX8;
+    lar_field_plan *plan = lar_calloc(1, sizeof *plan);
+    if (plan && prepares) plan->element = lar_calloc_aligned(elements, sizeof *plan->element);
+    if (!plan || (prepares && !plan->element)) {
+        free(plan);
+        return lar_fail_memory(error, elements * sizeof(lar_hex8), "the fields of pictures");
+    }
+    for (lar_gid e = 0; prepares && e < mesh->element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(mesh, e, corner);
+        lar_hex8_prepare(corner, lar_model_material_of(whole->model, e), &plan->element[e]);
+    }
+    *out = plan;
+    return LAR_OK;
+}
+
+void lar_field_plan_destroy(lar_field_plan *plan) {
+    if (!plan) return;
+    free(plan->element);
+    free(plan);
+}
+
+/* As lar_measure_stress. */
+static double element_value(const lar_field_plan *plan, const lar_domain *whole, lar_field field,
+                            lar_gid e, const double u[8][3]) {
+    const lar_material now = lar_domain_material_copy(whole, e, NULL), *material = &now;
+    double cauchy[6], corner[8][3];
+    if (plan->element) {
+        double F[3][3], P[3][3];
+        lar_hex8_gradient(&plan->element[e], u, F);
+        if (field == LAR_FIELD_ENERGY) return lar_law_energy(material, (const double(*)[3])F);
+        double J = lar_law_stress(material, (const double(*)[3])F, P);
+        lar_cauchy_stress((const double(*)[3])F, (const double(*)[3])P, J, cauchy);
+    } else {
+        lar_mesh_corners(&whole->model->mesh, e, corner);
+        if (field == LAR_FIELD_ENERGY)
+            return lar_hex8_full_energy(corner, material, u) / lar_hexahedron_volume(corner);
+        lar_hex8_full_stress(corner, material, u, cauchy);
+    }
+    return field == LAR_FIELD_PRESSURE ? lar_mean_pressure(cauchy) : lar_von_mises(cauchy);
+}
+
+/* What a node has of its elements so far. */
+typedef struct node_mean {
+    double sum;
+    double count;
+} node_mean;
+
+static void corners_of(const lar_mesh *mesh, lar_gid e, const double (*u)[3], double corner[8][3]) {
+    for (int a = 0; a < 8; a++) memcpy(corner[a], u[mesh->element[e][a]], sizeof corner[a]);
+}
+
+lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *whole,
+                                 lar_field field, const double (*u)[3], float *out,
+                                 lar_error *error) {
+    const lar_mesh *mesh = &whole->model->mesh;
+    size_t nodes = (size_t)mesh->node_count;
+    node_mean *mean = lar_calloc(nodes, sizeof *mean);
+    if (!mean) return lar_fail_memory(error, nodes * sizeof *mean, "a field");
+    for (lar_gid e = 0; e < mesh->element_count; e++) {
+        double corner[8][3];
+        corners_of(mesh, e, u, corner);
+        double value = element_value(plan, whole, field, e, (const double(*)[3])corner);
+        for (int a = 0; a < 8 && fabs(value) <= (double)FLT_MAX; a++) {
+            node_mean *node = &mean[mesh->element[e][a]];
+            node->sum += value;
+            node->count += 1;
+        }
+    }
+    for (size_t n = 0; n < nodes; n++)
+        out[n] = mean[n].count > 0 ? (float)(mean[n].sum / mean[n].count) : 0;
+    free(mean);
+    return LAR_OK;
+}
+
+/* ---- the public call ------------------------------------------------------------------------ */
+
+/* The simulation's plan, made when there is none. */
+static lar_status find_plan(const lar_simulation *simulation, lar_field_plan **plan,
+                            lar_error *error) {
+    /* Nothing but this call sees it. */
+    lar_field_plan **kept = &((lar_simulation *)simulation)->field;
+    *plan = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
+    if (*plan) return LAR_OK;
+    lar_field_plan *made;
+    lar_status status = lar_field_plan_create(&simulation->domain, &made, error);
+    if (status) return status;
+    if (__atomic_compare_exchange_n(kept, plan, made, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
+        *plan = made;
+    else
+        lar_field_plan_destroy(made);
+    return LAR_OK;
+}
+
+static void measure_lengths(const double (*u)[3], size_t nodes, float *out) {
+    for (size_t n = 0; n < nodes; n++)
+        out[n] = (float)sqrt(u[n][0] * u[n][0] + u[n][1] * u[n][1] + u[n][2] * u[n][2]);
+}
+
+static void tell_processors(const lar_simulation *simulation, size_t nodes, float *out) {
+    const lar_computer *computer = simulation->computer;
+    for (size_t n = 0; n < nodes; n++)
+        out[n] = computer ? (float)computer->division.reporter[n] : 0;
+}
+
+lar_status lar_field_of_element(const lar_simulation *simulation, lar_field field, lar_gid e,
+                                const double (*u)[3], double *value, lar_error *error) {
+    lar_field_plan *plan;
+    double corner[8][3];
+    lar_status status = find_plan(simulation, &plan, error);
+    if (status) return status;
+    corners_of(&simulation->domain.model->mesh, e, u, corner);
+    *value = element_value(plan, &simulation->domain, field, e, (const double(*)[3])corner);
+    return LAR_OK;
+}
+
+lar_status lar_field_stored_energy(const lar_simulation *simulation, const double (*u)[3],
+                                   double *strain, double *hourglass, lar_error *error) {
+    const lar_model *model = simulation->domain.model;
+    lar_field_plan *plan;
+    lar_status status = find_plan(simulation, &plan, error);
+    if (status) return status;
+    *strain = *hourglass = 0;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3], place[8][3], other = 0, factor;
+        corners_of(&model->mesh, e, u, corner);
+        lar_mesh_corners(&model->mesh, e, place);
+        const lar_material now = lar_domain_material_copy(&simulation->domain, e, &factor);
+        const lar_material *material = &now;
+        *strain += plan->element ? lar_hex8_energy(&plan->element[e], material,
+                                                   (const double(*)[3])corner, &other)
+                                 : lar_hex8_full_energy((const double(*)[3])place, material,
+                                                        (const double(*)[3])corner);
+        *hourglass += factor * other; /* the plan has the hourglass stiffness of the model */
+    }
+    return LAR_OK;
+}
+
+lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
+                                const double (*u)[3], float *out, lar_error *error) {
+    if (!simulation || !u || !out)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_field needs a simulation, displacements and a place for "
+                        "the values; none may be NULL");
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
+    size_t nodes = (size_t)mesh->node_count;
+    lar_field_plan *plan;
+    lar_status status;
+    for (size_t n = 0; n < nodes; n++)
+        if (!(fabs(u[n][0]) <= 1e30 && fabs(u[n][1]) <= 1e30 && fabs(u[n][2]) <= 1e30))
+            return lar_fail(error, LAR_ERROR_UNSTABLE,
+                            "node %lld has left the range of numbers: there is nothing to draw; go "
+                            "back to the start",
+                            (long long)mesh->node_id[n]);
+    switch (field) {
+    case LAR_FIELD_DISPLACEMENT:
+        measure_lengths(u, nodes, out);
+        return LAR_OK;
+    case LAR_FIELD_PROCESSOR:
+        tell_processors(simulation, nodes, out);
+        return LAR_OK;
+    case LAR_FIELD_VON_MISES:
+    case LAR_FIELD_PRESSURE:
+    case LAR_FIELD_ENERGY:
+        status = find_plan(simulation, &plan, error);
+        return status ? status
+                      : lar_field_of_elements(plan, &simulation->domain, field, u, out, error);
+    case LAR_FIELD_VELOCITY:
+        break;
+    }
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "field %d cannot be had from displacements; take one of displacement, von "
+                    "Mises stress, pressure, energy and processor",
+                    (int)field);
+}

@@ -1,0 +1,96 @@
+#include "simulation/rest.h"
+
+#include <math.h>
+
+#include "step/measure.h"
+#include "model/rest.h"
+
+/* Of the strain energy. */
+static const double REST_SHARE = 1e-10;
+/* The slow period is an estimate for compact bodies; a slender beam creeps for hundreds of them. */
+static const double PERIODS_MOST = 1000;
+
+enum { LOOKS_PER_PERIOD = 16, LEAST_LOOKS = LOOKS_PER_PERIOD / 2 /* of a window */ };
+
+static uint64_t step_at(const lar_simulation *simulation, double time) {
+    double step = ceil(time / lar_simulation_time_step(simulation));
+    return step < 1e18 ? (uint64_t)step : (uint64_t)1e18;
+}
+
+/* What follows `step` by so much of a slow period, at least a step. */
+static uint64_t steps_of(const lar_simulation *simulation, double periods) {
+    double period = lar_model_slow_period(simulation->domain.model);
+    uint64_t steps = step_at(simulation, periods * period);
+    return steps > 0 ? steps : 1;
+}
+
+static void open_window(lar_rest *rest, uint64_t step) {
+    uint64_t least = LEAST_LOOKS * rest->every, share = (step - rest->since_step) / 4;
+    rest->window = (lar_rest_window){.begin = step, .end = step + (least > share ? least : share)};
+    rest->next = step + rest->every;
+}
+
+void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
+    if (!rest) return;
+    *rest = (lar_rest){0};
+    if (!simulation) return;
+    const lar_model *model = simulation->domain.model;
+    uint64_t now = lar_simulation_steps(simulation);
+    *rest = (lar_rest){.since = lar_model_loads_end(model), .share = REST_SHARE};
+    uint64_t since = step_at(simulation, rest->since);
+    rest->since_step = since > now ? since : now;
+    rest->every = steps_of(simulation, 1.0 / LOOKS_PER_PERIOD);
+    rest->limit = rest->since_step + steps_of(simulation, PERIODS_MOST);
+    open_window(rest, rest->since_step);
+}
+
+/* The ratio of what is left to the strain energy; a body that nothing strains or moves has none. */
+static double share_of(double energy, double strain) {
+    if (energy == 0.0) return 0.0;
+    return strain > 0.0 ? energy / strain : INFINITY;
+}
+
+/* What damping will still take: R of rest.h. */
+static double energy_ahead(const lar_rest *rest, const lar_simulation *simulation, double mean) {
+    static const double SLOWEST = 0.99; /* noise at the end of all motion does not fade */
+    const lar_rest_window *window = &rest->window;
+    double seconds = (double)(window->end - window->begin) * lar_simulation_time_step(simulation);
+    double damping = lar_simulation_damping(simulation);
+    double ratio = mean < SLOWEST * rest->mean_before ? mean / rest->mean_before : SLOWEST;
+    return 2.0 * damping * mean * seconds * ratio / (1.0 - ratio);
+}
+
+int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
+    uint64_t now = lar_simulation_steps(simulation);
+    if (!rest || !simulation) return 0;
+    if (rest->reached || now < rest->next) return rest->reached;
+    lar_rest_window *window = &rest->window;
+    lar_rest_energies(&simulation->domain, lar_simulation_state(simulation), &rest->kinetic,
+                      &rest->strain);
+    window->largest = fmax(window->largest, rest->kinetic);
+    window->sum += rest->kinetic;
+    window->looks++;
+    rest->next = now + rest->every;
+    if (rest->next <= window->end) return 0;
+    double mean = window->sum / window->looks;
+    double left = window->largest;
+    if (mean > 0.0) left += energy_ahead(rest, simulation, mean);
+    rest->left = share_of(left, rest->strain);
+    rest->looked = 1;
+    rest->mean_before = mean;
+    rest->reached = rest->left <= REST_SHARE;
+    open_window(rest, now);
+    return rest->reached;
+}
+
+void lar_rest_energies(const lar_domain *domain, const lar_state *state, double *kinetic,
+                       double *strain) {
+    *kinetic = *strain = 0;
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        int32_t node = domain->layout.local[g];
+        const double *v = state->v + 4 * node;
+        *kinetic += 0.5 * domain->mass[node] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    }
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+        *strain += lar_measure_element_energy(domain, state, e);
+}

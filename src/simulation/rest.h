@@ -1,0 +1,31 @@
+/* When a body has come to rest: see lar_rest in lariat.h.
+ *
+ *      since                                              loads constant from here on
+ *        |---window 1---|---window 2----|-----window 3------|   each at least half a slow period,
+ *        x  x  x  x  x  x  x  x  x  x ...                       and a quarter of all before it;
+ *                                                              x: a look, sixteen per period
+ *
+ * A swinging body stands still twice in a period, so one look at the kinetic energy K proves
+ * nothing: of a window the largest counts. A body that creeps under strong damping has little
+ * kinetic energy and far to go: there counts what damping will still take. It takes 2 c K per
+ * second (c: damping per mass), and K fades from one window to the next by q, the ratio of their
+ * means; so a window T with the mean M has
+ *
+ *     R = 2 c M T (q + q^2 + ...) = 2 c M T q / (1 - q)
+ *
+ * before it. The body rests when largest K + R is below LAR_REST_SHARE of the strain energy: the
+ * displacements are then within about the root of that, 1e-5, of those at rest.
+ *
+ * Energies are summed in the order of the mesh from the whole state, whose bits do not depend on
+ * the division, with functions of our own: every grid and instruction set ends in the same step.
+ */
+#ifndef LAR_SIMULATION_REST_H
+#define LAR_SIMULATION_REST_H
+
+#include "simulation/simulation.h"
+
+/* Energies of the state as it stands, velocities half a step back [J]. */
+void lar_rest_energies(const lar_domain *domain, const lar_state *state, double *kinetic,
+                       double *strain);
+
+#endif

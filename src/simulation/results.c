@@ -1,0 +1,214 @@
+/* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv; where a
+ * fine surface rides on the mesh also that, when it is asked for (results_surface.h).
+ *
+ * After every frame the folder can be opened as it is: frames and series appear whole (written
+ * beside and renamed). Positions are those of the reference; the point array "displacement"
+ * moves them (ParaView: Warp By Vector). */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/folder.h"
+#include "step/measure.h"
+#include "simulation/results_probe.h"
+#include "simulation/results_surface.h"
+#include "mechanics/law.h"
+#include "model/format/mesh_io.h"
+
+/* Stress and energy of the elements: in the order of the columns of `cell`. */
+enum { CELL_VON_MISES, CELL_PRESSURE, CELL_ENERGY, CELL_FIELDS };
+
+static const struct {
+    unsigned field;
+    const char *name;
+} cell_field[CELL_FIELDS] = {{LAR_FIELD_VON_MISES, "von_mises"},
+                             {LAR_FIELD_PRESSURE, "pressure"},
+                             {LAR_FIELD_ENERGY, "energy"}};
+
+struct lar_results {
+    lar_series series;
+    lar_surface_results surface;
+    double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
+    double *cell[CELL_FIELDS];                 /* the same */
+    lar_probe_file probes;
+};
+
+/* ---- opening and closing ---------------------------------------------------------------- */
+
+/* The model's file without folder and extension. */
+static char *series_name(const lar_model *model) {
+    const char *source = lar_model_source(model);
+    const char *slash = strrchr(source, '/');
+    const char *base = slash ? slash + 1 : source;
+    const char *dot = strrchr(base, '.');
+    return lar_strndup(base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+}
+
+static lar_status prepare_arrays(lar_results *results, const lar_model *model, lar_error *error) {
+    unsigned fields = model->output.fields;
+    size_t nodes = (size_t)model->mesh.node_count, elements = (size_t)model->mesh.element_count;
+    bool complete = true;
+    if (fields & LAR_FIELD_DISPLACEMENT) {
+        results->displacement = lar_calloc(nodes, sizeof *results->displacement);
+        complete = complete && results->displacement;
+    }
+    if (fields & LAR_FIELD_VELOCITY) {
+        results->velocity = lar_calloc(nodes, sizeof *results->velocity);
+        complete = complete && results->velocity;
+    }
+    for (int i = 0; i < CELL_FIELDS; i++)
+        if (fields & cell_field[i].field) {
+            results->cell[i] = lar_calloc(elements, sizeof *results->cell[i]);
+            complete = complete && results->cell[i];
+        }
+    return complete ? LAR_OK
+                    : lar_fail_memory(error, 48 * nodes + 24 * elements, "the fields of a frame");
+}
+
+static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
+                              bool surface, lar_error *error) {
+    char *name = series_name(model);
+    if (!name) return lar_fail_memory(error, strlen(folder), "the paths of results");
+    lar_status status = lar_series_open(&results->series, folder, name, ".vtu", error);
+    if (!status && (surface || model->output.surface))
+        status = lar_surface_results_open(&results->surface, folder, name, model, error);
+    if (!status) status = lar_folder_make(folder, error);
+    if (!status) status = lar_series_forget_earlier(&results->series, model, error);
+    if (!status) status = lar_surface_results_forget_earlier(folder, name, model, error);
+    free(name);
+    if (!status) status = prepare_arrays(results, model, error);
+    char *probes = status ? NULL : lar_folder_join(folder, "probes.csv");
+    if (probes) status = lar_results_spare(probes, model, error);
+    if (!status) return lar_probe_file_open(&results->probes, probes, model, error);
+    free(probes);
+    return status;
+}
+
+static lar_status open_results(const char *folder, const lar_simulation *simulation, bool surface,
+                               lar_results **results, lar_error *error) {
+    if (!folder || !*folder || !simulation || !results)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_results_open needs a folder, a simulation and a place for the "
+                        "results; none may be NULL or empty");
+    lar_results *made = lar_calloc(1, sizeof *made);
+    if (!made) return lar_fail_memory(error, sizeof *made, "the results");
+    made->probes.descriptor = -1;
+    lar_status status = open_folder(made, folder, simulation->domain.model, surface, error);
+    if (status)
+        lar_results_close(made, NULL);
+    else
+        *results = made;
+    return status;
+}
+
+lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
+                            lar_results **results, lar_error *error) {
+    return open_results(folder, simulation, false, results, error);
+}
+
+lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
+                                    lar_results **results, lar_error *error) {
+    return open_results(folder, simulation, true, results, error);
+}
+
+lar_status lar_results_close(lar_results *results, lar_error *error) {
+    if (!results) return LAR_OK;
+    lar_status status = lar_series_complete(&results->series, error);
+    lar_error later;
+    lar_status closed = lar_surface_results_close(&results->surface, &later);
+    if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
+    closed = lar_probe_file_close(&results->probes, &later);
+    if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
+    for (int i = 0; i < CELL_FIELDS; i++) free(results->cell[i]);
+    lar_series_clear(&results->series);
+    free(results->displacement);
+    free(results->velocity);
+    free(results);
+    return status;
+}
+
+/* ---- a frame ---------------------------------------------------------------------------- */
+
+/* An element that is inside out has no stress: 0 is written, never a NaN. */
+static double finite_or_zero(double value) {
+    return isfinite(value) ? value : 0;
+}
+
+static void measure_cells(lar_results *results, const lar_simulation *simulation) {
+    double **cell = results->cell;
+    if (!cell[CELL_VON_MISES] && !cell[CELL_PRESSURE] && !cell[CELL_ENERGY]) return;
+    for (lar_gid e = 0; e < simulation->domain.model->mesh.element_count; e++) {
+        double cauchy[6];
+        double energy = lar_measure_stress(&simulation->domain, &simulation->state, e, cauchy);
+        if (cell[CELL_VON_MISES]) cell[CELL_VON_MISES][e] = finite_or_zero(lar_von_mises(cauchy));
+        if (cell[CELL_PRESSURE]) cell[CELL_PRESSURE][e] = finite_or_zero(lar_mean_pressure(cauchy));
+        if (cell[CELL_ENERGY]) cell[CELL_ENERGY][e] = finite_or_zero(energy);
+    }
+}
+
+static lar_status check_finite(const lar_simulation *simulation, lar_error *error) {
+    const lar_domain *domain = &simulation->domain;
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            lar_lid n = domain->layout.local[g];
+            if (!isfinite(simulation->state.u[4 * n + i]) ||
+                !isfinite(simulation->state.v[4 * n + i]))
+                return lar_fail(error, LAR_ERROR_UNSTABLE,
+                                "node %lld has left the range of numbers; this state is not "
+                                "written, the frames before it are good; use a smaller time step, "
+                                "or slower or smaller loads and motions",
+                                (long long)domain->model->mesh.node_id[g]);
+        }
+    return LAR_OK;
+}
+
+static lar_status write_frame(lar_results *results, const lar_simulation *simulation,
+                              const char *path, lar_error *error) {
+    lar_vtu_array point[2], cell[CELL_FIELDS];
+    lar_vtu_frame frame = {.mesh = &simulation->domain.model->mesh,
+                           .point_array = point,
+                           .cell_array = cell,
+                           .time = lar_simulation_time(simulation)};
+    if (results->displacement) {
+        lar_simulation_displacements(simulation, results->displacement);
+        point[frame.point_array_count++] =
+            (lar_vtu_array){"displacement", 3, &results->displacement[0][0]};
+    }
+    if (results->velocity) {
+        lar_simulation_velocities(simulation, results->velocity);
+        point[frame.point_array_count++] = (lar_vtu_array){"velocity", 3, &results->velocity[0][0]};
+    }
+    measure_cells(results, simulation);
+    for (int i = 0; i < CELL_FIELDS; i++)
+        if (results->cell[i])
+            cell[frame.cell_array_count++] =
+                (lar_vtu_array){cell_field[i].name, 1, results->cell[i]};
+    return lar_vtu_write(path, &frame, error);
+}
+
+/* Writes the frame and puts it at the end of the list; on failure nothing is listed. */
+static lar_status add_frame(lar_results *results, const lar_simulation *simulation,
+                            lar_error *error) {
+    char *path = lar_series_next(&results->series);
+    if (!path) return lar_fail_memory(error, 64, "a frame's name");
+    lar_status status = lar_results_spare(path, simulation->domain.model, error);
+    if (!status) status = write_frame(results, simulation, path, error);
+    free(path);
+    if (status) return status;
+    return lar_series_add(&results->series, lar_simulation_time(simulation), error);
+}
+
+lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
+                           lar_error *error) {
+    if (!results || !simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_results_add needs results and a simulation; neither may be NULL");
+    lar_simulation_state(simulation);
+    lar_status status = check_finite(simulation, error);
+    if (!status) status = add_frame(results, simulation, error);
+    if (!status) status = lar_surface_results_add(&results->surface, simulation, error);
+    /* The force array is scratch between steps: the state that the caller sees stays the same. */
+    if (!status) status = lar_probe_file_add(&results->probes, (lar_simulation *)simulation, error);
+    return status;
+}

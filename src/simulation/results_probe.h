@@ -1,0 +1,30 @@
+/* probes.csv: one column per probed value, one line per frame.
+ *
+ *     time [s],fundus x [m],fundus y [m],fundus z [m],cervix x [N],cervix y [N],cervix z [N]
+ *     0,0,0,0,0,0,0
+ *
+ * Every line reaches the file in one piece: what a full disk cuts off is taken back.
+ */
+#ifndef LAR_SIMULATION_RESULTS_PROBE_H
+#define LAR_SIMULATION_RESULTS_PROBE_H
+
+#include "simulation/simulation.h"
+
+typedef struct lar_probe_file {
+    char *path;
+    int descriptor; /* -1: not open */
+    long long size; /* bytes of whole lines */
+} lar_probe_file;
+
+/* Makes the file new, with its header. Takes ownership of `path`, also on failure; the caller
+ * closes in any case. */
+lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model *model,
+                               lar_error *error);
+
+/* Adds the line of the present state. The state's force array is scratch. */
+lar_status lar_probe_file_add(lar_probe_file *file, lar_simulation *simulation, lar_error *error);
+
+/* Idempotent. */
+lar_status lar_probe_file_close(lar_probe_file *file, lar_error *error);
+
+#endif

@@ -1,0 +1,417 @@
+#include "simulation/simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "base/vector.h"
+#include "contact/tool_body.h"
+#include "simulation/field.h"
+#include "step/measure.h"
+
+lar_options lar_options_default(void) {
+    return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO, .listener = -1};
+}
+
+/* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
+ * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
+static void set_initial_displacements(lar_simulation *simulation) {
+    const lar_conditions *conditions = &simulation->domain.acting.conditions;
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        double value = lar_constraint_value(simulation->domain.model, c, 0);
+        if (value != 0) simulation->state.u[c->value] = value; /* never -0: it has other bits */
+    }
+}
+
+/* The velocities half a step BEFORE the start, such that those half a step before and after it
+ * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
+ * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
+static void set_initial_velocities(lar_simulation *simulation) {
+    lar_domain *domain = &simulation->domain;
+    lar_state *state = &simulation->state;
+    const lar_model *model = domain->model;
+    double keep = domain->motion.keep, gravity[3];
+    for (int i = 0; i < model->initial_count; i++) {
+        const lar_initial_velocity *initial = &model->initial[i];
+        for (int32_t k = 0; k < initial->nodes.count; k++)
+            memcpy(state->v + 4 * domain->layout.local[initial->nodes.node[k]], initial->velocity,
+                   sizeof initial->velocity);
+    }
+    lar_trip ignored = {0};
+    lar_step_forces(domain, state, &ignored);
+    lar_gravity_at(model, NULL, 0, gravity);
+    for (lar_gid g = 0; g < model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            int32_t value = 4 * domain->layout.local[g] + i;
+            double drift =
+                gravity[i] * domain->time_step / (1 + 0.5 * model->damping * domain->time_step);
+            double push = domain->push[value / 4] * (double)state->force[value];
+            state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
+        }
+    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
+    for (int32_t i = 0; i < domain->acting.conditions.constraint_count; i++)
+        state->v[domain->acting.conditions.constraint[i].value] = 0;
+}
+
+/* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
+static lar_status check_damping(const lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    if (domain->motion.keep > 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
+                    "a damping below %.3g 1/s or a time_step below %.3g s",
+                    lar_model_source(model), model->damping, domain->time_step,
+                    2 / domain->time_step, 2 / model->damping);
+}
+
+static lar_status check_options(const lar_options *options, lar_error *error) {
+    if ((unsigned)options->element > LAR_ELEMENT_HEX8_MATRIX)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
+                        (int)options->element);
+    if (options->threads < 0 || options->threads > LAR_THREADS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%d threads of a processor; there can be 1 to %d, and more processors",
+                        (int)options->threads, LAR_THREADS_MOST);
+    return LAR_OK;
+}
+
+/* How much the tissue bears of a tool: see contact/tool_body.h. */
+static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
+    const lar_model *model = domain->model;
+    const lar_surface *surface = &model->surface;
+    lar_contact_law law = lar_contact_tool_law_for(domain->time_step, domain->stable_step);
+    lar_tissue_scale scale = {.shear = INFINITY,
+                              .interval =
+                                  (double)lar_tool_interval(domain->time_step) * domain->time_step};
+    double edges = 0, mass = 0;
+    for (int32_t f = 0; f < surface->face_count; f++) {
+        scale.shear =
+            fmin(scale.shear, lar_material_shear(lar_domain_material(domain, surface->element[f])));
+        for (int a = 0; a < 4; a++) {
+            double edge[3];
+            int32_t node = surface->corner[f][a], next = surface->corner[f][(a + 1) % 4];
+            lar_minus(model->mesh.position[next], model->mesh.position[node], edge);
+            edges += lar_length(edge);
+            mass += domain->mass[domain->layout.local[node]];
+        }
+    }
+    if (surface->face_count > 0) {
+        scale.edge = edges / (4 * (double)surface->face_count);
+        scale.stiffness = law.stiffness * mass / (4 * (double)surface->face_count);
+    }
+    lar_tool_limits_set(&scale, list);
+}
+
+void lar_simulation_settle(lar_simulation *simulation) {
+    if (lar_domain_stiffen(&simulation->domain, &simulation->tools.settings))
+        set_tool_limits(&simulation->domain, &simulation->list);
+}
+
+void lar_simulation_set_start(lar_simulation *simulation) {
+    lar_state *state = &simulation->state;
+#define LAR_STATE_CLEAR(type, name, values, kept)                                                  \
+    memset(state->name, 0, (size_t)state->node_count *(values) * sizeof(type));
+    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
+#undef LAR_STATE_CLEAR
+    state->step = 0;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
+    state->damped = state->external = state->contact = 0;
+    simulation->measured = simulation->taken = 0;
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    lar_simulation_settle(simulation);
+    lar_acting_forget(&simulation->domain.acting);
+    set_initial_displacements(simulation);
+    set_initial_velocities(simulation);
+    lar_acting_forget(&simulation->domain.acting);
+}
+
+static lar_status compile(const lar_model *model, const lar_options *options,
+                          lar_simulation *simulation, lar_error *error) {
+    lar_domain *domain = &simulation->domain;
+    lar_status status = lar_tool_list_create(model, options->hands, &simulation->list, error);
+    if (!status) status = lar_domain_create(model, options, domain, error);
+    if (status) return status;
+    if (model->tool_count > 0) domain->interval = lar_tool_interval(domain->time_step);
+    set_tool_limits(domain, &simulation->list);
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
+                              &simulation->tools, &domain->acting.touch, error);
+    domain->acting.touch.always = options->search_always != 0;
+    if (!status)
+        status = lar_collide_create(model, domain->mass, domain->layout.local, domain->time_step,
+                                    domain->stable_step, options->search_always != 0,
+                                    &domain->acting.collide, error);
+    if (!status) status = check_damping(domain, error);
+    if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
+    if (status) return status;
+    lar_simulation_set_start(simulation);
+    simulation->gathered = true;
+    return LAR_OK;
+}
+
+lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
+                                 lar_simulation **simulation, lar_error *error) {
+    lar_options chosen = options ? *options : lar_options_default();
+    lar_simulation *made = NULL;
+    lar_status status = LAR_OK;
+    if (!model || !simulation)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_simulation_create needs a model and a place for the simulation");
+    if (!status) status = check_options(&chosen, error);
+    if (!status && !(made = lar_calloc(1, sizeof *made)))
+        status = lar_fail_memory(error, sizeof *made, "the simulation");
+    if (!status) status = compile(model, &chosen, made, error);
+    if (!status && lar_division_asked(&chosen))
+        status = lar_computer_create(&made->domain, &made->state, &made->tools, &chosen,
+                                     &made->computer, error);
+    else if (chosen.listener >= 0)
+        close(chosen.listener); /* taken over, and nobody to use it */
+    if (status)
+        lar_simulation_destroy(made);
+    else
+        *simulation = made;
+    return status;
+}
+
+void lar_simulation_destroy(lar_simulation *simulation) {
+    if (!simulation) return;
+    lar_computer_destroy(simulation->computer);
+    lar_field_plan_destroy(simulation->field);
+    lar_state_destroy(&simulation->state);
+    lar_domain_destroy(&simulation->domain);
+    free(simulation);
+}
+
+/* Steps up to `end`, an interval's or the advance's. False when it shall not go on. */
+static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch *watch,
+                            void *context) {
+    lar_domain *domain = &simulation->domain;
+    lar_state *state = &simulation->state;
+    lar_trip *trip = &simulation->trip;
+    uint64_t begin = state->step;
+    bool goes_on = true;
+    lar_touch_forget_depths(&domain->acting.touch);
+    state->need = 0;
+    while (state->step < end && goes_on) {
+        lar_step(domain, state, trip);
+        if (trip->kind) lar_trip_examine(domain, state, trip);
+        bool whole = state->part == 0;
+        goes_on = !trip->kind && (!watch || !whole || watch(context, state->step));
+    }
+    simulation->report = (lar_report){0};
+    lar_report_add(&simulation->report, &domain->acting, state);
+    lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
+                         &simulation->tools);
+    return goes_on;
+}
+
+static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                          void *context) {
+    const uint64_t *step = &simulation->state.step;
+    uint64_t end = *step + steps;
+    bool goes_on = true;
+    lar_report_begin(&simulation->domain.acting);
+    lar_interval_restart(&simulation->interval);
+    while (*step < end && goes_on) {
+        lar_interval_decide(&simulation->domain, *step, &simulation->tools);
+        uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
+        goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
+    }
+}
+
+/* Contact may keep or lose energy, but must not have given more than it took: then the bodies would
+ * have more than they began with. Surfaces that fold over themselves do that to it. What counts as
+ * nothing is measured by the energy of the bodies, which is asked for only when contact is behind
+ * by more than it was the last time, or may be: what a report has lacks half of its last step,
+ * which is taken for as much as all steps since the last report. */
+static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
+    static const double NOTHING = 1e-3;
+    double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
+    simulation->taken = taken;
+    if (!(change - taken > NOTHING * simulation->measured)) return LAR_OK;
+    lar_status status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    simulation->measured = fmax(simulation->measured, e.kinetic + e.strain + e.hourglass);
+    double given = -e.contact;
+    if (!(given > NOTHING * simulation->measured)) return LAR_OK;
+    simulation->trip =
+        (lar_trip){.kind = LAR_TRIP_GAIN, .step = simulation->state.step, .given = given};
+    lar_trip_examine(&simulation->domain, &simulation->state, &simulation->trip);
+    return LAR_OK;
+}
+
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                                  void *context, lar_error *error) {
+    lar_computer *computer = simulation->computer;
+    lar_trip *trip = &simulation->trip;
+    lar_status status = LAR_OK;
+    if (!trip->kind) {
+        uint64_t before = lar_simulation_steps(simulation);
+        if (computer) {
+            status = lar_computer_advance(computer, steps, watch, context, trip, error);
+            simulation->report = computer->report;
+            simulation->gathered = false;
+        } else {
+            advance_alone(simulation, steps, watch, context);
+        }
+        simulation->report_steps = lar_simulation_steps(simulation) - before;
+        if (!status && !trip->kind) status = watch_contact(simulation, error);
+    }
+    if (!status) lar_trip_blame(&simulation->domain, trip);
+    return status ? status : lar_trip_report(&simulation->domain, trip, error);
+}
+
+lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
+    if (!simulation->computer || simulation->gathered) return LAR_OK;
+    lar_status status = lar_computer_gather(simulation->computer, error);
+    if (!status) simulation->gathered = true;
+    return status;
+}
+
+lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
+    simulation->trip = (lar_trip){0};
+    simulation->report = (lar_report){0};
+    simulation->report_steps = 0;
+    simulation->measured = simulation->taken = 0;
+    simulation->gathered = true;
+    lar_simulation_settle(simulation);
+    return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
+}
+
+/* In one process gathering cannot fail and waits until somebody looks; between processes it can,
+ * and nobody who looks could say so. */
+lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
+                                          lar_watch *watch, void *context, lar_error *error) {
+    if (!simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_advance needs a simulation, not NULL");
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_advance", error);
+    if (status) return status;
+    status = lar_simulation_compute(simulation, steps, watch, context, error);
+    bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
+    if (may_gather && simulation->computer && simulation->computer->control) {
+        lar_error lost;
+        lar_status gathered = lar_simulation_gather(simulation, &lost);
+        if (gathered) status = lar_fail(error, gathered, "%s", lost.message);
+    }
+    return status;
+}
+
+lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
+    return lar_simulation_advance_watched(simulation, steps, NULL, NULL, error);
+}
+
+lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {
+    if (!simulation || !simulation->computer || simulation->computer->first == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_simulation_serve is for processes other than that of processor 0; "
+                        "give options.processor and options.comm");
+    return lar_computer_serve(simulation->computer, error);
+}
+
+const lar_state *lar_simulation_state(const lar_simulation *simulation) {
+    /* What the caller sees stays the same: the copy is brought up to date. */
+    lar_simulation *own = (lar_simulation *)simulation;
+    lar_simulation_gather(own, NULL);
+    return &own->state;
+}
+
+int32_t lar_simulation_processors(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    return simulation->computer ? simulation->computer->division.grid.count : 1;
+}
+
+int32_t lar_simulation_threads(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    return simulation->computer ? simulation->computer->threads : 1;
+}
+
+uint64_t lar_simulation_steps(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    return simulation->computer ? simulation->computer->processor[0].worker[0].state.step
+                                : simulation->state.step;
+}
+
+double lar_simulation_time(const lar_simulation *simulation) {
+    return (double)lar_simulation_steps(simulation) * lar_simulation_time_step(simulation);
+}
+
+double lar_simulation_time_step(const lar_simulation *simulation) {
+    return simulation ? simulation->domain.time_step : 0;
+}
+
+const char *lar_simulation_isa(const lar_simulation *simulation) {
+    return simulation ? simulation->domain.kernels->name : "";
+}
+
+static void copy_nodes(const lar_domain *domain, const double *values, double (*out)[3]) {
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        memcpy(out[g], values + 4 * domain->layout.local[g], sizeof out[0]);
+}
+
+void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {
+    if (simulation && out)
+        copy_nodes(&simulation->domain, lar_simulation_state(simulation)->u, out);
+}
+
+void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]) {
+    if (simulation && out)
+        copy_nodes(&simulation->domain, lar_simulation_state(simulation)->v, out);
+}
+
+uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
+    uint64_t hash = lar_hash_word(0, state->step);
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        size_t node = (size_t)domain->layout.local[g];
+#define LAR_STATE_HASH(type, name, values, kept)                                                   \
+    for (int i = 0; kept && i < 3; i++)                                                            \
+        hash = lar_hash_double(hash, (double)state->name[node * (values) + (size_t)i]);
+        LAR_STATE_ARRAYS(LAR_STATE_HASH)
+#undef LAR_STATE_HASH
+        double level = state->u[4 * node + 3];
+        if (level > 0) hash = lar_hash_double(hash, level);
+    }
+    return hash;
+}
+
+uint64_t lar_simulation_hash(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    return lar_state_hash(&simulation->domain, lar_simulation_state(simulation));
+}
+
+void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {
+    if (!energy) return;
+    *energy = (lar_energy){0};
+    if (!simulation) return;
+    /* The force array is scratch between steps: the state that the caller sees stays the same. */
+    lar_simulation *scratch = (lar_simulation *)simulation;
+    lar_simulation_state(simulation);
+    lar_measure_energy(&scratch->domain, &scratch->state, energy);
+}
+
+size_t lar_simulation_bytes(const lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_conditions *conditions = &domain->acting.conditions;
+    const lar_layout *layout = &domain->layout;
+    size_t nodes = (size_t)layout->node_padded;
+    size_t elements = (size_t)domain->model->mesh.element_count;
+    size_t bytes = domain->block_bytes + elements * sizeof *layout->corner +
+                   (size_t)layout->block_count * sizeof *layout->block +
+                   (size_t)domain->model->mesh.node_count * sizeof *layout->local +
+                   nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);
+    bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
+             (size_t)conditions->force_count * sizeof *conditions->force +
+             (size_t)conditions->pressure_count * sizeof *conditions->pressure;
+#define LAR_STATE_BYTES(type, name, values, kept) bytes += nodes * (values) * sizeof(type);
+    LAR_STATE_ARRAYS(LAR_STATE_BYTES)
+#undef LAR_STATE_BYTES
+    return bytes;
+}

@@ -1,0 +1,85 @@
+/* The public simulation: the whole model's domain and its state, and the parallel computer where
+ * there is one. Its processors have the state then, and the whole one is gathered on demand. */
+#ifndef LAR_SIMULATION_SIMULATION_H
+#define LAR_SIMULATION_SIMULATION_H
+
+#include "parallel/computer.h"
+#include "step/domain.h"
+#include "step/interval.h"
+#include "layout/state.h"
+#include "step/step.h"
+
+struct lar_simulation {
+    lar_domain domain;
+    lar_state state;
+    lar_trip trip;
+    lar_tool_list list;
+    lar_tools tools;
+    lar_interval interval;  /* of an advance without a computer */
+    lar_computer *computer; /* NULL: lar_step advances the whole model */
+    bool gathered;          /* `state` is what the computer has */
+    lar_report report;      /* of the last advance, of all processors */
+    uint64_t report_steps;  /* how many steps that was */
+    double measured;        /* the most energy of the bodies when that was asked [J] */
+    double taken;           /* by contacts, as of the last report [J] */
+    int32_t sessions;       /* open on it: 0 or 1. Atomic */
+    int32_t held;           /* by the thread of a session, which alone may change it. Atomic */
+    struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
+};
+
+/* The state as it is now: everything that looks at a simulation's state begins with this. */
+const lar_state *lar_simulation_state(const lar_simulation *simulation);
+
+/* lar_simulation_advance_watched without bringing the state together: what a tick of a session
+ * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between
+ * processes it can. */
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+                                  void *context, lar_error *error);
+lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
+
+/* A session lets its own thread alone change the simulation, or everyone again. */
+void lar_simulation_hold(lar_simulation *simulation, bool held);
+/* Called by that thread: it is the one. */
+void lar_simulation_hold_here(const lar_simulation *simulation);
+
+/* Refuses NULL, processors other than zero, and what a session computes on. `call`: the public
+ * name. */
+lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
+                                     lar_error *error);
+
+/* Where a tool's hand asks it to be now; lar_simulation_tool_pose says where it is. */
+void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, lar_tool_pose *pose);
+
+/* The start as lar_simulation_create makes it, into state and tools, also again. */
+void lar_simulation_set_start(lar_simulation *simulation);
+
+/* Materials become as stiff as simulation->tools say, and tools bear what these tissues bear. */
+void lar_simulation_settle(lar_simulation *simulation);
+
+/* All processors go on from simulation->state and ->tools as they are now; what tripped and what
+ * was felt is forgotten. */
+lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error);
+
+/* lar_simulation_hash of a state, which may be a copy of the simulation's. */
+uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state);
+
+/* Bytes of memory that a step can touch: domain and state, without the model. */
+size_t lar_simulation_bytes(const lar_simulation *simulation);
+
+/* State and tools into a copy in memory, and back from there between advances, as from a
+ * checkpoint: the same bits follow. `state` comes from lar_state_create for as many nodes as the
+ * simulation's; no memory is asked for, but to reach other processes. A run that has broken off is
+ * not copied. */
+lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
+                               lar_error *error);
+lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
+                                  const lar_tools *tools, lar_error *error);
+
+/* lar_simulation_save and lar_simulation_load between advances, without the file: only copying.
+ * `path` is for messages; the caller frees the bytes. */
+lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,
+                               lar_error *error);
+lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
+                                 const lar_bytes *bytes, lar_error *error);
+
+#endif

@@ -1,0 +1,205 @@
+/* Gravity, damping and stiffness while a simulation runs, as the public header has them.
+ *
+ * A change acts from the present step on. Whoever changes gravity or stiffness does work, which the
+ * energy account gets here. With the velocity v- half a step back, and what central differences
+ * have ahead of it, a force that changes by dF at the displacement u changes the kinetic energy
+ * m v- v+ / 2 by dt dF v- / 2, and
+ *
+ *     gravity      is a potential, which jumps by -m dg u        external += m dg (dt v-/2 - u)
+ *     materials    W jumps by dW, the inner force by df          external += dW - dt df v-/2
+ *
+ * Damping does no work when it changes. */
+#include <math.h>
+#include <string.h>
+
+#include "step/guard.h"
+#include "simulation/simulation.h"
+#include "mechanics/hex8_full.h"
+#include "mechanics/hex8_matrix.h"
+
+static lar_status check(const lar_simulation *simulation, const char *call, lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, call, error);
+    if (!status && simulation->computer && simulation->computer->broken)
+        status = lar_computer_refuse(error);
+    return status;
+}
+
+/* Of the step that follows. */
+static double length_of_step(const lar_simulation *simulation) {
+    return simulation->domain.time_step / simulation->tools.division.parts;
+}
+
+/* The state is whole. Of several processors the first one keeps what belongs to nobody. */
+static void add_external(lar_simulation *simulation, double work) {
+    lar_computer *computer = simulation->computer;
+    simulation->state.external += work;
+    if (computer) computer->processor[0].worker[0].state.external += work;
+}
+
+/* ---- gravity -------------------------------------------------------------------------------- */
+
+/* m g (dt v-/2 - u) of all nodes [J]; 0 for gravity that follows a curve, whose work is counted
+ * step by step. */
+static double gravity_account(const lar_simulation *simulation, const lar_settings *settings) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_state *state = &simulation->state;
+    double gravity[3], half = 0.5 * length_of_step(simulation), sum = 0;
+    if (lar_gravity_varies(domain->model, settings)) return 0;
+    lar_gravity_at(domain->model, settings, 0, gravity);
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        lar_lid n = domain->layout.local[g];
+        const double *u = state->u + 4 * n, *v = state->v + 4 * n;
+        for (int i = 0; i < 3; i++) sum += domain->mass[n] * gravity[i] * (half * v[i] - u[i]);
+    }
+    return sum;
+}
+
+lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double gravity[3],
+                                      lar_error *error) {
+    lar_status status = check(simulation, "lar_simulation_set_gravity", error);
+    if (status) return status;
+    lar_settings wanted = simulation->tools.settings;
+    wanted.gravity_set = gravity != NULL;
+    for (int i = 0; i < 3; i++) wanted.gravity[i] = gravity ? gravity[i] : 0;
+    const double *g = wanted.gravity;
+    if (!(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] <= LAR_GRAVITY_MAX * LAR_GRAVITY_MAX))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a gravity of (%g, %g, %g) m/s^2; it is at most %g m/s^2 long", g[0], g[1],
+                        g[2], LAR_GRAVITY_MAX);
+    status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    double before = gravity_account(simulation, &simulation->tools.settings);
+    add_external(simulation, gravity_account(simulation, &wanted) - before);
+    simulation->tools.settings = wanted;
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]) {
+    if (!gravity) return;
+    for (int i = 0; i < 3; i++) gravity[i] = 0;
+    if (!simulation) return;
+    lar_gravity_at(simulation->domain.model, &simulation->tools.settings,
+                   lar_simulation_time(simulation), gravity);
+}
+
+/* ---- damping -------------------------------------------------------------------------------- */
+
+lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping,
+                                      lar_error *error) {
+    lar_status status = check(simulation, "lar_simulation_set_damping", error);
+    if (status) return status;
+    double time_step = simulation->domain.time_step;
+    if (!lar_damping_fits(damping, time_step))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a damping of %g 1/s; it is 0 or more, and with a time step of %.3g s less "
+                        "than %.3g 1/s",
+                        damping, time_step, 2 / time_step);
+    lar_settings *settings = &simulation->tools.settings;
+    settings->damping_set = damping != simulation->domain.model->damping;
+    settings->damping = settings->damping_set ? damping : 0;
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+double lar_simulation_damping(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    return lar_damping_of(simulation->domain.model, &simulation->tools.settings);
+}
+
+/* ---- stiffness ------------------------------------------------------------------------------ */
+
+/* Element `e` of the whole model, ready, as stiff as it is now; NULL: not of kind hex8. */
+typedef struct body_element {
+    lar_gid e;
+    const lar_hex8 *hex8;
+} body_element;
+
+/* Energy of an element less dt f v-/2 with its material as it is [J]: linear in its stiffness. (Of
+ * barriers the energy only: their force in half a step is nothing beside it.) The element's nodes
+ * are numbered differently in its block, so corners are those of the layout. */
+static double element_account(const lar_simulation *simulation, const body_element *element,
+                              double half) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_material *material = lar_domain_material(domain, element->e);
+    const lar_state *state = &simulation->state;
+    double u[8][3], v[8][3], force[8][3], hourglass = 0, account;
+    if (element->hex8) {
+        const lar_gid *node = domain->layout.corner[element->e];
+        for (int a = 0; a < 8; a++) {
+            size_t at = 4 * (size_t)domain->layout.local[node[a]];
+            memcpy(u[a], state->u + at, sizeof u[a]);
+            memcpy(v[a], state->v + at, sizeof v[a]);
+        }
+        account = lar_hex8_energy(element->hex8, material, (const double(*)[3])u, &hourglass) +
+                  lar_guard_energy(domain, state, element->e) + hourglass;
+        lar_hex8_force(element->hex8, material, (const double(*)[3])u, force);
+    } else {
+        double corner[8][3];
+        lar_mesh_corners(&domain->model->mesh, element->e, corner);
+        lar_domain_corners(domain, state->u, element->e, u);
+        lar_domain_corners(domain, state->v, element->e, v);
+        account = lar_hex8_full_energy((const double(*)[3])corner, material, (const double(*)[3])u);
+        lar_hex8_full_force((const double(*)[3])corner, material, (const double(*)[3])u, force);
+    }
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) account -= half * force[a][i] * v[a][i];
+    return account;
+}
+
+/* What it takes to make materials as stiff as `wanted` [J]. */
+static double stiffening(const lar_simulation *simulation, const lar_settings *wanted) {
+    const lar_domain *domain = &simulation->domain;
+    double half = 0.5 * length_of_step(simulation), sum = 0;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t k = 0; k < LAR_BLOCK * domain->run[r].count; k++) {
+            int32_t b = domain->run_first[r] + k / LAR_BLOCK;
+            lar_hex8 hex8;
+            body_element element = {.e = domain->layout.block[b].element[k % LAR_BLOCK]};
+            if (element.e < 0) continue;
+            int i = lar_factor_of(domain->model->element_material[element.e]);
+            double ratio = wanted->factor[i] / domain->factor[i];
+            if (ratio == 1) continue;
+            if (domain->kind == LAR_ELEMENT_HEX8) {
+                lar_domain_element(domain, r, b, k % LAR_BLOCK, &hex8);
+                element.hex8 = &hex8;
+            }
+            sum += (ratio - 1) * element_account(simulation, &element, half);
+        }
+    return sum;
+}
+
+lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material, double factor,
+                                        lar_error *error) {
+    lar_status status = check(simulation, "lar_simulation_set_stiffness", error);
+    if (status) return status;
+    int32_t count = simulation->domain.model->material_count;
+    if (material < -1 || material >= count)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no material %ld; the model has %ld, counted from 0, and -1 means "
+                        "all",
+                        (long)material, (long)count);
+    if (!(factor >= LAR_FACTOR_MIN && factor <= LAR_FACTOR_MAX))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a stiffness of %g times the model's; it is %g to %g times, change the "
+                        "model's materials for more",
+                        factor, LAR_FACTOR_MIN, LAR_FACTOR_MAX);
+    lar_settings wanted = simulation->tools.settings;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++)
+        if (material < 0 || i == lar_factor_of(material)) wanted.factor[i] = factor;
+    if (memcmp(&wanted, &simulation->tools.settings, sizeof wanted) == 0) return LAR_OK;
+    status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    add_external(simulation, stiffening(simulation, &wanted));
+    simulation->tools.settings = wanted;
+    simulation->tools.division.due = 1;
+    lar_simulation_settle(simulation);
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material) {
+    int32_t count = simulation ? simulation->domain.model->material_count : 0;
+    if (material < 0 || material >= count) return 0;
+    return simulation->tools.settings.factor[lar_factor_of(material)];
+}

@@ -1,0 +1,221 @@
+/* Tools and contact of a simulation, as the public header has them. */
+#include <math.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "contact/tool_body.h"
+#include "step/hold.h"
+#include "simulation/simulation.h"
+
+/* The simulation that this thread computes for a session. */
+static _Thread_local const lar_simulation *held_here;
+
+void lar_simulation_hold(lar_simulation *simulation, bool held) {
+    __atomic_store_n(&simulation->held, held, __ATOMIC_RELEASE);
+}
+
+void lar_simulation_hold_here(const lar_simulation *simulation) {
+    held_here = simulation;
+}
+
+lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
+                                     lar_error *error) {
+    if (!simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs a simulation, not NULL", call);
+    if (simulation->computer && simulation->computer->first != 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s is for processor 0; the others call lar_simulation_serve", call);
+    if (!__atomic_load_n(&simulation->held, __ATOMIC_ACQUIRE) || held_here == simulation)
+        return LAR_OK;
+    return lar_fail(
+        error, LAR_ERROR_ARGUMENT,
+        "%s: a session computes on this simulation, and two at once would spoil it; ask "
+        "the session (lar_session_...), or close it first",
+        call);
+}
+
+static lar_status check_tool(const lar_simulation *simulation, int32_t tool, const void *place,
+                             lar_error *error) {
+    if (!simulation || !place)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a tool's call needs a simulation and a place for the answer; neither may "
+                        "be NULL");
+    if (tool < 0 || tool >= simulation->list.count)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no tool %ld; the simulation has %ld, counted from 0", (long)tool,
+                        (long)simulation->list.count);
+    return LAR_OK;
+}
+
+int32_t lar_simulation_tool_count(const lar_simulation *simulation) {
+    return simulation ? simulation->list.count : 0;
+}
+
+lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index, lar_tool_info *info,
+                               lar_error *error) {
+    lar_status status = check_tool(simulation, index, info, error);
+    if (status) return status;
+    *info = lar_tool_inspect(&simulation->list.tool[index]);
+    return LAR_OK;
+}
+
+lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t tool,
+                                    lar_tool_pose *pose, lar_error *error) {
+    lar_status status = check_tool(simulation, tool, pose, error);
+    if (!status)
+        lar_tool_at(&simulation->tools.motion[tool], lar_simulation_steps(simulation),
+                    simulation->domain.time_step, pose, NULL);
+    return status;
+}
+
+void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
+                               lar_tool_pose *pose) {
+    const lar_tools *tools = &simulation->tools;
+    const lar_tool_follower *follower = &tools->follower[tool];
+    lar_tool_at(follower->lagging ? &follower->hand : &tools->motion[tool],
+                lar_simulation_steps(simulation), simulation->domain.time_step, pose, NULL);
+}
+
+/* ---- moving -------------------------------------------------------------------------------- */
+
+/* Beyond this a step could not be told from the next as a number. */
+static const double STEPS_MOST = 0x1p53;
+
+/* Finite, and a turn of length one but for rounding, which it then is. */
+static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_pose *clean,
+                             lar_error *error) {
+    const double *q = pose->orientation;
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    bool finite = true;
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(pose->position[i]);
+    if (!finite)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %s: a position is three finite numbers, in metres", tool->name);
+    if (!(fabs(length - 1) <= 1e-6))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %s: the orientation has length %.9g; it is a quaternion w, x, y, z "
+                        "of length 1 (1, 0, 0, 0: as the world)",
+                        tool->name, length);
+    if (!(pose->opening >= 0 && pose->opening <= 1))
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: an opening of %g; it is 0 to 1",
+                        tool->name, pose->opening);
+    *clean = *pose;
+    for (int i = 0; i < 4; i++) clean->orientation[i] = q[i] / length;
+    return LAR_OK;
+}
+
+/* Contact is looked for once in a step: what goes farther could pass through a surface. */
+static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
+                              const lar_tool_pose *pose, uint64_t steps, double time_step,
+                              lar_error *error) {
+    lar_tool_body body;
+    lar_segment from[2], to[2];
+    lar_tool_place(tool, now, &body, from);
+    lar_tool_place(tool, pose, &body, to);
+    double way = lar_tool_way(from, to, body.count), most = 0.5 * tool->radius * (double)steps;
+    if (way <= most) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "
+                    "step (%.4g m/s); take more steps or a smaller way",
+                    tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
+                    0.5 * tool->radius / time_step);
+}
+
+lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
+                                    const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
+    lar_status status = check_tool(simulation, index, pose, error);
+    if (!status) status = lar_simulation_check_zero(simulation, "lar_simulation_tool_move", error);
+    if (status) return status;
+    const lar_tool *tool = &simulation->list.tool[index];
+    lar_tools *tools = &simulation->tools;
+    lar_tool_motion *motion = &tools->motion[index];
+    lar_tool_pose now, wanted;
+    uint64_t step = lar_simulation_steps(simulation);
+    double time_step = simulation->domain.time_step;
+    if (steps < 1 || (double)steps > STEPS_MOST)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
+                        tool->name, (unsigned long long)steps);
+    lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
+    status = check_pose(tool, pose, &wanted, error);
+    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0))
+        status = check_speed(tool, &now, &wanted, steps, time_step, error);
+    if (!status && lar_hold_changes(tool, motion, wanted.opening)) {
+        /* An empty hand is where it takes hold: its way there means nothing. */
+        if (tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0) now = wanted;
+        status = lar_simulation_gather(simulation, error);
+        if (!status)
+            status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
+                                     index, &wanted, tools, error);
+    }
+    if (status) return status;
+    lar_hold_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
+    lar_tool_ask(tools, index,
+                 &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+/* ---- what came of it ----------------------------------------------------------------------- */
+
+static const lar_interval *interval_of(const lar_simulation *simulation) {
+    return simulation->computer ? &simulation->computer->interval : &simulation->interval;
+}
+
+static double limit_of(const lar_tool_list *list, int32_t tool) {
+    return list->tool[tool].shape == LAR_TOOL_HAND ? 0 : list->limits[tool].force;
+}
+
+/* What both jaws have in common; what one of them is pushed with besides is a force on the tool. */
+static double grasp_of(const lar_tool_sum *sum, double unit) {
+    double jaw[2] = {(double)sum->jaw[0] * unit, (double)sum->jaw[1] * unit};
+    return fmax(0, fmin(jaw[0], jaw[1]));
+}
+
+lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
+                                     lar_tool_force *force, lar_error *error) {
+    lar_status status = check_tool(simulation, tool, force, error);
+    if (status) return status;
+    const lar_tool_sum *sum = &simulation->report.tool[tool];
+    double steps = simulation->report_steps ? (double)simulation->report_steps : 1;
+    double unit = 1 / (LAR_STEP_SHARES * simulation->domain.scale * steps);
+    const lar_tools *tools = &simulation->tools;
+    const lar_interval *interval = interval_of(simulation);
+    lar_tool_pose now, hand;
+    double apart[3];
+    lar_simulation_tool_pose(simulation, tool, &now, NULL);
+    lar_simulation_tool_asked(simulation, tool, &hand);
+    lar_minus(hand.position, now.position, apart);
+    memset(force, 0, sizeof *force); /* gaps, too */
+    force->touching = sum->touching;
+    force->held = lar_hold_count(tools, tool);
+    force->limit = limit_of(&simulation->list, tool);
+    force->depth = simulation->report_steps ? interval->depth[tool] : 0;
+    force->apart = lar_length(apart);
+    force->limited = tools->follower[tool].lagging != 0;
+    force->grasp = grasp_of(sum, unit);
+    for (int i = 0; i < 3; i++) {
+        force->force[i] = (double)sum->force[i] * unit;
+        force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
+    }
+    return LAR_OK;
+}
+
+void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {
+    if (info) *info = simulation ? simulation->report.contact : (lar_contact_info){0};
+}
+
+/* ---- divided steps ------------------------------------------------------------------------- */
+
+int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
+    if (!simulation) return 0;
+    int32_t parts = simulation->tools.division.parts;
+    return parts > 1 ? parts : 1;
+}
+
+uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
+    if (most) *most = 0;
+    if (!simulation) return 0;
+    const lar_interval *interval = interval_of(simulation);
+    if (most) *most = interval->parts > 1 ? interval->parts : 1;
+    return interval->divided;
+}

@@ -1,0 +1,469 @@
+#include "step/domain.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/tool_body.h"
+#include "mechanics/hex8_full.h"
+#include "mechanics/hex8_guard.h"
+
+/* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
+static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
+                                lar_hex8 *hex8) {
+    double corner[8][3];
+    const lar_material *material = lar_model_material_of(model, e);
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_hex8_prepare(corner, material, hex8);
+    return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
+                                    : lar_hex8_full_frequency(corner, material);
+}
+
+/* `rate` may be NULL; else [elements], and `most`: lar_domain.fastest. */
+static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                              lar_gid *worst, lar_element_rate *rate, double *most,
+                              lar_error *error) {
+    double fastest = 0;
+    *worst = 0;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        lar_hex8 hex8;
+        double frequency = element_frequency(model, kind, e, &hex8);
+        if (rate) {
+            double density = lar_model_material_of(model, e)->density;
+            rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
+            double *among = &most[lar_factor_of(model->element_material[e])];
+            *among = fmax(*among, rate[e].square);
+        }
+        if (!(frequency <= fastest)) {
+            fastest = frequency;
+            *worst = e;
+        }
+    }
+    if (!(fastest > 0) || !isfinite(fastest))
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: element %lld has no finite frequency; check its shape and material",
+                        lar_model_source(model), (long long)model->mesh.element_id[*worst]);
+    *step = 2 / fastest;
+    return LAR_OK;
+}
+
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error) {
+    return stable_step(model, kind, step, worst, NULL, NULL, error);
+}
+
+double lar_auto_step(const lar_model *model, double stable_step) {
+    double step = 0.8 * stable_step;
+    return model->duration > 0 ? fmin(step, model->duration / 200) : step;
+}
+
+static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
+    const lar_model *model = domain->model;
+    size_t elements = (size_t)model->mesh.element_count;
+    domain->rate = lar_calloc(elements, sizeof *domain->rate);
+    if (!domain->rate)
+        return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
+    lar_status status = stable_step(model, domain->kind, &domain->stable_step,
+                                    &domain->stable_worst, domain->rate, domain->fastest, error);
+    if (status) return status;
+    double wanted = options->time_step != 0 ? options->time_step : model->time_step;
+    if (wanted == 0) {
+        domain->time_step = lar_auto_step(model, domain->stable_step);
+        return LAR_OK;
+    }
+    if (!(wanted > 0) || !isfinite(wanted))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s: the time step must be a positive number of seconds, or auto",
+                        lar_model_source(model));
+    if (wanted > domain->stable_step)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: time step %g s is above the stable step %.4g s (set by element "
+                        "%lld); use time_step: auto, a smaller step, larger or softer elements",
+                        lar_model_source(model), wanted, domain->stable_step,
+                        (long long)model->mesh.element_id[domain->stable_worst]);
+    domain->time_step = wanted;
+    return LAR_OK;
+}
+
+static lar_status list_spares(lar_domain *domain, lar_error *error) {
+    const lar_layout *layout = &domain->layout;
+    domain->spare = lar_calloc((size_t)layout->node_padded, sizeof *domain->spare);
+    if (!domain->spare)
+        return lar_fail_memory(error, (size_t)layout->node_padded * 4, "the spare nodes");
+    for (lar_lid n = 0; n < layout->node_padded; n++)
+        if (layout->global[n] < 0) domain->spare[domain->spare_count++] = n;
+    return LAR_OK;
+}
+
+/* What an element's material says in its lane, and *limit of corner_limit. */
+static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
+                          int lane, lar_gid e, double *limit) {
+    int32_t material = domain->model->element_material[e];
+    double factor = domain->factor[lar_factor_of(material)];
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        head->stiffness[m][lane] = base->stiffness[m] * factor * domain->scale;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+        head->modulus[k][lane] =
+            domain->material[material].parameter[k] * base->volume * domain->scale;
+    *limit = base->limit * factor * factor;
+}
+
+static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
+                      lar_gid e, double *steepest, lar_lane_base *base) {
+    lar_block_shape shape = run->shape;
+    const lar_mesh *mesh = &domain->model->mesh;
+    const lar_gid *node = domain->layout.corner[e];
+    lar_block_head *head = memory;
+    double corner[8][3];
+    lar_hex8 hex8;
+    for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
+    lar_hex8_prepare((const double(*)[3])corner, lar_model_material_of(domain->model, e), &hex8);
+    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+        for (int i = 0; i < 3; i++) {
+            *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
+            if (shape == LAR_SHAPE_GENERAL)
+                ((lar_hex8_block *)memory)->gradient[m][i][lane] = hex8.gradient[m][i];
+            else if (m < 3 && i == (m + run->turn) % 3)
+                ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
+        }
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
+            ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
+    for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
+    base->volume = hex8.volume;
+    memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
+    base->limit =
+        lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
+}
+
+/* More than this is read from memory in every step: beyond the second-level cache and a fair share
+ * of the third. Decides about prefetching only. */
+enum { CACHED_BYTES = 12 << 20 };
+
+static bool same_run(const lar_lanes *a, const lar_lanes *b) {
+    return a->thread == b->thread && a->batch == b->batch && a->law == b->law &&
+           a->shape == b->shape && a->turn == b->turn && a->rows == b->rows;
+}
+
+/* The runs of equal blocks, of at most so many, and the memory they need. */
+static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) {
+    const lar_layout *layout = &domain->layout;
+    int32_t runs = 0;
+    for (int32_t b = 0, length = 0; b < layout->block_count; b++) {
+        bool begins =
+            b == 0 || length == most || !same_run(&layout->block[b - 1], &layout->block[b]);
+        runs += begins;
+        length = begins ? 1 : length + 1;
+    }
+    domain->run = lar_calloc((size_t)runs, sizeof *domain->run);
+    domain->run_first = lar_calloc((size_t)runs, sizeof *domain->run_first);
+    if (!domain->run || !domain->run_first)
+        return lar_fail_memory(error, (size_t)runs * sizeof *domain->run, "the runs of elements");
+    for (int32_t b = 0; b < layout->block_count; b++) {
+        const lar_lanes *lanes = &layout->block[b];
+        if (b == 0 || domain->run[domain->run_count - 1].count == most ||
+            !same_run(lanes - 1, lanes)) {
+            domain->run_first[domain->run_count] = b;
+            domain->run[domain->run_count++] =
+                (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL};
+        }
+        domain->run[domain->run_count - 1].count++;
+        domain->block_bytes += lar_block_size(lanes->shape);
+    }
+    return LAR_OK;
+}
+
+static lar_status build_blocks(lar_domain *domain, lar_error *error) {
+    domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
+    size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
+    domain->strained = lar_calloc(elements, sizeof *domain->strained);
+    domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
+    domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
+    domain->base = lar_calloc(elements, sizeof *domain->base);
+    domain->strain = lar_calloc(elements, sizeof *domain->strain);
+    domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
+    if (!domain->blocks || !domain->base || !domain->corner_limit || !domain->strained ||
+        !domain->strained_count || !domain->strain || !domain->rest)
+        return lar_fail_memory(error, domain->block_bytes, "the elements");
+    for (lar_lid n = 0; n < domain->layout.node_padded; n++)
+        if (domain->layout.global[n] >= 0)
+            memcpy(domain->rest + 4 * (size_t)n,
+                   domain->model->mesh.position[domain->layout.global[n]], 3 * sizeof(double));
+    double steepest = 0;
+    char *memory = domain->blocks;
+    for (int32_t r = 0; r < domain->run_count; r++) {
+        lar_block_run *run = &domain->run[r];
+        run->blocks = memory;
+        run->streamed = domain->block_bytes > CACHED_BYTES;
+        for (int32_t b = 0; b < run->count; b++) {
+            const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+            double *limit = domain->corner_limit + LAR_BLOCK * (domain->run_first[r] + b);
+            for (int lane = 0; lane < LAR_BLOCK; lane++) limit[lane] = INFINITY;
+            for (int lane = 0; lane < LAR_BLOCK; lane++)
+                if (lanes->element[lane] >= 0) {
+                    lar_lane_base *base =
+                        domain->base + LAR_BLOCK * (domain->run_first[r] + b) + lane;
+                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest, base);
+                    fill_material(domain, base, (void *)memory, lane, lanes->element[lane],
+                                  limit + lane);
+                } else
+                    for (int a = 0; a < 8; a++)
+                        ((lar_block_head *)(void *)memory)->node[a][lane] =
+                            4 * (domain->layout.node_padded - 1);
+            memory += lar_block_size(run->shape);
+        }
+    }
+    /* Modal forces S B stay below 2^54 units for |S| below this, hourglass forces below 2^54 too:
+     * a node with hundreds of elements cannot overflow 63 bits. */
+    double stress = 0x1p54 / (3 * steepest);
+    domain->limits = (lar_hex8_limits){.least_volume = 0.01,
+                                       .stress_square = stress * stress,
+                                       .hourglass_square = 0x1p54 * 0x1p54};
+    return LAR_OK;
+}
+
+/* ---- materials ------------------------------------------------------------------------------ */
+
+static lar_status copy_materials(lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    size_t count = (size_t)model->material_count;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) domain->factor[i] = 1;
+    domain->material = lar_calloc(count, sizeof *domain->material);
+    if (!domain->material)
+        return lar_fail_memory(error, count * sizeof *domain->material, "the materials");
+    memcpy(domain->material, model->material, count * sizeof *domain->material);
+    return LAR_OK;
+}
+
+static lar_material times(const lar_material *material, double factor) {
+    lar_material made = *material;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++) made.parameter[k] *= factor;
+    return made;
+}
+
+lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor) {
+    int32_t material = domain->model->element_material[e];
+    double now;
+    __atomic_load(&domain->factor[lar_factor_of(material)], &now, __ATOMIC_RELAXED);
+    if (factor) *factor = now;
+    return times(&domain->model->material[material], now);
+}
+
+/* Elements whose material has changed. */
+static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST]) {
+    char *memory = domain->blocks;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++) {
+            size_t block = (size_t)(domain->run_first[r] + b);
+            double *limit = domain->corner_limit + LAR_BLOCK * block;
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                lar_gid e = domain->layout.block[block].element[lane];
+                if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
+                    fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
+                                  lane, e, limit + lane);
+            }
+            memory += lar_block_size(domain->run[r].shape);
+        }
+}
+
+bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
+    const lar_model *model = domain->model;
+    bool changed[LAR_FACTORS_MOST], any = false;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+        changed[i] = settings->factor[i] != domain->factor[i];
+        any = any || changed[i];
+        double factor = settings->factor[i];
+        __atomic_store(&domain->factor[i], &factor, __ATOMIC_RELAXED);
+    }
+    if (!any) return false;
+    for (int i = 0; i < model->material_count; i++)
+        domain->material[i] = times(&model->material[i], domain->factor[lar_factor_of(i)]);
+    if (domain->blocks) fill_changed(domain, changed);
+    return true;
+}
+
+void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
+    const lar_block_run *run = &domain->run[r];
+    const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
+    const void *block =
+        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_block_size(run->shape);
+    const lar_hex8_block *general = block;
+    const lar_box_block *box = block;
+    *hex8 = (lar_hex8){.volume = base->volume};
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        hex8->stiffness[m] = general->head.stiffness[m][lane] / domain->scale;
+    if (run->shape == LAR_SHAPE_BOX) {
+        for (int m = 0; m < 3; m++) hex8->gradient[m][(m + run->turn) % 3] = box->gradient[m][lane];
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+            hex8->gradient[m][i] = general->gradient[m][i][lane];
+        for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) hex8->shape[m][i] = general->shape[m][i][lane];
+    }
+}
+
+/* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
+ * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (DESIGN 5). */
+static void choose_scale(lar_domain *domain) {
+    const lar_model *model = domain->model;
+    double characteristic = DBL_MIN;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        const lar_material *material = lar_model_material_of(model, e);
+        lar_mesh_corners(&model->mesh, e, corner);
+        double side = cbrt(lar_hexahedron_volume(corner));
+        double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
+        characteristic = fmax(characteristic, modulus * side * side);
+    }
+    int exponent;
+    frexp(characteristic, &exponent);
+    domain->scale = ldexp(1, 46 - exponent);
+}
+
+static lar_status spread_mass(lar_domain *domain, lar_error *error) {
+    const lar_model *model = domain->model;
+    size_t nodes = (size_t)domain->layout.node_padded;
+    domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
+    domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
+    domain->weight = domain->mass;
+    if (!domain->mass || !domain->push)
+        return lar_fail_memory(error, 2 * nodes * sizeof *domain->mass, "the masses");
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(&model->mesh, e, corner);
+        double share = lar_model_material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
+        for (int a = 0; a < 8; a++)
+            domain->mass[domain->layout.local[model->mesh.element[e][a]]] += share;
+    }
+    return LAR_OK;
+}
+
+/* Constants of v' = keep v - push f + drift (docs/theory.md): central differences with damping c,
+ *     m (v' - v)/dt + c m (v' + v)/2 = -f + m g. */
+static void prepare_motion(lar_domain *domain) {
+    const lar_model *model = domain->model;
+    double dt = domain->time_step, half = 0.5 * model->damping * dt;
+    double gravity[3], shortest = DBL_MAX;
+    lar_gravity_at(model, NULL, 0, gravity);
+    domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
+    for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
+    for (int32_t n = 0; n < domain->layout.node_count; n++)
+        if (domain->mass[n] > 0)
+            domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(&model->mesh, e, corner);
+        shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
+    }
+    /* Two watches (LAR_WATCH_INTERVAL) apart, no hourglass mode can grow beyond the integers. */
+    domain->motion.speed = 256 * shortest / dt;
+}
+
+lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
+                             lar_error *error) {
+    return lar_domain_create_styled(model, options, LAR_LAYOUT_ROWS, domain, error);
+}
+
+lar_status lar_domain_create_styled(const lar_model *model, const lar_options *options,
+                                    lar_layout_style style, lar_domain *domain, lar_error *error) {
+    *domain = (lar_domain){.model = model, .kind = options->element};
+    lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
+    if (!status) status = copy_materials(domain, error);
+    if (!status) status = choose_step(domain, options, error);
+    domain->interval = LAR_INTERVAL_MOST; /* those with tools decide more often: simulation.c */
+    if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
+    if (!status) status = list_spares(domain, error);
+    if (!status) status = spread_mass(domain, error);
+    if (!status) status = list_runs(domain, INT32_MAX, error);
+    if (!status) {
+        choose_scale(domain);
+        prepare_motion(domain);
+        if (domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+    }
+    if (!status)
+        status = lar_conditions_create(model, domain->layout.local, NULL,
+                                       &domain->acting.conditions, error);
+    double largest = status ? 0 : lar_conditions_largest(&domain->acting.conditions);
+    if (!status && largest * domain->scale > 0x1p58)
+        status = lar_fail(error, LAR_ERROR_MODEL,
+                          "%s: a nodal force of %g N is far beyond what this material can bear; "
+                          "check its unit",
+                          lar_model_source(model), largest);
+    if (status) lar_domain_destroy(domain);
+    return status;
+}
+
+/* Masses and pushes of a part are those of the whole: a node's mass is that of all its elements. */
+static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_domain *domain,
+                             lar_error *error) {
+    size_t nodes = (size_t)domain->layout.node_padded;
+    domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
+    domain->weight = lar_calloc_aligned(nodes, sizeof *domain->weight);
+    domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
+    if (!domain->mass || !domain->weight || !domain->push)
+        return lar_fail_memory(error, 3 * nodes * sizeof *domain->mass, "the masses");
+    for (size_t n = 0; n < nodes; n++) {
+        lar_gid g = domain->layout.global[n];
+        if (g < 0) continue;
+        lar_lid there = whole->layout.local[g];
+        domain->mass[n] = whole->mass[there];
+        domain->push[n] = whole->push[there];
+        if (counted[g]) domain->weight[n] = domain->mass[n];
+    }
+    return LAR_OK;
+}
+
+lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
+                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  lar_error *error) {
+    *domain = (lar_domain){.model = whole->model,
+                           .kernels = whole->kernels,
+                           .kind = whole->kind,
+                           .scale = whole->scale,
+                           .time_step = whole->time_step,
+                           .interval = whole->interval,
+                           .rate = whole->rate,
+                           .rate_lent = true,
+                           .stable_step = whole->stable_step,
+                           .stable_worst = whole->stable_worst,
+                           .motion = whole->motion};
+    lar_status status = copy_materials(domain, error);
+    if (!status)
+        status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
+    if (!status) status = list_spares(domain, error);
+    if (!status) status = copy_nodes(whole, counted, domain, error);
+    if (!status) status = list_runs(domain, run_most, error);
+    if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+    domain->limits = whole->limits; /* a run stops for the same reason on any grid */
+    if (status) lar_domain_destroy(domain);
+    return status;
+}
+
+void lar_domain_destroy(lar_domain *domain) {
+    lar_acting_destroy(&domain->acting);
+    lar_layout_destroy(&domain->layout);
+    free(domain->run);
+    free(domain->run_first);
+    free(domain->blocks);
+    free(domain->material);
+    free(domain->base);
+    free(domain->corner_limit);
+    free(domain->strained);
+    free(domain->strained_count);
+    free(domain->strain);
+    free(domain->rest);
+    if (!domain->rate_lent) free(domain->rate);
+    free(domain->spare);
+    if (domain->weight != domain->mass) free(domain->weight);
+    free(domain->mass);
+    free(domain->push);
+    *domain = (lar_domain){0};
+}
+
+void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    for (int a = 0; a < 8; a++)
+        memcpy(out[a], u + 4 * domain->layout.local[mesh->element[e][a]], 3 * sizeof(double));
+}

@@ -1,0 +1,121 @@
+/* The compiled model: what one processor needs to step, in the order in which it reads it.
+ *
+ *     model (global, by file order)             domain (local, by use; layout/layout.h)
+ *     elements 0..E-1                 ---->     runs of blocks of one law, shape and kind of rows
+ *     nodes 0..N-1                    ---->     local nodes, those of a row one after the other,
+ *                                               and spare ones for even beginnings and empty lanes
+ *
+ * Constant once compiled, but for the scratch that the conditions need within one step, and for the
+ * stiffness of materials, which lar_domain_stiffen changes between steps; the state
+ * (layout/state.h) is separate. The element kinds that are not hex8 keep their elements in the
+ * plain list `element` and go the slow way.
+ */
+#ifndef LAR_STEP_DOMAIN_H
+#define LAR_STEP_DOMAIN_H
+
+#include "contact/acting.h"
+#include "layout/part_layout.h"
+#include "mechanics/hex8_block.h"
+#include "model/model.h"
+
+/* What an element's frequency follows from. */
+typedef struct lar_element_rate {
+    double square; /* of its highest frequency at rest [1/s^2] */
+    double mass;   /* of a corner [kg] */
+} lar_element_rate;
+
+/* What a lane follows from besides gradients and shape, with the model's material. */
+typedef struct lar_lane_base {
+    double volume;                        /* [m^3] */
+    double stiffness[LAR_HEX8_HOURGLASS]; /* c_m [N/m] */
+    double limit;                         /* of corner_limit */
+} lar_lane_base;
+
+typedef struct lar_domain {
+    const lar_model *model;
+    const lar_kernels *kernels;
+    lar_element_kind kind;
+
+    lar_layout layout;
+    int32_t run_count;
+    lar_block_run *run;     /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
+    int32_t *run_first;     /* [run_count] the run's first block in layout.block */
+    void *blocks;           /* all blocks of all runs */
+    lar_lane_base *base;    /* [8 for each block] */
+    lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
+    double factor[LAR_FACTORS_MOST];  /* of their stiffness (model/settings.h); atomic */
+    double fastest[LAR_FACTORS_MOST]; /* square of the highest frequency at rest among the
+                                         elements of these materials [1/s^2]; a whole's */
+    double *corner_limit;    /* [8 for each block] lar_hex8_corner_limit, in squared force units */
+    double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
+    int32_t *strained;       /* [8 for each block] what the guard looks at in every step, */
+    int32_t *strained_count; /* [run_count] the first of a run's place; scratch (step/guard.h) */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a watch */
+    lar_element_rate *rate;              /* [elements of the model] */
+    bool rate_lent;                      /* `rate` belongs to the whole */
+    size_t block_bytes;
+    int32_t spare_count;
+    lar_lid *spare; /* nodes without mass, ascending */
+    double *mass;   /* [layout.node_padded] kg; spare nodes 0 */
+    double *weight; /* the same, 0 where another processor accounts for the node; in a whole model
+                       `mass` itself */
+    double *push;   /* [layout.node_padded] see lar_node_update */
+
+    double scale;       /* force units per newton, a power of two */
+    double time_step;   /* [s] */
+    uint64_t interval;  /* steps after which is decided (step/interval.h) */
+    double stable_step; /* the elements' bound at rest [s] */
+    lar_gid stable_worst;
+    lar_hex8_limits limits;
+    lar_motion motion; /* without gravity when gravity follows a curve */
+
+    lar_acting acting;
+} lar_domain;
+
+/* Compiles a checked model. The step is options->time_step, or the model's, or automatic
+ * (lar_auto_step). A step above the stable step is an error that names both. */
+lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
+                             lar_error *error);
+/* The same with a style of layout: LAR_LAYOUT_LOOSE shows that the layout changes no bit. */
+lar_status lar_domain_create_styled(const lar_model *model, const lar_options *options,
+                                    lar_layout_style style, lar_domain *domain, lar_error *error);
+void lar_domain_destroy(lar_domain *domain); /* idempotent */
+
+/* The domain of one processor of several: the same scale, step, limits and turned corners as the
+ * whole, which must outlive it. counted[node of the model]: whether this processor accounts for the
+ * node's energies, for one of several has to. Runs have at most run_most blocks. Conditions are
+ * left to the caller: they belong to threads. */
+lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
+                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  lar_error *error);
+
+/* The elements' bound of the time step at rest and the element that sets it. */
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error);
+
+/* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
+ * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
+double lar_auto_step(const lar_model *model, double stable_step);
+
+/* The material of element e as stiff as it is now. */
+static inline const lar_material *lar_domain_material(const lar_domain *domain, lar_gid e) {
+    return &domain->material[domain->model->element_material[e]];
+}
+
+/* The same for threads that do not advance the simulation: a copy; *factor (may be NULL) is how
+ * many times as stiff it is as the model says. */
+lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor);
+
+/* Between steps: makes materials as stiff as `settings` ask. Stresses, hourglass forces and
+ * barriers become what they would have been if the model had had these materials: the element's
+ * numbers are made anew, so that it does not matter how stiff it was before. True when something
+ * changed. */
+bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings);
+
+/* The element in a lane of block `b` (of layout.block), as stiff as it is now; hex8 only. */
+void lar_domain_element(const lar_domain *domain, int32_t run, int32_t b, int lane, lar_hex8 *hex8);
+
+/* Displacements of the corners of global element e, [8][3]. */
+void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]);
+
+#endif

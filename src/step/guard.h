@@ -1,0 +1,29 @@
+/* The guard of strained elements (mechanics/hex8_guard.h), within the step.
+ *
+ * In the last step of an interval the kernels list the elements that are strained. These are looked
+ * at one by one: how fast they have become, for the division of steps, and how close a corner is to
+ * where its barrier begins. Those that are close stay in the list, which is gone through in every
+ * step until the next one is made. A force is added only where a barrier is at work, so which
+ * elements are listed besides does not matter.
+ */
+#ifndef LAR_STEP_GUARD_H
+#define LAR_STEP_GUARD_H
+
+#include "step/domain.h"
+#include "layout/state.h"
+
+/* What the kernel has listed of run r becomes what is looked at in every step. `measures`: how fast
+ * they are counts for state->need. */
+void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,
+                      bool measures, lar_state *state);
+
+/* Adds the barriers' forces of run r to state->force. */
+void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state);
+
+/* The same of all elements of the model, looked for one by one. */
+void lar_guard_apply_all(const lar_domain *domain, lar_state *state);
+
+/* Energy of an element's barriers [J]. */
+double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
+
+#endif

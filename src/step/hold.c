@@ -1,0 +1,163 @@
+#include "step/hold.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/touch_face.h"
+
+/* All holds of one tool together [N/m]: the pads of two fingers give by about a centimetre at 5 N;
+ * jaws are metal, and what is left is the tissue between them. */
+static const double HAND_STIFFNESS = 600, JAWS_STIFFNESS = 3000;
+
+/* Openings at which a tool takes hold and lets go. */
+static const double CLOSED = 0.25, OPEN = 0.5;
+
+/* More do not hold better, and cost time in every step. */
+enum { HOLDS_OF_A_TOOL = 48 };
+
+/* What is asked about the points of the surface. */
+typedef struct lar_reach {
+    const lar_tool *tool;
+    lar_tool_pose pose;
+    double sine, cosine; /* of half the angle between the jaws */
+} lar_reach;
+
+/* Distance from the tip, or infinity where the tool cannot take hold of the point. `own` is the
+ * point in the tool's own axes. */
+static double reach_of(const lar_reach *reach, const double point[3], double own[3]) {
+    const lar_tool *tool = reach->tool;
+    double from_tip[3], square = 0;
+    for (int i = 0; i < 3; i++) {
+        from_tip[i] = point[i] - reach->pose.position[i];
+        square += from_tip[i] * from_tip[i];
+    }
+    lar_turn_back(reach->pose.orientation, from_tip, own);
+    double distance = sqrt(square);
+    if (tool->shape == LAR_TOOL_HAND) return distance;
+    /* Between two jaws that are as wide as thick: in front of the hinge, not beyond their ends, and
+     * on the inner side of either's middle line. */
+    bool aside = fabs(own[1]) > 2 * tool->radius;
+    bool beyond = own[2] > 0 || distance > tool->length + tool->radius;
+    bool between = fabs(own[0]) * reach->cosine <= -own[2] * reach->sine + tool->radius;
+    return aside || beyond || !between ? INFINITY : distance;
+}
+
+/* Goes through all points in the order of the faces: counts those that are no farther than `most`,
+ * notes the nearest distance, and adds every `every`-th to the holds when it is not 0. */
+static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
+                          double most, int32_t every, int32_t tool, lar_tools *tools,
+                          double *nearest) {
+    const lar_touch *touch = &whole->acting.touch;
+    int32_t count = 0;
+    for (int32_t s = 0; s < whole->model->surface.face_count; s++) {
+        const lar_touch_face *face = &touch->face[touch->face_of[s]];
+        double x[4][3], weight[4], point[3], own[3];
+        lar_touch_corners(face, state->u, x);
+        int n = lar_touch_points(face, reach->tool->radius);
+        for (int i = 0; i < n * n; i++) {
+            lar_touch_weights(i, n, weight);
+            lar_face_mean((const double(*)[3])x, weight, point);
+            double distance = reach_of(reach, point, own);
+            if (distance < *nearest) *nearest = distance;
+            if (!(distance <= most)) continue;
+            if (every > 0 && count % every == 0 && tools->hold_count < LAR_HOLDS_MOST) {
+                lar_hold *hold = &tools->hold[tools->hold_count++];
+                *hold = (lar_hold){.tool = tool, .face = s};
+                memcpy(hold->weight, weight, sizeof weight);
+                memcpy(hold->anchor, own, sizeof own);
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Fairly: so much that all tools that can hold could have as much. */
+static int32_t room_of(const lar_tool_list *list, const lar_tools *tools) {
+    int32_t holders = 0;
+    for (int32_t i = 0; i < list->count; i++)
+        holders += list->tool[i].shape == LAR_TOOL_HAND || list->tool[i].shape == LAR_TOOL_GRASPER;
+    int32_t room = LAR_HOLDS_MOST / holders, left = LAR_HOLDS_MOST - tools->hold_count;
+    if (room > HOLDS_OF_A_TOOL) room = HOLDS_OF_A_TOOL;
+    return room < left ? room : left;
+}
+
+static void take(const lar_domain *whole, const lar_state *state, const lar_tool_list *list,
+                 int32_t tool, const lar_tool_pose *pose, lar_tools *tools) {
+    lar_reach reach = {.tool = &list->tool[tool], .pose = *pose};
+    int32_t before = tools->hold_count, room = room_of(list, tools);
+    double most = INFINITY, nearest = INFINITY;
+    bool hand = reach.tool->shape == LAR_TOOL_HAND;
+    if (whole->acting.touch.face_count == 0 || room <= 0) return;
+    if (hand) {
+        most = reach.tool->radius;
+    } else {
+        lar_tool_at(&tools->motion[tool], state->step, whole->time_step, &reach.pose, NULL);
+        double opening = fmax(reach.pose.opening, CLOSED);
+        lar_sine_cosine(0.5 * reach.tool->spread * opening, &reach.sine, &reach.cosine);
+        most = 2 * reach.tool->length + reach.tool->radius; /* the jaws themselves decide */
+    }
+    int32_t count = go_through(whole, state, &reach, most, 0, tool, tools, &nearest);
+    if (count == 0 && hand && nearest <= 2 * most) {
+        most = nearest;
+        count = 1;
+    }
+    if (count == 0) return;
+    go_through(whole, state, &reach, most, (count + room - 1) / room, tool, tools, &nearest);
+    int32_t taken = tools->hold_count - before;
+    for (int32_t i = before; i < tools->hold_count; i++)
+        tools->hold[i].stiffness = (hand ? HAND_STIFFNESS : JAWS_STIFFNESS) / taken;
+}
+
+static void let_go(int32_t tool, lar_tools *tools) {
+    int32_t kept = 0;
+    for (int32_t i = 0; i < tools->hold_count; i++)
+        if (tools->hold[i].tool != tool) tools->hold[kept++] = tools->hold[i];
+    memset(tools->hold + kept, 0, (size_t)(tools->hold_count - kept) * sizeof *tools->hold);
+    tools->hold_count = kept;
+}
+
+lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
+                           const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
+                           lar_tools *tools, lar_error *error) {
+    (void)error;
+    lar_tool_shape shape = list->tool[tool].shape;
+    lar_tool_motion *motion = &tools->motion[tool];
+    if (shape != LAR_TOOL_HAND && shape != LAR_TOOL_GRASPER) return LAR_OK;
+    if (motion->holding && pose->opening > OPEN) {
+        let_go(tool, tools);
+        motion->holding = 0;
+    } else if (!motion->holding && pose->opening < CLOSED) {
+        take(whole, state, list, tool, pose, tools);
+        motion->holding = 1;
+    }
+    return LAR_OK;
+}
+
+bool lar_hold_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
+    if (tool->shape != LAR_TOOL_GRASPER && tool->shape != LAR_TOOL_HAND) return false;
+    return motion->holding ? opening > OPEN : opening < CLOSED;
+}
+
+int32_t lar_hold_count(const lar_tools *tools, int32_t tool) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < tools->hold_count; i++) count += tools->hold[i].tool == tool;
+    return count;
+}
+
+void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
+                   lar_tools *tools) {
+    const lar_touch *touch = &whole->acting.touch;
+    if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
+    lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
+    double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));
+    double wanted = JAWS_STIFFNESS / fmax(1, lar_hold_count(tools, tool));
+    for (int32_t i = 0; i < tools->hold_count; i++) {
+        lar_hold *hold = &tools->hold[i];
+        if (hold->tool != tool) continue;
+        /* Of what it really has, or softening would begin unseen. */
+        double most = lar_hold_most(&touch->face[touch->face_of[hold->face]],
+                                    list->tool[tool].radius, &law, whole->mass);
+        hold->stiffness = share * fmin(wanted, most);
+    }
+}

@@ -1,0 +1,163 @@
+#include "step/identity.h"
+
+#include "base/hash.h"
+
+static uint64_t hash_doubles(uint64_t hash, const double *value, size_t count) {
+    for (size_t i = 0; i < count; i++) hash = lar_hash_double(hash, value[i]);
+    return hash;
+}
+
+static uint64_t hash_curve(uint64_t hash, const lar_curve *curve) {
+    hash = lar_hash_word(hash, (uint64_t)curve->kind << 32 | (uint32_t)curve->shape);
+    hash = lar_hash_double(hash, curve->over);
+    return hash_doubles(hash, curve->count ? curve->point[0] : NULL, 2 * (size_t)curve->count);
+}
+
+static uint64_t hash_conditions(uint64_t hash, const lar_conditions *c) {
+    for (int32_t i = 0; i < c->constraint_count; i++) {
+        const lar_constraint *k = &c->constraint[i];
+        hash = lar_hash_word(hash, (uint64_t)(uint32_t)k->value << 32 | (uint32_t)k->curve);
+        hash = lar_hash_double(hash, k->by);
+    }
+    for (int32_t i = 0; i < c->force_count; i++) {
+        const lar_point_force *f = &c->force[i];
+        hash = lar_hash_word(hash, (uint64_t)(uint32_t)f->node << 32 | (uint32_t)f->curve);
+        hash = hash_doubles(hash, f->force, 3);
+    }
+    for (int32_t i = 0; i < c->pressure_count; i++) {
+        const lar_face_pressure *p = &c->pressure[i];
+        for (int a = 0; a < 4; a++) hash = lar_hash_word(hash, (uint32_t)p->node[a]);
+        hash = lar_hash_word(hash, (uint32_t)p->curve);
+        hash = lar_hash_double(hash, p->pressure);
+    }
+    return hash;
+}
+
+/* Blocks hold geometry, materials and local nodes of every element, whatever the instruction set;
+ * their padding is zero. */
+static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
+    const uint64_t *word = domain->blocks;
+    for (size_t i = 0; word && i < domain->block_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
+    return hash;
+}
+
+/* ---- part by part -------------------------------------------------------------------------- */
+
+static uint64_t hash_indices(uint64_t hash, const int32_t *index, int32_t count) {
+    hash = lar_hash_word(hash, (uint32_t)count);
+    for (int32_t i = 0; i < count; i++) hash = lar_hash_word(hash, (uint32_t)index[i]);
+    return hash;
+}
+
+static uint64_t hash_mesh(const lar_mesh *mesh) {
+    uint64_t hash = hash_doubles(1, mesh->position[0], 3 * (size_t)mesh->node_count);
+    for (lar_gid e = 0; e < mesh->element_count; e++)
+        hash = hash_indices(hash, mesh->element[e], 8);
+    return hash;
+}
+
+static uint64_t hash_materials(const lar_model *model) {
+    uint64_t hash = lar_hash_word(2, (uint64_t)model->material_count);
+    for (int i = 0; i < model->material_count; i++) {
+        const lar_material *m = &model->material[i];
+        hash = lar_hash_word(hash, (uint64_t)m->law);
+        hash = lar_hash_double(hash, m->density);
+        hash = hash_doubles(hash, m->parameter, LAR_LAW_PARAMETERS);
+    }
+    return hash_indices(hash, model->element_material, model->mesh.element_count);
+}
+
+static uint64_t hash_nodes(uint64_t hash, const lar_node_list *nodes) {
+    return hash_indices(hash, nodes->node, nodes->count);
+}
+
+/* Gravity, damping and curves: what moves every node. */
+static uint64_t hash_motion(uint64_t hash, const lar_model *model) {
+    hash = hash_doubles(hash, &model->damping, 1);
+    hash = hash_doubles(hash, model->gravity, 3);
+    for (int axis = 0; axis < 3; axis++)
+        hash = lar_hash_word(hash, (uint32_t)model->gravity_curve[axis]);
+    for (int i = 0; i < model->curve_count; i++) hash = hash_curve(hash, &model->curve[i]);
+    return hash;
+}
+
+static uint64_t hash_model_conditions(const lar_model *model) {
+    uint64_t hash = hash_motion(3, model);
+    for (int i = 0; i < model->fix_count; i++)
+        hash = lar_hash_word(hash_nodes(hash, &model->fix[i].nodes), model->fix[i].axes);
+    for (int i = 0; i < model->move_count; i++) {
+        const lar_move *m = &model->move[i];
+        hash = lar_hash_word(hash_nodes(hash, &m->nodes), m->axes);
+        hash = lar_hash_word(lar_hash_double(hash, m->by), (uint32_t)m->curve);
+    }
+    for (int i = 0; i < model->load_count; i++) {
+        const lar_nodal_load *l = &model->load[i];
+        hash = hash_doubles(hash_nodes(hash, &l->nodes), l->force, 3);
+        hash = lar_hash_word(hash, (uint32_t)l->curve);
+    }
+    for (int i = 0; i < model->pressure_count; i++) {
+        const lar_pressure_load *p = &model->pressure[i];
+        hash = lar_hash_double(hash_indices(hash, p->face, p->count), p->pressure);
+        hash = lar_hash_word(hash, (uint32_t)p->curve);
+    }
+    for (int i = 0; i < model->initial_count; i++)
+        hash =
+            hash_doubles(hash_nodes(hash, &model->initial[i].nodes), model->initial[i].velocity, 3);
+    return hash;
+}
+
+static uint64_t hash_contacts(const lar_model *model) {
+    uint64_t hash = lar_hash_word(4, (uint64_t)model->contact_count);
+    for (int i = 0; i < model->contact_count; i++) {
+        const lar_contact *c = &model->contact[i];
+        hash = lar_hash_word(hash, (uint64_t)c->kind);
+        hash = hash_indices(hash, c->face, c->face_count);
+        hash = hash_indices(hash, c->against, c->against_count);
+        hash = hash_doubles(hash_doubles(hash, c->through, 3), c->normal, 3);
+    }
+    return hash;
+}
+
+static uint64_t hash_tools(const lar_tool_list *list) {
+    uint64_t hash = lar_hash_word(5, list ? (uint64_t)list->count : 0);
+    for (int32_t i = 0; list && i < list->count; i++) {
+        const lar_tool *t = &list->tool[i];
+        hash = lar_hash_word(hash, (uint64_t)t->shape);
+        hash = hash_doubles(hash, (const double[]){t->radius, t->length, t->spread}, 3);
+        hash = hash_doubles(hash, t->rest.position, 3);
+        hash = hash_doubles(hash, t->rest.orientation, 4);
+        hash = lar_hash_double(hash, t->rest.opening);
+    }
+    return hash;
+}
+
+void lar_model_identify(const lar_domain *whole, lar_model_identity *identity) {
+    const lar_model *model = whole->model;
+    *identity = (lar_model_identity){.nodes = (uint64_t)model->mesh.node_count,
+                                     .elements = (uint64_t)model->mesh.element_count,
+                                     .element_kind = (uint64_t)whole->kind,
+                                     .time_step = whole->time_step,
+                                     .mesh = hash_mesh(&model->mesh),
+                                     .materials = hash_materials(model),
+                                     .conditions = hash_model_conditions(model),
+                                     .contact = hash_contacts(model),
+                                     .tools = hash_tools(whole->acting.touch.list)};
+}
+
+/* ---- of a computer ------------------------------------------------------------------------- */
+
+uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t division) {
+    const lar_model *model = whole->model;
+    size_t nodes = (size_t)whole->layout.node_padded;
+    uint64_t hash = lar_hash_word(division, (uint64_t)whole->kind);
+    hash = lar_hash_word(hash, start->step);
+    hash = hash_doubles(hash, &whole->time_step, 1);
+    hash = hash_motion(hash, model);
+    hash = lar_hash_word(hash, hash_contacts(model));
+    hash = lar_hash_word(hash, hash_tools(whole->acting.touch.list));
+    hash = hash_doubles(hash, whole->push, nodes);
+    hash = hash_doubles(hash, start->u, 4 * nodes);
+    hash = hash_doubles(hash, start->v, 4 * nodes);
+    return hash_blocks(hash_conditions(hash, &whole->acting.conditions), whole);
+}

@@ -1,0 +1,74 @@
+#include "step/domain.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+static void inspect_elements(const lar_model *model, lar_model_info *info) {
+    info->shortest_edge = DBL_MAX;
+    info->scaled_jacobian_min = DBL_MAX;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        lar_mesh_corners(&model->mesh, e, corner);
+        double volume = lar_hexahedron_volume(corner), quality = lar_scaled_jacobian(corner);
+        info->volume += volume;
+        info->mass += volume * lar_model_material_of(model, e)->density;
+        info->scaled_jacobian_mean += quality / model->mesh.element_count;
+        if (quality < info->scaled_jacobian_min) {
+            info->scaled_jacobian_min = quality;
+            info->scaled_jacobian_worst = e;
+        }
+        for (int k = 0; k < 12; k++) {
+            double square = 0;
+            for (int i = 0; i < 3; i++) {
+                double d = corner[lar_edge_node[k][0]][i] - corner[lar_edge_node[k][1]][i];
+                square += d * d;
+            }
+            info->shortest_edge = fmin(info->shortest_edge, sqrt(square));
+        }
+    }
+}
+
+static lar_status count_fixed_nodes(const lar_model *model, int32_t *count, lar_error *error) {
+    unsigned char *held = lar_calloc((size_t)model->mesh.node_count, 1);
+    if (!held) return lar_fail_memory(error, (size_t)model->mesh.node_count, "a node mark");
+    for (int i = 0; i < model->fix_count + model->move_count; i++) {
+        const lar_node_list *nodes =
+            i < model->fix_count ? &model->fix[i].nodes : &model->move[i - model->fix_count].nodes;
+        for (int32_t k = 0; k < nodes->count; k++) {
+            *count += !held[nodes->node[k]];
+            held[nodes->node[k]] = 1;
+        }
+    }
+    free(held);
+    return LAR_OK;
+}
+
+lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_error *error) {
+    if (!model || !info)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_model_inspect needs a model and a place for what it finds; neither "
+                        "may be NULL");
+    lar_model_info made = {.title = model->title ? model->title : "",
+                           .nodes = model->mesh.node_count,
+                           .elements = model->mesh.element_count,
+                           .materials = model->material_count};
+    for (int i = 0; i < 3; i++) {
+        made.lower[i] = DBL_MAX;
+        made.upper[i] = -DBL_MAX;
+        for (int32_t n = 0; n < model->mesh.node_count; n++) {
+            made.lower[i] = fmin(made.lower[i], model->mesh.position[n][i]);
+            made.upper[i] = fmax(made.upper[i], model->mesh.position[n][i]);
+        }
+    }
+    inspect_elements(model, &made);
+    lar_status status = count_fixed_nodes(model, &made.fixed_nodes, error);
+    if (!status)
+        status =
+            lar_stable_step(model, LAR_ELEMENT_HEX8, &made.stable_step, &made.stable_worst, error);
+    if (status) return status;
+    made.time_step =
+        model->time_step > 0 ? model->time_step : lar_auto_step(model, made.stable_step);
+    *info = made;
+    return LAR_OK;
+}

@@ -1,0 +1,94 @@
+#include "step/interval.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/tool_body.h"
+
+void lar_interval_restart(lar_interval *interval) {
+    memset(interval->seen, 0, sizeof interval->seen);
+    memset(interval->depth, 0, sizeof interval->depth);
+}
+
+/* Far beyond what a tool may bear; then the exact number does not matter. */
+static int64_t whole_number(lar_wide value) {
+    const lar_wide most = (lar_wide)1 << 60;
+    return (int64_t)(value > most ? most : value < -most ? -most : value);
+}
+
+/* Larger, or no number. */
+static double larger(double a, double b) {
+    return b <= a ? a : b;
+}
+
+void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
+                          lar_tools *tools) {
+    int32_t parts = tools->division.parts;
+    if (parts > 1) interval->divided += steps;
+    if (steps > 0 && parts > interval->parts) interval->parts = parts;
+    tools->division.need = larger(tools->division.need, report->need);
+    for (int32_t t = 0; t < tools->count; t++) {
+        const lar_tool_sum *now = &report->tool[t];
+        lar_tool_sum *before = &interval->seen[t];
+        lar_tool_felt *felt = &tools->follower[t].felt;
+        for (int k = 0; k < 3; k++) {
+            felt->force[k] = whole_number(felt->force[k] + now->force[k] - before->force[k]);
+            felt->torque[k] = whole_number(felt->torque[k] + now->torque[k] - before->torque[k]);
+        }
+        felt->squeeze = whole_number(felt->squeeze + now->squeeze - before->squeeze);
+        felt->depth = now->depth > felt->depth ? now->depth : felt->depth;
+        felt->steps += steps;
+        interval->depth[t] = fmax(interval->depth[t], now->depth);
+        *before = *now;
+    }
+}
+
+uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,
+                          uint64_t step) {
+    if (lar_division_is_close(division)) return step + 1;
+    return (step / whole->interval + 1) * whole->interval;
+}
+
+/* At least what the step takes at rest; tools that touch take their own part (theory.md 10). */
+static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
+    static const double MOST = 0.9, SPRINGS = 0.25;
+    double share = whole->time_step / whole->stable_step, rest = 1.02 * share * share;
+    lar_step_room room = {.most = fmax(MOST, rest)};
+    for (int32_t i = 0; i < tools->count; i++)
+        if (tools->follower[i].felt.depth > 0) room.springs = fmin(SPRINGS, room.most - rest);
+    return room;
+}
+
+/* Parts that stiffer materials need. Elements take s^2 of a step, times their factor, and contact
+ * at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of a step
+ * has room for p^2 of both together. */
+static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
+    static const double CONTACT_MOST = 9.0 / 16, CONTACT_LEAST = 0.09;
+    double dt = whole->time_step, share = dt / whole->stable_step, elements = share * share;
+    double contact = fmax(CONTACT_LEAST, fmin(CONTACT_MOST, 1 - elements)), stiff = 0;
+    bool stiffer = false;
+    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+        stiffer = stiffer || settings->factor[i] > 1;
+        stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * settings->factor[i]);
+    }
+    int32_t base = 1;
+    while (stiffer && stiff + contact > fmax(1, elements + contact) * base * base) base *= 2;
+    return base;
+}
+
+bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
+    const lar_tool_list *list = whole->acting.touch.list;
+    lar_step_division *division = &tools->division;
+    if (!list) return false;
+    if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)
+        return false;
+    if (division->due) division->base = base_of(whole, &tools->settings);
+    division->due = 0;
+    double seconds = (double)(step - division->decided) * whole->time_step;
+    const lar_step_room room = room_of(whole, tools);
+    division->decided = step;
+    bool changed = lar_tools_divide(list, tools, step, seconds, &room, 1 / whole->scale);
+    return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
+                            whole->time_step, 1 / whole->scale) ||
+           changed;
+}

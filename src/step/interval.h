@@ -1,0 +1,42 @@
+/* Intervals: what is decided every few steps, in the same steps on every grid.
+ *
+ *     step      0       4       8      12          an interval of four steps
+ *               |decide |decide |decide |          what is decided holds
+ *     advance   ------------->---->-------->       may end anywhere: what was felt is kept in
+ * lar_tools
+ *
+ * Several processors stop there, for one of them has to know what all have felt. What is decided:
+ * where tools go, and whether steps are divided (contact/tool_body.h). A material that was made
+ * stiffer (model/settings.h) does not wait: there is a decision before the next step.
+ */
+#ifndef LAR_STEP_INTERVAL_H
+#define LAR_STEP_INTERVAL_H
+
+#include "step/domain.h"
+#include "step/report.h"
+
+/* What has been handed on of the tools' sums of an advance, and what is known of all advances. */
+typedef struct lar_interval {
+    lar_tool_sum seen[LAR_TOOLS_MOST];
+    double depth[LAR_TOOLS_MOST]; /* the deepest tissue in a tool in this advance [m] */
+    uint64_t divided;             /* steps in more than one part, of all advances */
+    int32_t parts;                /* of a step, at most, of all advances; 0: none was done */
+} lar_interval;
+
+/* An advance begins: its sums begin with nothing. */
+void lar_interval_restart(lar_interval *interval);
+
+/* After some steps of an advance: what tools have felt, and elements need, since the last call. */
+void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
+                          lar_tools *tools);
+
+/* Before the step `step`: where an interval begins, or a decision is due, decides. True when
+ * lar_tools has changed. */
+bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools);
+
+/* The step before which the interval that `step` belongs to ends: domain.interval steps, or one
+ * while elements are strained. */
+uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,
+                          uint64_t step);
+
+#endif

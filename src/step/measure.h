@@ -1,0 +1,27 @@
+/* What a state says about itself: energies, stresses, reactions. Slow, exact, never in the step.
+ */
+#ifndef LAR_STEP_MEASURE_H
+#define LAR_STEP_MEASURE_H
+
+#include "step/step.h"
+
+/* Energies at the time of the state. Kinetic energy is sum m v-.v+ / 2 over the half steps before
+ * and after, the form that central differences conserve exactly for linear bodies. The force array
+ * of the state is used and left zero; no memory is asked for. */
+void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy);
+
+/* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
+double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
+
+/* Mean Cauchy stress of global element e [Pa]: xx yy zz xy yz zx. Returns the strain energy per
+ * reference volume [J/m^3]. */
+double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
+                          double cauchy[6]);
+
+/* Sum over some global nodes of the forces that their supports exert on them [N]; axes without a
+ * support add nothing. The force array of the state is used and left zero. Fails only for want of
+ * memory. */
+lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
+                                double sum[3], lar_error *error);
+
+#endif

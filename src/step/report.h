@@ -1,0 +1,69 @@
+/* What an advance brings besides the state: what the tools felt, what contact did. Sums of whole
+ * numbers but for the work, so that threads and processors can be added in any order. Plain,
+ * travels as it is. */
+#ifndef LAR_STEP_REPORT_H
+#define LAR_STEP_REPORT_H
+
+#include "contact/acting.h"
+
+typedef struct lar_report {
+    lar_tool_sum tool[LAR_TOOLS_MOST];
+    lar_contact_info contact; /* since the start */
+    double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
+    double need;       /* of the elements: lar_state.need */
+    double taken;      /* by contact, as lar_state.contact: since the start [J] */
+} lar_report;
+
+static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_info *other) {
+    sum->possible += other->possible;
+    sum->boxed += other->boxed;
+    sum->tested += other->tested;
+    sum->searches += other->searches;
+    if (other->steps > sum->steps) sum->steps = other->steps;
+    sum->touching += other->touching;
+    if (other->deepest > sum->deepest) sum->deepest = other->deepest;
+}
+
+/* Before an advance: what one thread has felt is forgotten. */
+static inline void lar_report_begin(lar_acting *acting) {
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->touch.sum[i] = (lar_tool_sum){0};
+}
+
+/* Adds `other` to `sum`. */
+static inline void lar_report_join(lar_report *sum, const lar_report *other) {
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) {
+        lar_tool_sum *to = &sum->tool[i];
+        const lar_tool_sum *from = &other->tool[i];
+        for (int k = 0; k < 3; k++) {
+            to->force[k] += from->force[k];
+            to->torque[k] += from->torque[k];
+            to->rest[k] += from->rest[k];
+        }
+        to->squeeze += from->squeeze;
+        for (int s = 0; s < 2; s++) to->jaw[s] += from->jaw[s];
+        to->depth = from->depth > to->depth ? from->depth : to->depth;
+        to->touching += from->touching;
+        to->held += from->held;
+    }
+    lar_report_contact(&sum->contact, &other->contact);
+    sum->moved = lar_most(sum->moved, other->moved);
+    sum->way = lar_most(sum->way, other->way);
+    sum->need = lar_most(sum->need, other->need);
+    sum->taken += other->taken;
+}
+
+/* Adds what one thread has felt since lar_report_begin. */
+static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
+                                  const lar_state *state) {
+    lar_report own;
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
+    own.contact = acting->touch.seen;
+    lar_report_contact(&own.contact, &acting->collide.info);
+    own.moved = acting->collide.moved;
+    own.way = acting->collide.way;
+    own.need = state->need;
+    own.taken = state->contact;
+    lar_report_join(sum, &own);
+}
+
+#endif

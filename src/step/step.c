@@ -1,0 +1,283 @@
+#include "step/step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "step/guard.h"
+#include "mechanics/hex8_full.h"
+#include "mechanics/hex8_matrix.h"
+
+/* Of several elements in a step the first of the mesh, whoever computes them. */
+static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
+    if (!trip->kind || (trip->kind == LAR_TRIP_ELEMENT && trip->step == state->step &&
+                        trip->part == state->part && e < trip->element))
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step, .part = state->part};
+}
+
+/* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
+ * no longer count. */
+static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
+                     lar_trip *trip) {
+    lar_block_run one = domain->run[r];
+    size_t size = lar_block_size(one.shape);
+    one.count = 1;
+    for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
+        one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;
+        found = domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
+        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
+                trip_element(trip, state, lanes->element[lane]);
+    }
+}
+
+/* Whether the strained elements are looked for in this step: in the last one of an interval, so
+ * that what is found is known when the next one begins. */
+static bool interval_ends(const lar_domain *domain, bool close, const lar_state *state) {
+    return (close || (state->step + 1) % domain->interval == 0) && state->part == 0;
+}
+
+static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
+                           lar_trip *trip) {
+    /* Where elements are strained, listed in every part: in a step nodes that are thrown come from
+     * anywhere to the barrier and beyond. */
+    bool due = interval_ends(domain, state->close, state);
+    bool watches = due || state->close || !state->listed;
+    for (int32_t r = first; r < first + count; r++) {
+        size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
+        lar_hex8_watch watch = {.limit = domain->corner_limit + place,
+                                .lane = domain->strained + place,
+                                .strain = domain->strain + place};
+        int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
+                                                 &domain->limits, watches ? &watch : NULL);
+        if (watches) lar_guard_select(domain, r, &watch, due, state);
+        lar_guard_apply(domain, r, state);
+        if (found >= 0) trip_run(domain, r, found, state, trip);
+    }
+    /* Before the nodes move on: a step later the element says little. */
+    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, trip);
+}
+
+/* The oracle elements, one at a time: slow is fine. */
+static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state, lar_trip *trip) {
+    const lar_model *model = domain->model;
+    double corner[8][3], u[8][3], f[8][3];
+    const lar_material *material = lar_domain_material(domain, e);
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    double J = domain->kind == LAR_ELEMENT_HEX8_FULL
+                   ? lar_hex8_full_force(corner, material, u, f)
+                   : lar_hex8_matrix_force(corner, material, u, f);
+    bool fits = J > domain->limits.least_volume;
+    for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
+    if (!fits) {
+        trip_element(trip, state, e);
+        return;
+    }
+    for (int a = 0; a < 8; a++)
+        for (int k = 0; k < 3; k++)
+            state->force[4 * domain->layout.local[model->mesh.element[e][a]] + k] +=
+                llrint(f[a][k] * domain->scale);
+}
+
+void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
+                      lar_trip *trip) {
+    if (domain->kind == LAR_ELEMENT_HEX8) {
+        recover_blocks(domain, first, count, state, trip);
+        return;
+    }
+    for (int32_t r = first; r < first + count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++)
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                lar_gid e = domain->layout.block[domain->run_first[r] + b].element[lane];
+                if (e >= 0) recover_slowly(domain, e, state, trip);
+            }
+}
+
+/* ---- how long a step is --------------------------------------------------------------------- */
+
+const lar_step_division *lar_division_of(const lar_acting *acting) {
+    static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1, .base = 1};
+    return acting->touch.tools ? &acting->touch.tools->division : &undivided;
+}
+
+double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
+                     const lar_state *state) {
+    double step = domain->time_step / division->parts;
+    bool changes = state->part == 0 && state->step == division->since;
+    return changes ? 0.5 * (step + domain->time_step / division->before) : step;
+}
+
+const lar_settings *lar_settings_of(const lar_acting *acting) {
+    return acting->touch.tools ? &acting->touch.tools->settings : NULL;
+}
+
+static bool is_set(const lar_settings *settings) {
+    return settings && (settings->gravity_set || settings->damping_set);
+}
+
+lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
+                           const lar_state *state) {
+    const lar_step_division *division = lar_division_of(acting);
+    const lar_settings *settings = lar_settings_of(acting);
+    lar_motion motion = domain->motion;
+    double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
+    motion.dt = whole / division->parts;
+    if (mean == whole && !is_set(settings)) return motion;
+    double half = 0.5 * lar_damping_of(domain->model, settings) * mean;
+    double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
+    lar_gravity_at(domain->model, settings, 0, gravity);
+    motion.keep = (1 - half) / (1 + half);
+    motion.push = mean / whole * (1 + half_whole) / (1 + half);
+    for (int i = 0; i < 3; i++) motion.drift[i] = gravity[i] * mean / (1 + half);
+    return motion;
+}
+
+void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+                    lar_condition_context *context, lar_state *state) {
+    const lar_step_division *division = lar_division_of(acting);
+    if (state->part == 0) state->parts = division->parts;
+    context->time_step = domain->time_step / state->parts;
+    context->settings = lar_settings_of(acting);
+    context->hardness = division->hardness;
+    state->close = lar_division_is_close(division);
+    context->shares = LAR_STEP_SHARES / state->parts;
+}
+
+/* ---- the parts ------------------------------------------------------------------------------ */
+
+/* Spare nodes fall with gravity like any other; now and then they are put back. */
+static void park_spares(const lar_domain *domain, const lar_condition_context *context,
+                        lar_state *state) {
+    for (int32_t i = 0; i < domain->spare_count; i++) {
+        lar_lid n = domain->spare[i];
+        if (n < context->first || n >= context->end) continue;
+        memset(state->u + 4 * n, 0, 4 * sizeof *state->u);
+        memset(state->v + 4 * n, 0, 4 * sizeof *state->v);
+    }
+}
+
+static void move_nodes(const lar_domain *domain, const lar_acting *acting,
+                       const lar_condition_context *context, double time, lar_state *state,
+                       lar_trip *trip) {
+    /* Where contact is predicted from the fastest node, that is none of these. */
+    bool predicts =
+        acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
+    uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
+    const lar_model *model = domain->model;
+    const lar_settings *settings = lar_settings_of(acting);
+    lar_motion motion = lar_step_motion(domain, acting, state);
+    double damping = lar_damping_of(model, settings), damped = 0;
+    if (lar_gravity_varies(model, settings)) {
+        double gravity[3];
+        lar_gravity_at(model, settings, time, gravity);
+        double mean = lar_mean_step(domain, lar_division_of(acting), state);
+        for (int i = 0; i < 3; i++)
+            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
+    }
+    if (state->step % park_interval == 0) park_spares(domain, context, state);
+    const double *weight = damping > 0 ? domain->weight : NULL;
+    state->fastest = 0;
+    if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
+                                 state->force, domain->push, weight, &damped, &state->fastest) &&
+        !trip->kind)
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+    state->damped += damping * damped / state->parts;
+}
+
+static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
+                        const lar_condition_context *context, double time, lar_state *state,
+                        lar_trip *trip) {
+    int32_t beyond = lar_conditions_load(conditions, context, time, state);
+    if (beyond >= 0 && !trip->kind)
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
+}
+
+/* Loads, tools and planes; half of their work when the nodes are about to move. */
+static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
+                lar_state *state, lar_trip *trip) {
+    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, trip);
+    lar_touch_apply(&acting->touch, context, state);
+}
+
+static void add_half_work(const lar_domain *domain, const lar_acting *acting,
+                          const lar_condition_context *context, lar_state *state) {
+    state->external += lar_conditions_half_work(&acting->conditions, context,
+                                                lar_state_time(domain, state), state);
+    lar_touch_half_work(&acting->touch, context, state);
+}
+
+/* Contact of bodies, by who has all nodes. */
+static void collide(lar_collide *collide, const lar_condition_context *context, lar_state *state,
+                    lar_trip *trip) {
+    lar_collide_apply(collide, context, state);
+    if (collide->crowded && !trip->kind)
+        *trip = (lar_trip){.kind = LAR_TRIP_CROWD, .element = -1, .step = state->step};
+}
+
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+    lar_condition_context context = lar_domain_context(domain);
+    lar_touch_note note;
+    lar_touch_remember(&domain->acting.touch, &note);
+    lar_contact_info counted = domain->acting.collide.info;
+    act(domain, &domain->acting, &context, state, trip);
+    lar_collide_forget(&domain->acting.collide);
+    collide(&domain->acting.collide, &context, state, trip);
+    lar_collide_forget(&domain->acting.collide);
+    domain->acting.collide.info = counted;
+    lar_touch_restore(&domain->acting.touch, &note);
+    if (domain->kind != LAR_ELEMENT_HEX8) {
+        lar_step_recover(domain, 0, domain->run_count, state, trip);
+        return;
+    }
+    for (int32_t r = 0; r < domain->run_count; r++)
+        domain->kernels->recover(&domain->run[r], state->u, state->force, &domain->limits, NULL);
+    lar_guard_apply_all(domain, state);
+}
+
+void lar_step_begin(const lar_domain *domain, lar_acting *acting,
+                    const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    act(domain, acting, context, state, trip);
+    add_half_work(domain, acting, context, state);
+}
+
+void lar_step_move(const lar_domain *domain, lar_acting *acting,
+                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    lar_conditions *conditions = &acting->conditions;
+    double time = lar_state_time(domain, state);
+    lar_conditions_observe(conditions, context, state);
+    lar_touch_observe(&acting->touch, context, state);
+    move_nodes(domain, acting, context, time, state, trip);
+    state->external += lar_conditions_impose(conditions, context, time, state);
+    lar_touch_stop(&acting->touch, context, state);
+    lar_collide_moved(&acting->collide, state, state->fastest * context->time_step);
+}
+
+void lar_step_end(const lar_domain *domain, const lar_acting *acting,
+                  const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+    add_half_work(domain, acting, context, state);
+    lar_collide_half_work(&acting->collide, context, state);
+    /* The watch over speeds does not see nodes that are moved. */
+    if (!isfinite(state->external) && !trip->kind)
+        *trip = (lar_trip){
+            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+    state->round++;
+    state->listed = true;
+    if (++state->part < state->parts) return;
+    state->part = 0;
+    state->step++;
+}
+
+void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
+    lar_condition_context context = lar_domain_context(domain);
+    lar_step_enter(domain, &domain->acting, &context, state);
+    lar_step_begin(domain, &domain->acting, &context, state, trip);
+    collide(&domain->acting.collide, &context, state, trip);
+    lar_collide_half_work(&domain->acting.collide, &context, state);
+    lar_step_recover(domain, 0, domain->run_count, state, trip);
+    lar_step_move(domain, &domain->acting, &context, state, trip);
+    lar_step_end(domain, &domain->acting, &context, state, trip);
+}

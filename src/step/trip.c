@@ -1,0 +1,238 @@
+#include "step/step.h"
+
+#include <math.h>
+
+#include "mechanics/hex8_full.h"
+#include "mechanics/hexahedron.h"
+
+/* det F of an element and how much its smallest stretch has raised its frequency. */
+static void examine_element(const lar_domain *domain, const lar_state *state, lar_gid e,
+                            double *volume_ratio, double *frequency_growth) {
+    const lar_model *model = domain->model;
+    double corner[8][3], u[8][3], F[3][3], cof[9];
+    lar_hex8 hex8;
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    *volume_ratio = lar_lane_cofactor((const double *)F, cof);
+    /* |F^-1| / sqrt(3): 1 at rest */
+    *frequency_growth = sqrt(lar_lane_square_sum(cof) / 3) / fabs(*volume_ratio);
+}
+
+/* The volume of an element in its worst corner, as a part of that at rest. */
+static double worst_corner(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double rest[8][3], now[8][3], u[8][3], at[3], J[2][3][3], cof[9], least = INFINITY;
+    lar_mesh_corners(&domain->model->mesh, e, rest);
+    lar_domain_corners(domain, state->u, e, u);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) now[a][i] = rest[a][i] + u[a][i];
+    for (int a = 0; a < 8; a++) {
+        for (int i = 0; i < 3; i++) at[i] = lar_node_sign[a][i];
+        lar_hexahedron_jacobian((const double(*)[3])rest, at, J[0]);
+        lar_hexahedron_jacobian((const double(*)[3])now, at, J[1]);
+        double ratio = lar_lane_cofactor((const double *)J[1], cof) /
+                       lar_lane_cofactor((const double *)J[0], cof);
+        if (!(ratio >= least)) least = ratio;
+    }
+    return least;
+}
+
+/* Where the surface is folded most. */
+static void examine_surface(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    const lar_surface *surface = &domain->model->surface;
+    trip->volume_ratio = INFINITY;
+    for (int32_t f = 0; f < surface->face_count; f++) {
+        double ratio = worst_corner(domain, state, surface->element[f]);
+        if (ratio >= trip->volume_ratio) continue;
+        trip->volume_ratio = ratio;
+        trip->element = surface->element[f];
+    }
+}
+
+/* What the instability begins with says more than the step size: nothing has had time to grow. */
+static const char *hint(const lar_trip *trip) {
+    return trip->step < 8 ? ", and check the units of mesh, material and loads" : "";
+}
+
+/* The place of a node or element, or its place at rest when it has left the range of numbers. */
+static void choose_place(const double now[3], const double rest[3], double place[3]) {
+    bool finite = isfinite(now[0]) && isfinite(now[1]) && isfinite(now[2]);
+    for (int i = 0; i < 3; i++) place[i] = finite ? now[i] : rest[i];
+}
+
+static void examine_place(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    double center[3] = {0}, rest[3] = {0};
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) {
+            lar_gid node = mesh->element[trip->element][a];
+            rest[i] += mesh->position[node][i] / 8;
+            center[i] +=
+                (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
+        }
+    choose_place(center, rest, trip->place);
+}
+
+/* What a tool does to an element. */
+static const char *deed_of(const lar_domain *domain, const lar_trip *trip) {
+    if (!isfinite(trip->volume_ratio) || !isfinite(trip->growth)) return "tears apart";
+    if (!(trip->volume_ratio > domain->limits.least_volume)) return "turns inside out or crushes";
+    if (trip->growth * domain->time_step > domain->stable_step)
+        return "squeezes more than the time step allows";
+    return "loads beyond all reason";
+}
+
+static lar_status report_element(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const double *place = trip->place, volume_ratio = trip->volume_ratio, growth = trip->growth;
+    const char *cause, *remedy;
+    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, deed_of(domain, trip), error);
+    if (!isfinite(volume_ratio) || !isfinite(growth))
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
+                        "torn beyond the range of numbers; use a smaller time step, or slower or "
+                        "smaller loads and motions%s",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        (long long)mesh->element_id[trip->element], place[0], place[1], place[2],
+                        hint(trip));
+    if (!(volume_ratio > domain->limits.least_volume)) {
+        cause = "is turned inside out or crushed";
+        remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
+    } else if (growth * domain->time_step > domain->stable_step) {
+        cause = "is squeezed so much that the time step has become too large for it";
+        remedy = "use a smaller time step or a stiffer or finer mesh there";
+    } else {
+        cause = "carries a force beyond all reason";
+        remedy = "use a smaller time step, or slower or smaller loads";
+    }
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
+                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s%s",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->element_id[trip->element], place[0], place[1], place[2], cause,
+                    volume_ratio, domain->time_step, domain->stable_step, remedy, hint(trip));
+}
+
+/* The fastest node, and where it is. */
+static void examine_speed(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    lar_lid fastest = -1;
+    double highest = -1;
+    for (lar_lid n = 0; n < domain->layout.node_count; n++)
+        for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++)
+            if (!(fabs(state->v[4 * n + i]) <= highest)) {
+                highest = fabs(state->v[4 * n + i]);
+                fastest = n;
+            }
+    if (fastest < 0) return;
+    trip->element = domain->layout.global[fastest];
+    trip->speed = highest;
+    const double *u = state->u + 4 * fastest, *rest = mesh->position[trip->element];
+    double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]};
+    choose_place(now, rest, trip->place);
+}
+
+static lar_status report_speed(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    lar_gid node = trip->element;
+    const double *place = trip->place, highest = trip->speed;
+    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, "hurls away", error);
+    if (!isfinite(highest))
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
+                        "left the range of numbers; use a smaller time step, or slower or smaller "
+                        "loads and motions%s",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        (long long)mesh->node_id[node], place[0], place[1], place[2], hint(trip));
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
+                    "%.3g m/s, hundreds of elements per time step (the limit is %.3g m/s); use a "
+                    "smaller time step, or slower or smaller loads and motions%s",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->node_id[node], place[0], place[1], place[2], highest,
+                    domain->motion.speed, hint(trip));
+}
+
+static lar_status report_load(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const double *at = mesh->position[trip->element];
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): the forces and pressures on node %lld, at "
+                    "(%.4g, %.4g, %.4g) m at rest, are far beyond what the material can bear; use "
+                    "smaller loads, and check the units of mesh, material and loads",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
+}
+
+static lar_status report_gain(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    if (trip->tool > 0)
+        return lar_trip_report_tool(domain, trip, "folds the surface over itself at", error);
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): contact has given %.3g J more than it took, "
+                    "for the surface is crushed or folded over itself, most at element %lld near "
+                    "(%.4g, %.4g, %.4g) m (volume ratio of its worst corner %.3g); use slower or "
+                    "smaller loads and motions, or a stiffer or finer mesh there",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    trip->given, (long long)domain->model->mesh.element_id[trip->element],
+                    trip->place[0], trip->place[1], trip->place[2], trip->volume_ratio);
+}
+
+static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): more than %d faces lie close to the surface "
+                    "nodes that may touch them, on average: the surface is crushed; use slower or "
+                    "smaller loads and motions, or a finer mesh where bodies touch",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    LAR_PAIRS_PER_NODE);
+}
+
+static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    const char *crowd =
+        trip->crowded ? ", the less since many faces are crowded around the nodes that may touch "
+                        "them"
+                      : "";
+    if (trip->tool > 0)
+        return lar_trip_report_tool(
+            domain, trip, trip->crowded ? "crowds the surface and hurls away" : "hurls away",
+            error);
+    if (trip->element < 0)
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): the surface became so fast within a few "
+                        "steps that the search for contact on several processors could not "
+                        "follow%s; use slower or smaller loads and motions, or one processor",
+                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                        crowd);
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m became so "
+                    "fast within a few steps (%.3g m/s) that the search for contact on several "
+                    "processors could not follow%s; use slower or smaller loads and motions, or "
+                    "one processor",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (long long)domain->model->mesh.node_id[trip->element], trip->place[0],
+                    trip->place[1], trip->place[2], trip->speed, crowd);
+}
+
+void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+    if (trip->examined) return;
+    trip->examined = true;
+    if (trip->kind == LAR_TRIP_ELEMENT) {
+        examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
+        examine_place(domain, state, trip);
+    } else if (trip->kind == LAR_TRIP_GAIN) {
+        examine_surface(domain, state, trip);
+        examine_place(domain, state, trip);
+    } else if (trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH) {
+        examine_speed(domain, state, trip);
+    }
+}
+
+lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+    if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
+    if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
+    if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
+    if (trip->kind == LAR_TRIP_GAIN) return report_gain(domain, trip, error);
+    if (trip->kind == LAR_TRIP_CROWD) return report_crowd(domain, trip, error);
+    if (trip->kind == LAR_TRIP_RUSH) return report_rush(domain, trip, error);
+    return report_speed(domain, trip, error);
+}

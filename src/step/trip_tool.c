@@ -1,0 +1,100 @@
+/* Which tool an unstable run has to do with: people can move it slower, when they are told. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "step/step.h"
+
+/* A tool that is no farther from a broken element than so many of its edges had a part in it. One
+ * that moves, or has just come to rest, may be farther off: what it has bent springs back when it
+ * slips off, and what it pulls may break some layers below. */
+static const double TOUCHING = 1.5, MOVING = 8, PULLING = 6;
+enum { JUST = 1000 };
+
+/* The middle of an element at rest, and about how long its edges are. */
+static double element_at_rest(const lar_domain *domain, lar_gid e, double place[3]) {
+    double corner[8][3];
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    for (int i = 0; i < 3; i++) {
+        place[i] = 0;
+        for (int a = 0; a < 8; a++) place[i] += corner[a][i] / 8;
+    }
+    return cbrt(lar_hexahedron_volume(corner));
+}
+
+static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
+                                const double place[3]) {
+    lar_tool_body body;
+    lar_tool_place(tool, pose, &body, body.now);
+    return lar_touch_distance(&body, tool->radius, place);
+}
+
+static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
+    const lar_touch *touch = &domain->acting.touch;
+    double nearest = INFINITY;
+    for (int32_t i = 0; i < touch->tools->hold_count; i++) {
+        const lar_hold *hold = &touch->tools->hold[i];
+        if (hold->tool != tool) continue;
+        double point[3], square = 0;
+        lar_face_mean(touch->face[touch->face_of[hold->face]].rest, hold->weight, point);
+        for (int k = 0; k < 3; k++) square += (point[k] - rest[k]) * (point[k] - rest[k]);
+        nearest = fmin(nearest, sqrt(square));
+    }
+    return nearest;
+}
+
+void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
+    const lar_touch *touch = &domain->acting.touch;
+    bool moves = trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH;
+    bool of_element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
+    if (trip->blamed || !(moves || of_element)) return;
+    trip->blamed = true;
+    if (touch->face_count == 0 || trip->element < 0) return;
+    double rest[3], edge = 0, closest = 1;
+    if (of_element) {
+        edge = element_at_rest(domain, trip->element, rest);
+    } else {
+        memcpy(rest, domain->model->mesh.position[trip->element], sizeof rest);
+        edge = touch->face[0].edge;
+    }
+    for (int32_t t = 0; t < touch->list->count; t++) {
+        const lar_tool *tool = &touch->list->tool[t];
+        lar_tool_pose pose;
+        double velocity[3];
+        lar_tool_at(&touch->tools->motion[t], trip->step, domain->time_step, &pose, velocity);
+        double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
+        const lar_tool_motion *motion = &touch->tools->motion[t];
+        bool moving = motion->end > 0 && trip->step < motion->end + JUST;
+        if (tool->shape != LAR_TOOL_HAND)
+            touching =
+                touching_distance(tool, &pose, trip->place) / ((moving ? MOVING : TOUCHING) * edge);
+        if (!(fmin(holding, touching) < closest)) continue;
+        closest = fmin(holding, touching);
+        trip->tool = t + 1;
+        trip->tool_pulls = holding < touching;
+        trip->tool_speed =
+            sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]);
+    }
+}
+
+lar_status lar_trip_report_tool(const lar_domain *domain, const lar_trip *trip,
+                                const char *what_it_does, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const lar_tool *tool = &domain->acting.touch.list->tool[trip->tool - 1];
+    bool element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
+    long long number = (long long)(element ? mesh->element_id : mesh->node_id)[trip->element];
+    char motion[80];
+    if (trip->tool_speed > 0)
+        snprintf(motion, sizeof motion, "moves at %.3g m/s and", trip->tool_speed);
+    else
+        snprintf(motion, sizeof motion,
+                 trip->tool_pulls ? "holds the tissue there and" : "is pressed in there and");
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): tool %s %s %s %s %lld near "
+                    "(%.4g, %.4g, %.4g) m; move it slower or %s, or use a smaller time step or a "
+                    "finer mesh there",
+                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    tool->name, motion, what_it_does, element ? "element" : "node", number,
+                    trip->place[0], trip->place[1], trip->place[2],
+                    trip->tool_pulls ? "pull less far" : "less deep");
+}

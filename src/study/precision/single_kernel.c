@@ -1,0 +1,333 @@
+/* hex8_kernel.c in single precision: its `double` is a float here, and its lanes are those below.
+ *
+ * Compiled once per instruction set (LAR_SIMD) and once for either state (LAR_SINGLE_STATE). The
+ * functions of base/simd.h for doubles stay what they are: with them nodes are gathered and forces
+ * added, for two times LAR_SIMD elements.
+ */
+#include "study/precision/single.h"
+
+#include "base/simd.h"
+#include "model/material.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#ifdef __clang__
+#pragma GCC diagnostic ignored "-Wunused-const-variable"
+#pragma GCC diagnostic ignored "-Wkeyword-macro"
+#endif
+
+#if LAR_SIMD == LAR_SIMD_AVX512
+
+enum { LANES = 16 };
+typedef float single_lane __attribute__((vector_size(64)));
+typedef int32_t single_bits __attribute__((vector_size(64)));
+typedef int64_t single_ilane __attribute__((vector_size(128)));
+typedef union single_halves {
+    single_ilane whole;
+    lar_ilane half[2];
+} single_halves;
+
+LAR_INLINE single_lane single_load(const float *p) {
+    return (single_lane)_mm512_load_ps(p);
+}
+LAR_INLINE single_lane single_load_once(const float *p) {
+    single_lane a = single_load(p);
+    __asm__("" : "+v"(a));
+    return a;
+}
+LAR_INLINE single_lane single_set(float a) {
+    return (single_lane)_mm512_set1_ps(a);
+}
+LAR_INLINE single_lane single_fma(single_lane a, single_lane b, single_lane c) {
+    return (single_lane)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+LAR_INLINE single_lane single_fnma(single_lane a, single_lane b, single_lane c) {
+    return (single_lane)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+LAR_INLINE single_bits single_bits_of(single_lane a) {
+    return (single_bits)a;
+}
+LAR_INLINE single_lane single_of_bits(single_bits a) {
+    return (single_lane)a;
+}
+LAR_INLINE single_lane single_convert(single_bits a) {
+    return (single_lane)_mm512_cvtepi32_ps((__m512i)a);
+}
+LAR_INLINE single_bits single_nearest(single_lane a) {
+    return (single_bits)_mm512_cvtps_epi32((__m512)a);
+}
+LAR_INLINE single_ilane single_round(single_lane a) {
+    single_halves to;
+    to.half[0] = (lar_ilane)_mm512_cvtps_epi64(_mm512_castps512_ps256((__m512)a));
+    to.half[1] = (lar_ilane)_mm512_cvtps_epi64(_mm512_extractf32x8_ps((__m512)a, 1));
+    return to.whole;
+}
+LAR_INLINE single_lane narrow(const lar_lane a[2]) {
+    return (single_lane)_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps((__m512d)a[0])),
+                                           _mm512_cvtpd_ps((__m512d)a[1]), 1);
+}
+enum { HALVES = 2 };
+
+#else /* LAR_SIMD_C */
+
+enum { LANES = 1 };
+typedef float single_lane;
+typedef int32_t single_bits;
+typedef int64_t single_ilane;
+typedef union single_halves {
+    single_ilane whole;
+    lar_ilane half[1];
+} single_halves;
+
+LAR_INLINE single_lane single_load(const float *p) {
+    return *p;
+}
+LAR_INLINE single_lane single_load_once(const float *p) {
+    return *p;
+}
+LAR_INLINE single_lane single_set(float a) {
+    return a;
+}
+LAR_INLINE single_lane single_fma(single_lane a, single_lane b, single_lane c) {
+    return fmaf(a, b, c);
+}
+LAR_INLINE single_lane single_fnma(single_lane a, single_lane b, single_lane c) {
+    return fmaf(-a, b, c);
+}
+LAR_INLINE single_bits single_bits_of(single_lane a) {
+    single_bits bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits;
+}
+LAR_INLINE single_lane single_of_bits(single_bits a) {
+    single_lane value;
+    memcpy(&value, &a, sizeof value);
+    return value;
+}
+LAR_INLINE single_lane single_convert(single_bits a) {
+    return (float)a;
+}
+/* Beyond the integers, as NaN is: what AVX-512 gives. */
+LAR_INLINE single_bits single_nearest(single_lane a) {
+    return fabsf(a) < 0x1p31F ? (single_bits)lrintf(a) : INT32_MIN;
+}
+LAR_INLINE single_ilane single_round(single_lane a) {
+    return fabsf(a) < 0x1p63F ? (int64_t)llrintf(a) : INT64_MIN;
+}
+LAR_INLINE single_lane narrow(const lar_lane a[1]) {
+    return (float)a[0];
+}
+enum { HALVES = 1 };
+
+#endif
+
+LAR_INLINE void single_store(float *p, single_lane a) {
+    memcpy(p, &a, sizeof a);
+}
+
+/* ---- nodes: relative to the element's first ---------------------------------------------- */
+
+LAR_INLINE void relate(lar_lane at[HALVES][3], lar_lane origin[HALVES][3], single_lane out[3]) {
+    for (int i = 0; i < 3; i++) {
+        lar_lane a[HALVES];
+        for (int h = 0; h < HALVES; h++) a[h] = at[h][i];
+#if LAR_SINGLE_STATE
+        lar_lane o[HALVES];
+        for (int h = 0; h < HALVES; h++) o[h] = origin[h][i];
+        out[i] = narrow(a) - narrow(o);
+#else
+        for (int h = 0; h < HALVES; h++) a[h] -= origin[h][i];
+        out[i] = narrow(a);
+#endif
+    }
+}
+
+LAR_INLINE void single_gather(const float *nodes, const int32_t *first, const int32_t *offset,
+                              single_lane out[3]) {
+    const double *u = (const double *)(const void *)nodes;
+    lar_lane at[HALVES][3], origin[HALVES][3];
+    for (int h = 0; h < HALVES; h++) {
+        lar_lane_gather(u, first + h * LAR_LANES, origin[h]);
+        lar_lane_gather(u, offset + h * LAR_LANES, at[h]);
+    }
+    relate(at, origin, out);
+}
+
+LAR_INLINE void single_gather_row(const float *nodes, const int32_t *first, const int32_t *second,
+                                  const int32_t *a, const int32_t *b, bool half,
+                                  single_lane left[3], single_lane right[3]) {
+    const double *u = (const double *)(const void *)nodes;
+    lar_lane l[HALVES][3], r[HALVES][3], origin[HALVES][3], unused[3];
+    for (int h = 0; h < HALVES; h++) {
+        const int at = h * LAR_LANES;
+        lar_lane_gather_row(u, first + at, second + at, half, origin[h], unused);
+        lar_lane_gather_row(u, a + at, b + at, half, l[h], r[h]);
+    }
+    relate(l, origin, left);
+    relate(r, origin, right);
+}
+
+LAR_INLINE void single_scatter(int64_t *nodes, const int32_t *offset, const single_ilane add[3]) {
+    single_halves from[3];
+    for (int i = 0; i < 3; i++) from[i].whole = add[i];
+    for (int h = 0; h < HALVES; h++) {
+        const lar_ilane part[3] = {from[0].half[h], from[1].half[h], from[2].half[h]};
+        lar_ilane_scatter_add(nodes, offset + h * LAR_LANES, part);
+    }
+}
+
+LAR_INLINE void single_scatter_row(int64_t *nodes, const int32_t *a, const int32_t *b, bool half,
+                                   const single_ilane left[3], const single_ilane right[3]) {
+    single_halves l[3], r[3];
+    for (int i = 0; i < 3; i++) {
+        l[i].whole = left[i];
+        r[i].whole = right[i];
+    }
+    for (int h = 0; h < HALVES; h++) {
+        const int at = h * LAR_LANES;
+        const lar_ilane l_part[3] = {l[0].half[h], l[1].half[h], l[2].half[h]};
+        const lar_ilane r_part[3] = {r[0].half[h], r[1].half[h], r[2].half[h]};
+        lar_ilane_scatter_row(nodes, a + at, b + at, half, l_part, r_part);
+    }
+}
+
+/* ---- lane_math.h in float ---------------------------------------------------------------- */
+
+#define LAR_MECHANICS_LANE_MATH_H
+
+/* J^(-1/3): the guess reads the whole float as an integer, within 3.5 % as there. */
+LAR_INLINE single_lane lar_lane_rcbrt(single_lane J) {
+    single_lane bits = single_convert(single_bits_of(J));
+    single_lane guess = single_fma(bits, single_set(-1.0F / 3), single_set(1419898955.0F));
+    single_lane y = single_of_bits(single_nearest(guess));
+    for (int i = 0; i < 2; i++) {
+        single_lane r = single_fnma(y * y, J * y, single_set(1));
+        single_lane series = single_fma(r, single_set(14.0F / 81), single_set(2.0F / 9));
+        series = single_fma(r, series, single_set(1.0F / 3));
+        y = single_fma(y * r, series, y);
+    }
+    return y;
+}
+
+/* ln(J): the odd series up to s^9 leaves less than 4e-9. */
+LAR_INLINE single_lane lar_lane_log(single_lane J) {
+    const int32_t half_bits = 0x3f3504f3; /* sqrt(1/2) */
+    single_bits bits = single_bits_of(J);
+    single_bits above = bits - half_bits;
+    single_bits k = above >> 23;
+    single_lane m = single_of_bits(bits - (above & ~((1 << 23) - 1)));
+    single_lane s = (m - single_set(1)) / (m + single_set(1));
+    single_lane s2 = s * s;
+    single_lane sum = single_set(2.0F / 9);
+    for (int n = 7; n >= 3; n -= 2) sum = single_fma(sum, s2, single_set(2.0F / (float)n));
+    single_lane log_m = single_fma(s2 * s, sum, s + s);
+    return single_fma(single_convert(k), single_set(0x1.62e430p-1F), log_m);
+}
+
+/* ---- the source, in float ---------------------------------------------------------------- */
+
+#define lar_lane              single_lane
+#define lar_ilane             single_ilane
+#define lar_lane_load         single_load
+#define lar_lane_load_once    single_load_once
+#define lar_lane_store        single_store
+#define lar_lane_set          single_set
+#define lar_lane_fma          single_fma
+#define lar_lane_fnma         single_fnma
+#define lar_lane_round        single_round
+#define lar_ilane_scatter_add single_scatter
+#define lar_ilane_scatter_row single_scatter_row
+/* Where the kernel gathers, `head` is the block and `lane` its first lane. */
+#define lar_lane_gather(u, offset, out) single_gather(u, head->node[0] + lane, offset, out)
+#define lar_lane_gather_row(u, a, b, half, left, right)                                            \
+    single_gather_row(u, head->node[0] + lane, head->node[1] + lane, a, b, half, left, right)
+/* Watching and moving are left to others: what they need does nothing. */
+#define lar_lane_not_greater(a, b) ((void)(a), (void)(b), 0U)
+#define lar_lane_abs(a)            (a)
+#define lar_lane_max(a, b)         ((void)(b), (a))
+#define lar_ilane_to_lane(a)       ((void)(a), single_set(0))
+#define lar_ilane_load(p)          ((void)(p), (single_ilane){0})
+#define lar_ilane_store(p, a)      ((void)(p), (void)(a))
+#define lar_lane_per_node(p, k)    ((void)(p), (void)(k), single_set(0))
+#define lar_lane_repeat4(p, k)     ((void)(p), (void)(k), single_set(0))
+
+#define double float
+#include "mechanics/hex8.h"
+
+/* Instead of mechanics/hex8_block.h: 16 elements, and only what the kernel's source names. */
+#define LAR_MECHANICS_HEX8_BLOCK_H
+enum { LAR_BLOCK = LAR_SINGLE_BLOCK };
+typedef enum { LAR_ROWS_NONE, LAR_ROWS_FOUR, LAR_ROWS_EIGHT, LAR_ROWS_COUNT } lar_block_rows;
+typedef enum { LAR_SHAPE_GENERAL, LAR_SHAPE_BOX, LAR_SHAPE_COUNT } lar_block_shape;
+typedef lar_single_head lar_block_head;
+typedef lar_single_general lar_hex8_block;
+typedef lar_single_box lar_box_block;
+typedef struct lar_block_run {
+    lar_law law;
+    lar_block_shape shape;
+    lar_block_rows rows;
+    int turn;
+    bool streamed;
+    int32_t count;
+    const void *blocks;
+} lar_block_run;
+typedef struct lar_hex8_limits {
+    float least_volume, stress_square, hourglass_square;
+} lar_hex8_limits;
+enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
+typedef struct lar_hex8_watch {
+    const float *limit;
+    int32_t count, *lane;
+    float (*strain)[LAR_STRAIN_NUMBERS];
+} lar_hex8_watch;
+typedef struct lar_motion {
+    float keep, dt, speed, drift[4], push;
+} lar_motion;
+typedef struct lar_kernels {
+    const char *name;
+    bool (*available)(void);
+    int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
+                       const lar_hex8_limits *limits, lar_hex8_watch *watch);
+    uint64_t (*corners)(const lar_block_run *run, int32_t b, const float *rest, const float *u,
+                        const float share[2]);
+    bool (*update)(const lar_motion *motion, int32_t first, int32_t end, float *u, float *v,
+                   int64_t *force, const float *push, const float *mass, float *damped,
+                   float *fastest);
+} lar_kernels;
+static inline size_t lar_block_size(lar_block_shape shape) {
+    return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
+}
+
+/* A bit per element of a chunk: 64 of them. */
+#define unsigned uint64_t
+#define _Static_assert(condition, text) extern int single_nothing
+#define JOIN_(a, b, c)     a##b##c
+#define JOIN(a, b, c)      JOIN_(a, b, c)
+#define lar_kernels_avx512 JOIN(single_source_, LAR_SINGLE_NAME, LAR_SINGLE_STATE)
+#define lar_kernels_c      JOIN(single_source_, LAR_SINGLE_NAME, LAR_SINGLE_STATE)
+#undef LAR_LANES
+#define LAR_LANES LANES
+#include "mechanics/hex8_kernel.c"
+#undef double
+#undef unsigned
+
+/* ------------------------------------------------------------------------------------------ */
+
+static void recover_run(const lar_single_run *run, const double *u, int64_t *force) {
+    const lar_hex8_limits none = {0, 0, 0};
+    const lar_block_run made = {.law = (lar_law)run->law,
+                                .shape = (lar_block_shape)run->shape,
+                                .rows = (lar_block_rows)run->rows,
+                                .turn = run->turn,
+                                .count = run->count,
+                                .blocks = run->blocks};
+    LAR_KERNELS_NAME.recover(&made, (const float *)(const void *)u, force, &none, NULL);
+}
+
+#define EXPORTED JOIN(lar_single_, LAR_SINGLE_NAME, LAR_SINGLE_STATE)
+#define TEXT_(a) #a
+#define TEXT(a)  TEXT_(a)
+
+extern const lar_single_kernels EXPORTED;
+const lar_single_kernels EXPORTED = {
+    .name = TEXT(LAR_SINGLE_NAME), .lanes = LANES, .recover = recover_run};
