@@ -873,6 +873,8 @@ typedef struct lar_server_options {
                                 NULL: none */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
+    double save_most;        /* bytes of states and recordings that there may be in it, those from
+                                before included; 0: 4e9. One recording under way is ended there */
 } lar_server_options;
 
 /* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be

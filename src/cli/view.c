@@ -20,7 +20,7 @@ typedef struct view_settings {
         *scan;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
-    double pace, seconds, time_step;
+    double pace, seconds, time_step, save_most;
     int isa;
     bool paused, open, json, force;
     cli_parallel parallel;
@@ -136,7 +136,8 @@ static int open_server(view *v) {
                                   .watch_token = s->watch_token,
                                   .scan = s->scan,
                                   .folder = s->viewer,
-                                  .save_folder = s->save_folder};
+                                  .save_folder = s->save_folder,
+                                  .save_most = 1e9 * s->save_most};
     lar_error error, first;
     lar_status status = lar_server_open(v->session, v->model, &options, &v->server, &first);
     error = first;
@@ -404,8 +405,12 @@ static int view_scene(const view_settings *settings) {
 }
 
 static int view_main(int argc, char **argv) {
-    view_settings s = {
-        .parallel = CLI_PARALLEL_NONE, .argc = argc, .argv = argv, .port = 8000, .pace = 1};
+    view_settings s = {.parallel = CLI_PARALLEL_NONE,
+                       .argc = argc,
+                       .argv = argv,
+                       .port = 8000,
+                       .pace = 1,
+                       .save_most = 4};
     const cli_option options[] = {
         CLI_COUNT("--port", "N",
                   "where the viewer is served (8000; when it is taken the next\none that is free); "
@@ -436,6 +441,9 @@ static int view_main(int argc, char **argv) {
         CLI_TEXT("--save-folder", "DIR",
                  "where the viewer may save states and recordings; without:\nnowhere",
                  &s.save_folder),
+        CLI_REAL("--save-most", "GB",
+                 "how much states and recordings may take there, those from\nbefore included",
+                 &s.save_most, 1e-3, 1e6),
         CLI_TEXT(
             "--scan", "IMAGE",
             "the segmented image that the scene was meshed from: its\nslices can be seen beside "

@@ -75,6 +75,16 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *
         lar_viewer_note(server, viewer, "this is too often; save or record again in a second");
         return false;
     }
+    if (names && lar_server_saves_full(server)) {
+        char sentence[160];
+        snprintf(
+            sentence, sizeof sentence,
+            "saved states and recordings take %.3g GB, as much as they may; move some away, or "
+            "start the engine with a larger --save-most",
+            1e-9 * server->save_most);
+        lar_viewer_note(server, viewer, sentence);
+        return false;
+    }
     if (names && !choose_name(server, wish->kind == LAR_WISH_SAVE ? CHECKPOINT : RECORDING, job)) {
         lar_viewer_note(server, viewer,
                         "no name is left in the folder for saved states, or it cannot be read; "
@@ -88,6 +98,17 @@ static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish
     lar_job job = {.kind = wish->kind, .viewer = viewer->number, .on = wish->on};
     if (prepare_job(server, viewer, wish, &job) && !lar_work_ask(&server->work, &job))
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+}
+
+void lar_server_watch_recording(lar_server *server) {
+    if (!server->recording[0] || server->recording_ends || !lar_server_saves_full(server)) return;
+    lar_job job = {.kind = LAR_WISH_RECORD};
+    server->recording_ends = lar_work_ask(&server->work, &job);
+    for (lar_viewer *viewer = server->first; viewer && server->recording_ends;
+         viewer = viewer->next)
+        lar_viewer_note(server, viewer,
+                        "the recording has ended: the folder for saved states holds as much as it "
+                        "may (--save-most)");
 }
 
 static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
@@ -123,6 +144,7 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
         lar_saved_add(&server->recordings, server->recording);
         if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
         server->recording[0] = '\0';
+        server->recording_ends = false;
     }
 }
 

@@ -1,5 +1,6 @@
 /* Which saved states and recordings there are, also from sessions before. */
 #include <dirent.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,20 @@ static bool look_at(const lar_server *server, const char *name, found_file *foun
     }
     free(path);
     return good;
+}
+
+bool lar_server_saves_full(const lar_server *server) {
+    DIR *folder = opendir(server->save_folder);
+    double bytes = 0;
+    for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
+        const char *extension = lar_path_extension(entry->d_name);
+        struct stat about;
+        bool ours = strcmp(extension, "recording") == 0 || strcmp(extension, "checkpoint") == 0;
+        if (ours && fstatat(dirfd(folder), entry->d_name, &about, AT_SYMLINK_NOFOLLOW) == 0)
+            bytes += (double)about.st_size;
+    }
+    if (folder) closedir(folder);
+    return bytes >= server->save_most;
 }
 
 void lar_server_list_saved(lar_server *server) {

@@ -26,6 +26,7 @@ static const int64_t STILL = LAR_SECOND_NS / 4;
  * took both threads, so that they leave most of a core to others. */
 static const int64_t PAINT_EVERY = LAR_SECOND_NS / 125;
 enum { PAINT_SHARE = 4 };
+static const double SAVE_MOST = 4e9; /* [bytes] */
 /* A viewer that takes nothing for so long is closed. */
 static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
@@ -34,7 +35,7 @@ static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST +
 /* ---- the beat ----------------------------------------------------------------------------------
  */
 
-static void take_status(lar_server *server) {
+void lar_server_take_status(lar_server *server) {
     lar_session_status_get(server->session, &server->status);
     for (int32_t i = 0; i < server->session->tools; i++)
         lar_session_tool_force(server->session, i, &server->tool[i].pose, &server->tool[i].force,
@@ -104,6 +105,7 @@ static void watch(lar_server *server, int64_t now) {
     double seconds = (double)(now - server->watched_at) / (double)LAR_SECOND_NS;
     server->watched_at = now;
     lar_server_sweep(server, now);
+    lar_server_watch_recording(server);
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
         uint64_t bytes = bytes_received(viewer->wsi), before = viewer->bytes_in;
         viewer->bytes_in = bytes;
@@ -121,7 +123,7 @@ static void beat(lws_sorted_usec_list_t *sul) {
     if (now - server->watched_at >= WATCH_EVERY) watch(server, now);
     if (server->first && now - server->status_at >= STATUS_EVERY) {
         server->status_at = now;
-        take_status(server);
+        lar_server_take_status(server);
     }
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
@@ -309,7 +311,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     if (!server->forces.memory) return lar_fail_memory(error, bytes, "forces for viewers");
     server->pace = session->options.pace;
     lar_server_list_saved(server);
-    take_status(server);
+    lar_server_take_status(server);
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);
     if (!status)
@@ -334,6 +336,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->session = session;
     server->model = model;
     server->listener = server->spare = -1;
+    server->save_most = asked.save_most > 0 ? asked.save_most : SAVE_MOST;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);

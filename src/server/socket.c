@@ -52,6 +52,7 @@ static void read_rights(const lar_server *server, lar_viewer *viewer, struct lws
 static void welcome(lar_server *server, lar_viewer *viewer) {
     unsigned riding = server->riding.length > 0 ? LAR_DUE_RIDING : 0;
     lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | riding | LAR_DUE_STATUS);
+    lar_server_take_status(server); /* while nobody was there none was taken */
     if (!lar_riding_is_too_large(server->model)) return;
     char sentence[160];
     snprintf(sentence, sizeof sentence,

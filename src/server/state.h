@@ -139,6 +139,8 @@ struct lar_server {
     lar_saved_list states, recordings;
     int saved_number;
     int64_t saved_at;
+    double save_most;                  /* [bytes] */
+    bool recording_ends;               /* it is asked for */
     char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
     char played[LAR_NAME_MOST + 1];
     lws_sorted_usec_list_t beat;
@@ -150,6 +152,11 @@ struct lar_server {
 
 /* What the worker has done. */
 void lar_server_collect(lar_server *server);
+
+/* ---- server.c ---------- */
+
+/* What the session says now; due to all viewers. */
+void lar_server_take_status(lar_server *server);
 
 /* ---- http.c ----------- */
 
@@ -194,11 +201,16 @@ void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t
 
 /* What lies in the folder for saved states, and can be taken up or played here. */
 void lar_server_list_saved(lar_server *server);
+/* Whether what lies there has reached server->save_most. Looks at the disk. */
+bool lar_server_saves_full(const lar_server *server);
 void lar_saved_add(lar_saved_list *list, const char *name);
 /* The name, or the last one for ""; NULL: it is not in the list. */
 const char *lar_saved_find(const lar_saved_list *list, const char *name);
 
 /* ---- act.c ----------- */
+
+/* Ends a viewer's recording that has grown as large as may be. */
+void lar_server_watch_recording(lar_server *server);
 
 void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);

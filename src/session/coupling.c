@@ -11,6 +11,7 @@ static const double FEEL_MOST = 8;                 /* [N] */
 static const double TORQUE_MOST = 0.2;             /* [N m] */
 static const double TURN_MOST = 20;                /* [rad/s] */
 static const double LEVER_LEAST = 0.05;            /* [m] */
+static const double RATE_LEVER = 0.05;             /* of torques beside forces [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
 static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
 static const double JUMP = 0.005;                  /* no hand goes so far in a tick [m] */
@@ -53,6 +54,7 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                                .pull = pull,
                                .feel = fmin(pull, FEEL_MOST),
                                .feel_torque = TORQUE_MOST,
+                               .rate = LAR_COUPLING_RATE,
                                .seconds = limits->seconds,
                                .credit = CREDIT};
     lar_coupling_set_speed(coupling, INFINITY);
@@ -75,7 +77,7 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
     c->given = c->tissue_stiffness = 0;
     for (int i = 0; i < 3; i++)
         c->hand_velocity[i] = c->tool_velocity[i] = c->tissue[i] = c->way[i] = c->spring[i] =
-            c->felt[i] = c->step[i] = 0;
+            c->felt[i] = c->turned[i] = c->step[i] = 0;
 }
 
 /* ---- where the tool goes ----------------------------------------------------------------------
@@ -199,8 +201,20 @@ static void pay(lar_coupling *c) {
     c->energy = fmax(-c->credit, fmin(c->energy, stored + c->credit));
     /* A force that the hand works against pays for itself. */
     double earned = income(c, c->felt);
-    c->share = earned >= 0 ? 1 : fmax(0, fmin(1, c->energy / -earned));
-    for (int i = 0; i < 3; i++) c->felt[i] *= c->share;
+    double share = earned >= 0 ? 1 : fmax(0, fmin(1, c->energy / -earned));
+    for (int i = 0; i < 3; i++) c->felt[i] *= share;
+}
+
+/* From what was felt towards what is wanted, by `most`. */
+static void approach(double felt[3], const double wanted[3], double most) {
+    double change[3];
+    for (int i = 0; i < 3; i++) change[i] = wanted[i] - felt[i];
+    shorten(change, most);
+    for (int i = 0; i < 3; i++) felt[i] += change[i];
+}
+
+void lar_coupling_set_rate(lar_coupling *coupling, double rate) {
+    coupling->rate = rate;
 }
 
 void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_tool_force *felt) {
@@ -209,10 +223,17 @@ void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_
     see_stiffness(c, force->force);
     memcpy(c->tissue, force->force, sizeof c->tissue);
     c->held = force->held;
-    for (int i = 0; i < 3; i++) c->felt[i] = -c->spring[i];
-    shorten(c->felt, c->feel);
+    double wanted[3], torque[3], most = c->rate * c->seconds;
+    for (int i = 0; i < 3; i++) wanted[i] = -c->spring[i];
+    shorten(wanted, c->feel);
+    approach(c->felt, wanted, most);
     pay(c);
+    double all = length_of(wanted);
+    c->share = all > 0 ? fmin(1, length_of(c->felt) / all) : 1;
+    memcpy(torque, force->torque, sizeof torque);
+    shorten(torque, c->feel_torque);
+    approach(c->turned, torque, RATE_LEVER * most);
     *felt = *force;
     memcpy(felt->force, c->felt, sizeof felt->force);
-    shorten(felt->torque, c->feel_torque);
+    memcpy(felt->torque, c->turned, sizeof felt->torque);
 }

@@ -36,6 +36,8 @@
 
 #include "lariat.h"
 
+static const double LAR_COUPLING_RATE = 500; /* [N/s] */
+
 typedef struct lar_coupling_limits {
     double tool_speed; /* [m/s] */
     double hand_force; /* hands pull no harder [N] */
@@ -53,6 +55,7 @@ typedef struct lar_coupling {
     double pull, feel;  /* limits of the spring and of what the hand feels [N] */
     double drag;        /* of a tool whose spring is at its limit [N s/m] */
     double feel_torque; /* [N m] */
+    double rate;        /* of what the hand feels, at most [N/s] */
     double seconds;
     lar_tool_pose hand, tool; /* where they are: the hand now, the tool at the tick's end */
     double hand_velocity[3], tool_velocity[3]; /* [m/s] */
@@ -63,6 +66,7 @@ typedef struct lar_coupling {
     double step[3];                            /* of the hand in the last tick [m] */
     int32_t held;
     double felt[3];        /* what the hand feels now [N] */
+    double turned[3];      /* the torque that it feels [N m] */
     double credit, energy; /* at the beginning; that went in and was not given back [J] */
     double share;          /* of the spring that the hand feels, 0..1 */
     double given;          /* to the tissue, and paid by nobody [J] */
@@ -75,6 +79,10 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
 
 /* The tool goes no faster than `speed` from now on, nor than its limits: INFINITY takes these. */
 void lar_coupling_set_speed(lar_coupling *coupling, double speed);
+
+/* What the hand feels changes by no more than so many N/s, a torque by that times 5 cm; but what
+ * nobody paid for is held back at once. Without it LAR_COUPLING_RATE. */
+void lar_coupling_set_rate(lar_coupling *coupling, double rate);
 
 /* The tool has been put somewhere: it rests at `pose`, and goes to its hand from there. */
 void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);

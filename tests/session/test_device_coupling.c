@@ -255,6 +255,28 @@ static void test_force_and_speed_are_bounded(void **state) {
 }
 
 /* Held tissue is pulled with the limit, and not harder for long, however far the hand goes. */
+/* A blow against a stiff wall: the force grows and falls by no more than may be, tick by tick. */
+static void test_force_changes_no_faster(void **state) {
+    (void)state;
+    const double rates[] = {LAR_COUPLING_RATE, 100, 1e5};
+    double steepest[3] = {0};
+    for (int r = 0; r < 3; r++) {
+        world w = start(&PROBE, 2e4, 0.02);
+        lar_coupling_set_rate(&w.coupling, rates[r]);
+        double before = w.felt.force[2];
+        for (int i = 0; i < 200; i++) {
+            double z = 0.02 - 0.8 * TICK * (i < 60 ? i : 60);
+            tick(&w, 0, z);
+            double change = fabs(w.felt.force[2]) - fabs(before);
+            steepest[r] = fmax(steepest[r], change / TICK);
+            before = w.felt.force[2];
+        }
+        assert_true(fabs(before) > 1); /* it does get there */
+        assert_true(steepest[r] <= rates[r] * (1 + 1e-9));
+    }
+    assert_true(steepest[2] > 2 * LAR_COUPLING_RATE); /* without a limit it would be a blow */
+}
+
 static void test_hand_pulls_no_harder(void **state) {
     (void)state;
     const double stiffness[] = {50, 500, 5000};
@@ -377,6 +399,7 @@ int main(void) {
         cmocka_unit_test(test_unsteady_positions_are_felt),
         cmocka_unit_test(test_device_rests_on_stiff_wall),
         cmocka_unit_test(test_force_and_speed_are_bounded),
+        cmocka_unit_test(test_force_changes_no_faster),
         cmocka_unit_test(test_hand_pulls_no_harder),
         cmocka_unit_test(test_strong_hand_feels_no_more),
         cmocka_unit_test(test_tool_arrives_without_swinging),

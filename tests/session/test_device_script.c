@@ -60,7 +60,7 @@ static void test_unknown_devices_are_refused(void **state) {
     assert_refused("script", LAR_ERROR_ARGUMENT, "no such kind of device");
     assert_refused("script:", LAR_ERROR_ARGUMENT, "no such kind of device");
     assert_refused("udp:127.0.0.1:0,color=red", LAR_ERROR_ARGUMENT,
-                   "there are at axes scale trocar token to write");
+                   "there are at axes scale trocar token rate to write");
     assert_refused("udp:127.0.0.1:0,", LAR_ERROR_ARGUMENT, "no option");
     assert_refused("udp:127.0.0.1:0,scale", LAR_ERROR_ARGUMENT, "no option");
     assert_refused("udp:127.0.0.1:0,at axes=1", LAR_ERROR_ARGUMENT, "no option");

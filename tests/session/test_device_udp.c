@@ -136,6 +136,22 @@ static void test_silent_device_is_told_zero(void **state) {
     lar_device_close(r.device);
 }
 
+/* A single packet, which anybody may have sent under this address, is answered once. */
+static void test_single_packet_is_answered_once(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int s = reach(&r), answers = 0;
+    lar_force_packet answer;
+    send_position(s, 1, 0, NULL);
+    for (int i = 0; i < 200; i++) {
+        tick(&r);
+        while (receive(s, &answer)) answers++;
+    }
+    assert_int_equal(answers, 1);
+    close(s);
+    lar_device_close(r.device);
+}
+
 /* Others get no answer and move nothing; a flood is read in portions and then not at all. */
 static void test_strangers_and_floods(void **state) {
     (void)state;
@@ -217,14 +233,34 @@ static void test_reset_is_smooth(void **state) {
         tick(&r);
         assert_true(receive(s, &answer));
     }
+    assert_true(answer.force[2] == 2);
     lar_device_reset(r.device);
     r.pose = PROBE.rest;
+    r.force = (lar_tool_force){0}; /* nothing is felt where it begins anew */
     lar_device_feel(r.device, &(lar_device_tick){.now = r.now}, &r.force, &r.pose);
-    send_position(s, 351, 0.05, NULL);
-    assert_true(tick(&r));
-    assert_true(receive(s, &answer));
-    assert_true(answer.force[2] < 0.05);
-    assert_true(fabs(r.pose.position[0]) < 0.001);
+    while (receive(s, &answer)) continue; /* that it begins to fade */
+    double before = 2;
+    for (uint32_t i = 351; i <= 410; i++) { /* what was felt fades in 50 ms, packet by packet */
+        send_position(s, i, 0.05, NULL);
+        assert_true(tick(&r));
+        assert_true(receive(s, &answer));
+        if (i == 351) assert_true(fabs(r.pose.position[0]) < 0.001);
+        assert_true(answer.flags & LAR_ANSWER_FADING);
+        assert_true(answer.force[2] <= before && before - answer.force[2] < 0.041);
+        before = answer.force[2];
+    }
+    assert_true(before == 0);
+    r.force.force[2] = 2; /* and what comes then grows within 300 ms */
+    for (uint32_t i = 411; i <= 660; i++) {
+        send_position(s, i, 0.05, NULL);
+        tick(&r);
+        assert_true(receive(s, &answer));
+        double most = i > 411 ? 0.041 : 0.45;
+        if (fabs(answer.force[2] - before) > most)
+            fail_msg("packet %u: from %g to %g N", i, before, answer.force[2]);
+        before = answer.force[2];
+    }
+    if (before != 2) fail_msg("%g N", before);
     close(s);
     lar_device_close(r.device);
 }
@@ -233,6 +269,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_position_in_force_out),
         cmocka_unit_test(test_silent_device_is_told_zero),
+        cmocka_unit_test(test_single_packet_is_answered_once),
         cmocka_unit_test(test_strangers_and_floods),
         cmocka_unit_test(test_token_on_any_address),
         cmocka_unit_test(test_port_in_use),

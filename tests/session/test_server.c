@@ -456,6 +456,45 @@ static void gravity_damping_and_stiffness_are_set(void **unused) {
     end_serving(&s);
 }
 
+/* Who comes after a while without viewers is not told of long ago. */
+static void first_status_is_fresh(void **unused) {
+    (void)unused;
+    served s = serve(NULL);
+    lar_session_status now;
+    nap(0.3);
+    lar_session_status_get(s.b.session, &now);
+    assert_true(now.step > 0);
+    client c = open_client(s.port);
+    assert_true(number_of(await_text(&c, "status"), "step") >= (double)now.step);
+    close_client(&c);
+    end_serving(&s);
+}
+
+/* The folder takes so much and no more: a recording ends there, and then nothing is saved. */
+static void saves_as_much_as_it_may(void **unused) {
+    (void)unused;
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s/server-quota-%d", LAR_TEST_BUILD, (int)getpid());
+    served s = serve_with(NULL, &(lar_server_options){.save_folder = folder, .save_most = 40000});
+    client c = open_client(s.port);
+    await_text(&c, "hello");
+    say(&c, "{\"do\":\"record\",\"on\":true}");
+    await_status(&c, "\"recording\":true");
+    char other[300]; /* fills it from elsewhere, as a long recording would */
+    snprintf(other, sizeof other, "%s/old-1.checkpoint", folder);
+    FILE *file = fopen(other, "w");
+    assert_non_null(file);
+    assert_int_equal(ftruncate(fileno(file), 50000), 0);
+    fclose(file);
+    assert_non_null(strstr(await_text(&c, "note"), "the recording has ended"));
+    await_status(&c, "\"recording\":false");
+    nap(0.6);
+    say(&c, "{\"do\":\"save\"}");
+    assert_non_null(strstr(await_text(&c, "note"), "as much as they may"));
+    close_client(&c);
+    end_serving(&s);
+}
+
 static void saves_where_it_may(void **unused) {
     (void)unused;
     char folder[256];
@@ -554,6 +593,8 @@ int main(void) {
                                        cmocka_unit_test(a_tool_that_tissue_stops_says_so),
                                        cmocka_unit_test(plays_pauses_steps_and_resets),
                                        cmocka_unit_test(gravity_damping_and_stiffness_are_set),
+                                       cmocka_unit_test(first_status_is_fresh),
+                                       cmocka_unit_test(saves_as_much_as_it_may),
                                        cmocka_unit_test(saves_where_it_may),
                                        cmocka_unit_test(shows_why_it_stopped_and_begins_again),
                                        cmocka_unit_test(tells_when_it_ends)};

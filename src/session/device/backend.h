@@ -20,6 +20,7 @@ typedef struct lar_device_spec {
     bool trocar_given;
     double trocar[3];    /* [m] */
     const char *token;   /* of udp; NULL: none */
+    double rate;         /* of udp: what the force may change by [N/s]; 0: not given */
     double speed;        /* of gamepad, at full stick [m/s]; 0: not given */
     bool turns_absolute; /* set by open: orientations are the scene's, not turns of the tool's */
 } lar_device_spec;

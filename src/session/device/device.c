@@ -22,6 +22,7 @@ struct lar_device {
     double at[3], scale, axes[4]; /* the device's axes in the scene */
     bool turns_absolute;
     double rest[4]; /* of the tool */
+    double rate;    /* [N/s]; 0: not given */
     bool pivots;
     lar_trocar trocar;
     lar_trocar_angles angles; /* of the last pose */
@@ -123,6 +124,9 @@ static lar_status read_option(const lar_device_backend *backend, char *option,
     } else if (lar_span_equal(name, "speed")) {
         if (!lar_span_double(value, &spec->speed) || !(spec->speed > 0 && spec->speed <= 1))
             wanted = "a speed in m/s, more than 0 and at most 1";
+    } else if (lar_span_equal(name, "rate")) {
+        if (!lar_span_double(value, &spec->rate) || !(spec->rate >= 1 && spec->rate <= 1e5))
+            wanted = "how fast the force may change, from 1 to 100000 N/s";
     } else {
         spec->token = value.at; /* the last piece of the text ends there */
         if (value.length < 8 || value.length > 16) wanted = "8 to 16 characters";
@@ -168,6 +172,7 @@ static void place(lar_device *device, const lar_device_spec *spec, const lar_too
     memcpy(device->axes, spec->axes, sizeof device->axes);
     device->turns_absolute = spec->turns_absolute;
     memcpy(device->rest, tool->rest.orientation, sizeof device->rest);
+    device->rate = spec->rate;
     device->pivots = spec->trocar_given;
     if (device->pivots) lar_trocar_create(&device->trocar, spec->trocar, &tool->rest);
 }
@@ -235,6 +240,10 @@ void lar_device_close(lar_device *device) {
     if (device->state) device->backend->close(device->state);
     free(device->name);
     free(device);
+}
+
+double lar_device_rate(const lar_device *device) {
+    return device->rate;
 }
 
 bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_pose *pose) {

@@ -38,6 +38,9 @@ lar_status lar_device_open(const char *spec, const lar_tool_info *tool, lar_devi
 /* NULL is fine. */
 void lar_device_close(lar_device *device);
 
+/* How fast what the hand feels may change [N/s]; 0: as the coupling has it. */
+double lar_device_rate(const lar_device *device);
+
 /* Where the hand is. False: nothing new, `pose` is as it was and the tool stays where it was sent.
  */
 bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_pose *pose);

@@ -40,6 +40,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     if (!link->owned) {
         link->owned = true;
         link->owner = *from;
+        link->packets = 0;
     } else {
         if (memcmp(&link->owner, from, sizeof *from)) return refuse(link);
         /* Numbers go round after 2^32; what lies less than half of that ahead is newer. */
@@ -55,6 +56,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     link->newest = packet;
     link->last_packet = now;
     link->received++;
+    link->packets++;
     return LAR_LINK_TAKEN;
 }
 
@@ -77,6 +79,7 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
     if (link->last_time == 0) passed = 0;
     link->last_time = now;
     double ms = (double)passed / (double)MILLISECOND;
+    link->left = toward(link->left, 0, ms / FADE);
     if (link->owned && is_gone(link, now)) link->owned = false;
     bool here = link->owned &&
                 !(now > link->last_packet && now - link->last_packet > SILENCE * MILLISECOND);
@@ -101,4 +104,19 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
     link->approach = toward(link->approach, 1, ms / APPROACH);
     approach(link);
     return true;
+}
+
+void lar_link_feel(lar_link *link, const double force[3], const double torque[3]) {
+    for (int i = 0; i < 3; i++) {
+        link->force[i] = link->strength * force[i] + link->left * link->left_force[i];
+        link->torque[i] = link->strength * torque[i] + link->left * link->left_torque[i];
+    }
+}
+
+void lar_link_jump(lar_link *link) {
+    memcpy(link->left_force, link->force, sizeof link->left_force);
+    memcpy(link->left_torque, link->torque, sizeof link->left_torque);
+    link->left = 1;
+    link->strength = link->approach = 0;
+    link->silent = true; /* comes back as after a silence */
 }

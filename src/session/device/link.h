@@ -11,6 +11,9 @@
  * After a silence, and at the beginning, the hand is somewhere else than the tool: the pose is led
  * from where the tool is to where the hand is within the same 300 ms, so that nothing jumps.
  *
+ * When the simulation jumps (a reset, a break, a state that is loaded) what was felt last fades
+ * within the same 50 ms, while the hand comes back as after a silence.
+ *
  * An engine that was held up for longer than 20 ms has been silent itself, and comes back likewise.
  *
  * Time is CLOCK_MONOTONIC in ns, as a number that the caller gives: no clock, no socket, no memory
@@ -36,12 +39,16 @@ typedef struct lar_link {
     char token[LAR_PACKET_TOKEN]; /* zeros: none is asked for */
     bool owned;
     lar_link_address owner;
-    uint64_t last_packet; /* of the owner [ns] */
-    uint64_t last_time;   /* of the last call of lar_link_advance [ns] */
-    double last_gap;      /* between the last two calls of lar_link_advance [ms] */
-    bool silent;          /* between a time-out and the next packet */
-    double strength;      /* 0..1: share of the force */
-    double approach;      /* 0..1: share of the way to the hand */
+    uint64_t packets;                     /* of the owner */
+    uint64_t last_packet;                 /* of the owner [ns] */
+    uint64_t last_time;                   /* of the last call of lar_link_advance [ns] */
+    double last_gap;                      /* between the last two calls of lar_link_advance [ms] */
+    bool silent;                          /* between a time-out and the next packet */
+    double strength;                      /* 0..1: share of the force */
+    double approach;                      /* 0..1: share of the way to the hand */
+    double left;                          /* 0..1: share of what was felt before a jump */
+    double left_force[3], left_torque[3]; /* [N] [N m] */
+    double force[3], torque[3];           /* what was felt last */
     lar_position_packet newest;
     lar_tool_pose tool; /* where the tool is; the caller's to keep */
     lar_tool_pose from; /* where the approach began: where the tool was */
@@ -60,5 +67,11 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
  * the force fades as in a silence. True when the pose is the hand's (false: nobody is there, and
  * it stays where it was). */
 bool lar_link_advance(lar_link *link, bool paused, uint64_t now);
+
+/* What the device gets of this force and torque now: link->force and ->torque. */
+void lar_link_feel(lar_link *link, const double force[3], const double torque[3]);
+
+/* The simulation has jumped. */
+void lar_link_jump(lar_link *link);
 
 #endif

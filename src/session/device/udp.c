@@ -49,6 +49,7 @@ typedef struct udp_state {
     udp_answer answer[READ_MOST];
     udp_answer last;  /* taken: what is said while a force fades */
     int said_nothing; /* answers of zero since the force has faded */
+    uint64_t unasked; /* answers that no packet asked for, since the last one */
     uint64_t answered;
     lar_histogram answer_time;
     struct mmsghdr message[READ_MOST];
@@ -193,6 +194,7 @@ static void take(udp_state *state, int i, uint64_t now) {
                                .came = arrival(head)};
     if (state->due < READ_MOST) state->answer[state->due++] = state->last;
     state->said_nothing = 0;
+    state->unasked = 0;
 }
 
 /* Listens to everybody again, or to the owner alone. */
@@ -234,23 +236,27 @@ static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pos
 static lar_force_packet force_packet(const udp_state *state, const lar_device_tick *tick,
                                      const lar_tool_force *force, const lar_tool_pose *pose) {
     lar_force_packet packet = {.step = tick->step};
-    packet.flags =
-        (tick->paused ? 0 : LAR_ANSWER_PLAYING) | (force->touching ? LAR_ANSWER_TOUCHING : 0) |
-        (force->held ? LAR_ANSWER_HOLDING : 0) | (state->link.strength < 1 ? LAR_ANSWER_FADING : 0);
+    packet.flags = (tick->paused ? 0 : LAR_ANSWER_PLAYING) |
+                   (force->touching ? LAR_ANSWER_TOUCHING : 0) |
+                   (force->held ? LAR_ANSWER_HOLDING : 0) |
+                   (state->link.strength < 1 || state->link.left > 0 ? LAR_ANSWER_FADING : 0);
     for (int i = 0; i < 3; i++) {
-        packet.force[i] = state->link.strength * force->force[i];
-        packet.torque[i] = state->link.strength * force->torque[i];
+        packet.force[i] = state->link.force[i];
+        packet.torque[i] = state->link.torque[i];
         packet.position[i] = pose->position[i];
     }
     return packet;
 }
 
-/* A silent device is told in every tick that its force fades, and three times that it is gone. */
+/* A silent device is told in every tick that its force fades, and three times that it is gone. No
+ * more often than it has sent packets, but for one: whoever sends a single packet under a false
+ * address has it answered once. */
 static void add_fading(udp_state *state) {
     enum { ENOUGH = 3 };
     if (state->due > 0 || !state->link.owned || !state->link.silent) return;
-    if (state->said_nothing == ENOUGH) return;
-    if (state->link.strength <= 0) state->said_nothing++;
+    if (state->said_nothing == ENOUGH || state->unasked + 1 >= state->link.packets) return;
+    state->unasked++;
+    if (state->link.strength <= 0 && state->link.left <= 0) state->said_nothing++;
     state->answer[state->due++] = state->last;
 }
 
@@ -258,6 +264,7 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
                      const lar_tool_pose *pose) {
     udp_state *state = data;
     state->link.tool = *pose;
+    lar_link_feel(&state->link, force->force, force->torque);
     bool fading = state->due == 0;
     add_fading(state);
     if (state->due == 0) return;
@@ -285,8 +292,7 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
 
 static void udp_reset(void *data) {
     udp_state *state = data;
-    state->link.strength = state->link.approach = 0;
-    state->link.silent = true; /* comes back as after a silence */
+    lar_link_jump(&state->link);
 }
 
 static void udp_report(const void *data, lar_device_status *status) {
@@ -310,7 +316,7 @@ static void udp_report(const void *data, lar_device_status *status) {
 const lar_device_backend lar_device_udp = {.name = "udp",
                                            .form = "udp:HOST:PORT",
                                            .summary = "a device on the network, 1 kHz",
-                                           .options = " token ",
+                                           .options = " token rate ",
                                            .open = udp_open,
                                            .close = udp_close,
                                            .poll = udp_poll,
