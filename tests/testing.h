@@ -23,8 +23,8 @@
         if (!(value_ <= bound_)) fail_msg("%s is %.6g, more than %.6g", #value, value_, bound_);   \
     } while (0)
 
-/* Whether this run is of `make check-long`, which sets LARIAT_TEST_FULL: tests that have a short form
- * take the full one. */
+/* Whether this run is of `make check-long`, which sets LARIAT_TEST_FULL: tests that have a short
+ * form take the full one. */
 TEST_UNUSED static inline bool test_in_full(void) {
     return getenv("LARIAT_TEST_FULL") != NULL;
 }

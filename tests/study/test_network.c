@@ -274,7 +274,8 @@ static void large_blocks_are_efficient(void **state) {
     }
 }
 
-/* ---- what the thesis says of its own machine --------------------------------------------------- */
+/* ---- what the thesis says of its own machine ---------------------------------------------------
+ */
 
 static double block_efficiency(int32_t processors, int32_t elements, int32_t threads, int scheme) {
     lar_cluster m = machine_named("thesis");
