@@ -274,8 +274,7 @@ static void large_blocks_are_efficient(void **state) {
     }
 }
 
-/* ---- what the thesis says of its own machine ---------------------------------------------------
- */
+/* ---- the thesis, on itself ------------------------------------------------------------------ */
 
 static double block_efficiency(int32_t processors, int32_t elements, int32_t threads, int scheme) {
     lar_cluster m = machine_named("thesis");
