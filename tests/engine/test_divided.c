@@ -133,7 +133,7 @@ static void grids_and_sizes_of_advances_change_nothing(void **unused) {
     (void)unused;
     lar_model *model = organ();
     course c = plain(model);
-    for (int i = 1; i < 9; i++) {
+    for (int i = test_every(2); i < 9; i += test_every(5)) {
         int grid = i / 2 % GRIDS, threads = 1 + i % 2;
         char what[80];
         lar_simulation *simulation = start_with(model, setting(grids[grid], threads));
@@ -213,7 +213,7 @@ static void no_steps_are_nothing(void **unused) {
     (void)unused;
     lar_model *model = organ();
     course c = plain(model);
-    for (int grid = 0; grid < 3; grid++) {
+    for (int grid = 0; grid < 3; grid += test_every(2)) {
         lar_simulation *simulation = start_with(model, setting(grids[grid], 1));
         while (lar_simulation_steps(simulation) < middle) {
             go(simulation, lar_simulation_steps(simulation) + 1, 1);
@@ -253,7 +253,7 @@ static void a_saved_run_goes_on_with_the_same_bits(void **unused) {
     (void)unused;
     lar_model *model = organ();
     course c = plain(model);
-    for (int grid = 0; grid < GRIDS; grid++) {
+    for (int grid = 0; grid < GRIDS; grid += test_every(3)) {
         lar_simulation *simulation = start_with(model, setting(grids[grid], 1 + grid % 2));
         go(simulation, middle, 10);
         save(simulation);
@@ -278,7 +278,7 @@ static void a_run_may_be_saved_anywhere(void **unused) {
     (void)unused;
     lar_model *model = organ();
     course c = plain(model);
-    for (int grid = 0; grid < 3; grid += 2) {
+    for (int grid = test_every(3) - 1; grid < 3; grid += 2) {
         lar_simulation *simulation = start_with(model, setting(grids[grid], 2));
         for (uint64_t step = 9; step < STEPS; step += step % 3 ? 5 : 31) {
             go(simulation, step, 10);
@@ -298,7 +298,7 @@ static void copies_hold_all_of_it(void **unused) {
     (void)unused;
     lar_model *model = organ();
     course c = plain(model);
-    for (int grid = 0; grid < 3; grid++) {
+    for (int grid = 0; grid < 3; grid += test_every(2)) {
         lar_simulation *simulation = start_with(model, setting(grids[grid], 2));
         lar_state state;
         lar_tools *tools = calloc(1, sizeof *tools);
