@@ -28,9 +28,7 @@ check:
 
 check-long:
 	@tools/setup.sh build scan web check
-	cmake --preset release --log-level=NOTICE
-	cmake --build --preset release -j $(JOBS)
-	ctest --preset long -j 1
+	@JOBS=$(JOBS) tools/check.sh --long
 
 report:
 	@tools/setup.sh build scan web check report
@@ -55,7 +53,7 @@ help:
 	@echo "make          build the library and the command into build/"
 	@echo "make demo     build, simulate the demonstration organ in real time, show it in the browser"
 	@echo "make check    every test, then the fast ones again under the sanitizers"
-	@echo "make check-long  what takes longer: every combination, ten million packets"
+	@echo "make check-long  what takes longer, also with the sanitizers: every combination"
 	@echo "make report   measure this machine, and make the thesis's tables and figures again: docs/report/"
 	@echo "make fuzz     fuzz every reader, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
 	@echo "make install  library, header and command under PREFIX=$(PREFIX)"

@@ -555,7 +555,7 @@ void lar_collide_half_work(const lar_collide *collide, const lar_condition_conte
             for (int i = 0; i < 3; i++) power += part->force[k][i] * v[i];
         }
     }
-    state->contact -= 0.5 * context->time_step * power;
+    state->contact -= 0.5 * context->mean_step * power;
 }
 
 void lar_collide_restart(lar_collide *collide) {

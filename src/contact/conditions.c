@@ -152,12 +152,12 @@ static double gravity_half_work(const lar_condition_context *context, double tim
     lar_gravity_at(context->model, context->settings, time, gravity);
     for (int32_t n = context->first; n < context->end; n++)
         for (int i = 0; i < 3; i++) momentum[i] += context->weight[n] * state->v[4 * n + i];
-    return half_work(gravity, momentum, context->time_step);
+    return half_work(gravity, momentum, context->mean_step);
 }
 
 double lar_conditions_half_work(const lar_conditions *c, const lar_condition_context *context,
                                 double time, const lar_state *state) {
-    double dt = context->time_step, work = 0;
+    double dt = context->mean_step, work = 0;
     for (int32_t i = 0; i < c->force_count; i++)
         work += half_work(c->force[i].now, state->v + c->force[i].node, dt);
     for (int32_t i = 0; i < c->pressure_count; i++)
@@ -223,7 +223,8 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
                              lar_state *state) {
     const lar_model *model = context->model;
     double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
-    double dt = context->time_step, share = damping * dt / context->whole_step;
+    double dt = context->time_step, step = context->mean_step;
+    double share = damping * step / context->whole_step;
     lar_gravity_at(model, context->settings, time, gravity);
     state->damped -= share * hold(c, context->weight, state);
     for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
@@ -239,10 +240,10 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         state->damped += share * weight * ((before + *v) * (before + *v) - free * free);
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         double mean = 0.5 * (*v + before);
-        double acceleration = (*v - before) / dt;
+        double acceleration = (*v - before) / step;
         double reaction = mass * (acceleration + damping * mean - gravity[constraint->value % 4]) +
                           constraint->force;
-        if (weight > 0) work += reaction * mean * dt;
+        if (weight > 0) work += reaction * mean * step;
     }
     return work;
 }

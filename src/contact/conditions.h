@@ -60,6 +60,8 @@ typedef struct lar_condition_context {
     double scale;                 /* force units per newton */
     double time_step;             /* of the step, or the part of it, under way [s] */
     double whole_step;            /* [s] */
+    double mean_step;             /* of which forces change velocities: time_step, but where parts
+                                     become longer or shorter; for work [s] */
     double hardness;              /* of tools: lar_step_division */
     int32_t shares;               /* of LAR_STEP_SHARES, that the part of the step is */
     double stable_step;           /* the elements' bound at rest [s] */

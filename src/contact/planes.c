@@ -206,8 +206,9 @@ void lar_planes_stop(lar_planes *planes, const lar_condition_context *context, l
     }
     state->fastest = sum.fastest;
     double damping = lar_damping_of(context->model, context->settings);
-    state->damped += damping * sum.damped; /* the update kernel has counted the free motion */
-    state->contact -= 0.5 * (1 + 0.5 * damping * dt) * sum.work;
+    /* The update kernel has counted the free motion. */
+    state->damped += damping * sum.damped * (context->mean_step / context->whole_step);
+    state->contact -= 0.5 * (1 + 0.5 * damping * context->mean_step) * sum.work;
     planes->travel += step_travel(context, state) - moved;
     seen->touching += sum.touching;
     seen->deepest = larger(seen->deepest, sum.deepest);

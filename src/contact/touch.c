@@ -413,7 +413,7 @@ void lar_touch_half_work(const lar_touch *touch, const lar_condition_context *co
                 work +=
                     (double)acting->force[a][k] * state->v[touch->face[acting->face].value[a] + k];
     }
-    state->external += 0.5 * context->time_step * work / context->scale;
+    state->external += 0.5 * context->mean_step * work / context->scale;
 }
 
 void lar_touch_observe(lar_touch *touch, const lar_condition_context *context,

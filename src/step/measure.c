@@ -28,15 +28,25 @@ static void gravity_at(const lar_domain *domain, double time, double gravity[3])
     lar_gravity_at(domain->model, lar_settings_of(&domain->acting), time, gravity);
 }
 
+/* That of which forces change the velocities next: between the last part and the next one. */
+static double mean_step(const lar_domain *domain, const lar_state *state) {
+    return lar_mean_step(domain, lar_division_of(&domain->acting), state);
+}
+
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
 static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
                             const double gravity[3]) {
     lar_motion motion = lar_step_motion(domain, &domain->acting, state);
-    double step = lar_mean_step(domain, lar_division_of(&domain->acting), state);
+    double step = mean_step(domain, state);
     double half = 0.5 * damping_of(domain) * step;
     double drift = gravity[value % 4] * step / (1 + half);
     return motion.keep * state->v[value] + drift -
            motion.push * domain->push[value / 4] * (double)state->force[value];
+}
+
+/* Length of the next step, or of its parts. */
+static double part_of_step(const lar_domain *domain) {
+    return domain->time_step / lar_division_of(&domain->acting)->parts;
 }
 
 /* Kinetic energy of one value, and half of the present step's share of damping. */
@@ -45,7 +55,7 @@ static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_
     double mass = domain->mass[value / 4], behind = state->v[value];
     energy->kinetic += 0.5 * mass * behind * ahead;
     energy->damping +=
-        0.25 * damping_of(domain) * domain->time_step * mass * behind * (behind + ahead);
+        0.25 * damping_of(domain) * mean_step(domain, state) * mass * behind * (behind + ahead);
 }
 
 /* What a support exerts on a value: all that the rest of the equation of motion leaves open. */
@@ -55,7 +65,7 @@ static double support_force(const lar_domain *domain, const lar_state *state,
     int32_t value = constraint->value;
     double behind = state->v[value];
     double inertia =
-        (ahead - behind) / domain->time_step + 0.5 * damping_of(domain) * (ahead + behind);
+        (ahead - behind) / mean_step(domain, state) + 0.5 * damping_of(domain) * (ahead + behind);
     return domain->mass[value / 4] * (inertia - gravity[value % 4]) +
            (double)state->force[value] / domain->scale;
 }
@@ -71,7 +81,7 @@ static double gravity_potential(const lar_domain *domain, const lar_state *state
 /* The velocity half a step ahead of a supported value. */
 static double supported_velocity(const lar_domain *domain, const lar_state *state,
                                  const lar_constraint *constraint) {
-    double time = lar_state_time(domain, state), dt = domain->time_step;
+    double time = lar_state_time(domain, state), dt = part_of_step(domain);
     return (lar_constraint_value(domain->model, constraint, time + dt) -
             lar_constraint_value(domain->model, constraint, time)) /
            dt;
@@ -83,7 +93,8 @@ static void add_stops(const lar_domain *domain, const lar_state *state, const do
                       lar_energy *energy) {
     const lar_planes *planes = &domain->acting.touch.planes;
     lar_condition_context context = lar_domain_context(domain);
-    double half = 0.5 * damping_of(domain) * domain->time_step;
+    context.time_step = part_of_step(domain);
+    double half = 0.5 * damping_of(domain) * mean_step(domain, state);
     for (int32_t entry = 0; entry < planes->count;) {
         int32_t value = planes->node[entry].value;
         double free[3], ahead[3], mass = domain->mass[value / 4];
@@ -119,7 +130,7 @@ static void add_motion(const lar_domain *domain, const lar_state *state, const d
         double ahead = supported_velocity(domain, state, c);
         add_kinetic(domain, state, c->value, ahead, energy);
         if (c->curve >= 0)
-            energy->external += 0.5 * domain->time_step * state->v[c->value] *
+            energy->external += 0.5 * mean_step(domain, state) * state->v[c->value] *
                                 support_force(domain, state, c, ahead, gravity);
     }
 }
@@ -143,6 +154,7 @@ static void clear_forces(const lar_domain *domain, lar_state *state) {
 void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
     lar_condition_context context = lar_domain_context(domain);
     double time = lar_state_time(domain, state), gravity[3];
+    lar_step_enter(domain, &domain->acting, &context, state);
     gravity_at(domain, time, gravity);
     lar_trip ignored = {0};
     lar_step_forces(domain, state, &ignored);

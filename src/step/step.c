@@ -139,6 +139,7 @@ void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
     const lar_step_division *division = lar_division_of(acting);
     if (state->part == 0) state->parts = division->parts;
     context->time_step = domain->time_step / state->parts;
+    context->mean_step = lar_mean_step(domain, division, state);
     context->settings = lar_settings_of(acting);
     context->hardness = division->hardness;
     state->close = lar_division_is_close(division);
@@ -169,10 +170,10 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
     const lar_settings *settings = lar_settings_of(acting);
     lar_motion motion = lar_step_motion(domain, acting, state);
     double damping = lar_damping_of(model, settings), damped = 0;
+    double mean = context->mean_step;
     if (lar_gravity_varies(model, settings)) {
         double gravity[3];
         lar_gravity_at(model, settings, time, gravity);
-        double mean = lar_mean_step(domain, lar_division_of(acting), state);
         for (int i = 0; i < 3; i++)
             motion.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
@@ -184,7 +185,7 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
         !trip->kind)
         *trip = (lar_trip){
             .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
-    state->damped += damping * damped / state->parts;
+    state->damped += damping * damped * (mean / domain->time_step);
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
@@ -221,6 +222,7 @@ static void collide(lar_collide *collide, const lar_condition_context *context, 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_condition_context context = lar_domain_context(domain);
     lar_touch_note note;
+    lar_step_enter(domain, &domain->acting, &context, state);
     lar_touch_remember(&domain->acting.touch, &note);
     lar_contact_info counted = domain->acting.collide.info;
     act(domain, &domain->acting, &context, state, trip);

@@ -2,13 +2,16 @@
 # The viewer in Debian's Chromium, without a screen: first its parts, then the page against a stand-in
 # for the server, then against `lariat view` itself.
 #
-#     run.sh LARIAT WEB OUT          screenshots and what the engines wrote are left in OUT
+#     run.sh LARIAT WEB OUT [PART...]    screenshots and what the engines wrote are left in OUT
+#
+# PART is units, mock, look, engine or jaws; without one all of them.
 #
 # Skipped, with a sentence, where something of it is not there.
 set -uo pipefail
 lariat=$(realpath "$1")
 web=$(realpath "$2")
 out=$3
+shift 3
 
 skip() {
     echo "skipped: $1"
@@ -38,7 +41,8 @@ try_part() {
     grep -E '^(not )?ok |^# (pass|fail) ' "$2"
     return $status
 }
-for part in ${PARTS:-units mock look engine jaws}; do
+[ $# -gt 0 ] || set -- units mock look engine jaws
+for part; do
     try_part "$part" "$out/$part.txt" && continue
     echo "$part failed, see $out/$part.txt; once more:"
     try_part "$part" "$out/$part-again.txt" && continue

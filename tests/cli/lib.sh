@@ -7,6 +7,15 @@ mkdir -p "$SCRATCH" || exit 1
 unset LARIAT_ISA
 failures=0
 
+# Whether what takes minutes is left to `make check-long`, which sets LARIAT_TEST_FULL; with a
+# sanitizer (LARIAT_TEST_SANITIZED) also what takes half a minute there.
+in_short() {
+    [ -z "${LARIAT_TEST_FULL:-}" ]
+}
+in_short_if_sanitized() {
+    [ -n "${LARIAT_TEST_SANITIZED:-}" ] && in_short
+}
+
 fail() {
     echo "FAILED: $*" >&2
     failures=$((failures + 1))

@@ -21,7 +21,7 @@ plays() {
     echo "$name: $(cat out)"
 }
 plays deep --device grasper="$cases/grasper_deep.csv"
-plays both --device grasper="$cases/grasper.csv" --device probe="$cases/probe.csv"
+in_short || plays both --device grasper="$cases/grasper.csv" --device probe="$cases/probe.csv"
 
 # In a session, with a clock: it goes on, and does not go back.
 if "$LARIAT" view $scene --port 0 --seconds 0.1 2>&1 | grep -q 'no server for viewers'; then

@@ -69,7 +69,7 @@ static share check_model(lar_model *model) {
 
 static void bricks_of_all_sizes(void **unused) {
     (void)unused;
-    for (int n = 0; n < 9 * 9 * 9; n++) {
+    for (int n = 0; n < 9 * 9 * 9; n += test_every(7)) {
         int c[3] = {1 + n % 9, 1 + n / 9 % 9, 1 + n / 81};
         share in = check_model(boxes(c[0], c[1], c[2], 0));
         assert_int_equal(in.boxes, in.elements);
@@ -118,7 +118,7 @@ static void laws_do_not_mix(void **unused) {
 static void holes_and_corners(void **unused) {
     (void)unused;
     chance_state = 7;
-    for (int n = 0; n < 60; n++) {
+    for (int n = 0; n < 60; n += test_every(5)) {
         int c[3] = {2 + chance(9), 2 + chance(9), 2 + chance(6)}, percent = 30 + chance(70);
         lar_model *model = boxes(c[0], c[1], c[2], n % 2 ? 0.1 : 0);
         bool *keep = lar_calloc((size_t)model->mesh.element_count, sizeof *keep);
@@ -149,7 +149,7 @@ static void two_bodies(void **unused) {
 static void rings(void **unused) {
     (void)unused;
     for (int around = 3; around < 24; around += around < 10 ? 1 : 3)
-        for (int width = 1; width <= 4; width++) {
+        for (int width = 1; width <= 4; width += test_every(3)) {
             share in = check_model(ring(around, width, 0));
             if (around > 8 && width == 1) assert_true(in.loose < in.elements);
             for (int quarters = 1; around > 8 && quarters < 5; quarters++) {

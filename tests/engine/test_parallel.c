@@ -145,27 +145,38 @@ static void a_watched_advance_ends_in_a_common_step(void **unused) {
     lar_model_destroy(model);
 }
 
-/* One processor's element breaks: all stop, with the message, and go on no more. */
-static void an_unstable_run_stops_everywhere(void **unused) {
-    (void)unused;
-    lar_model *model = everything_model(&small);
-    static const double crash[3] = {-200, 0, 0};
-    throw_node(model, brick_node(&small, 3, 2, 2), crash);
+/* One processor's element breaks, or its node is too fast: all stop, with the
+ * message that one processor gives, and go on no more. */
+static void assert_stops_everywhere(const lar_model *model, int kind) {
     lar_error alone, error;
     lar_simulation *simulation = start(model);
     assert_int_equal(lar_simulation_advance(simulation, 500, &alone), LAR_ERROR_UNSTABLE);
+    print_message("%s\n", alone.message);
+    assert_int_equal(simulation->trip.kind, kind);
     lar_simulation_destroy(simulation);
     for (int grid = 0; grid < GRIDS; grid++) {
         simulation = start_with(model, combination(grid, 1 + grid % THREADS, 0, 0));
         assert_int_equal(lar_simulation_advance(simulation, 500, &error), LAR_ERROR_UNSTABLE);
         assert_string_equal(error.message, alone.message);
-        assert_true(lar_simulation_steps(simulation) < 50);
+        assert_true(lar_simulation_steps(simulation) < 100);
         char first[sizeof error.message];
         strcpy(first, error.message);
         assert_int_equal(lar_simulation_advance(simulation, 1, &error), LAR_ERROR_UNSTABLE);
         assert_string_equal(error.message, first);
         lar_simulation_destroy(simulation);
     }
+}
+
+static void an_unstable_run_stops_everywhere(void **unused) {
+    (void)unused;
+    static const double crash[3] = {-200, 0, 0}, rush[3] = {0, 0, 1e5};
+    lar_model *model = everything_model(&small);
+    throw_node(model, brick_node(&small, 3, 2, 2), crash);
+    assert_stops_everywhere(model, LAR_TRIP_ELEMENT);
+    lar_model_destroy(model);
+    model = everything_model(&small);
+    throw_node(model, brick_node(&small, 3, 2, 2), rush);
+    assert_stops_everywhere(model, LAR_TRIP_SPEED);
     lar_model_destroy(model);
 }
 

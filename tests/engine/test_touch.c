@@ -290,7 +290,7 @@ static void the_hash_is_the_same_everywhere(void **unused) {
     assert_true(first.touching > 0 && wanted[0].touching > 0 && wanted[1].touching > 0);
     print_message("%.0f of %.0f pairs tested, %.0f searches in %.0f steps\n", (double)first.tested,
                   (double)first.possible, (double)first.searches, (double)first.steps);
-    for (int g = 0; g < 4; g++)
+    for (int g = 0; g < 4; g += test_every(3))
         for (int threads = 1; threads <= 2; threads++)
             for (int always = 0; always < 2; always++) {
                 lar_options options = lar_options_default();
@@ -355,9 +355,9 @@ static void a_tool_pushed_through_holds_or_stops_and_says_why(void **unused) {
         {.shape = LAR_TOOL_SPHERE, .radius = 0.005},
         {.shape = LAR_TOOL_CAPSULE, .radius = 0.003, .length = 0.08},
         {.shape = LAR_TOOL_GRASPER, .radius = 0.002, .length = 0.015, .spread = 0.9}};
-    int held = 0, stopped = 0;
-    for (int way = 0; way < WAYS; way++)
-        for (int fast = 0; fast < 2; fast++) {
+    int held = 0, stopped = 0, tried = 0;
+    for (int way = 0; way < WAYS; way += test_every(3))
+        for (int fast = 0; fast < 2; fast++, tried++) {
             int shape = (way + fast) % 3;
             double force, speed = fast ? 1 : 0.25;
             lar_error error = {0};
@@ -374,7 +374,7 @@ static void a_tool_pushed_through_holds_or_stops_and_says_why(void **unused) {
             assert_non_null(strstr(error.message, "near ("));
             assert_non_null(strstr(error.message, "move it slower"));
         }
-    assert_int_equal(held + stopped, 2 * WAYS);
+    assert_int_equal(held + stopped, tried);
     assert_true(held > 0);
 }
 

@@ -320,7 +320,8 @@ static void check_block(int (*label)(const double x[3]), double edge) {
  * their side; of the cube all sides cut cells in half. */
 static void test_a_block_has_its_edges(void **state) {
     (void)state;
-    for (double edge = 2.5e-3; edge < 6e-3; edge += 0.5e-3) check_block(block, edge);
+    for (double edge = 2.5e-3; edge < 6e-3; edge += 0.5e-3 * test_every(4))
+        check_block(block, edge);
     check_block(cube, 8e-3);
     check_block(cube, 4.8e-3);
 }
@@ -369,7 +370,7 @@ static void test_faces_of_real_organs_stay_apart(void **state) {
     print_message("skipped: built without libnifti\n");
     skip();
 #endif
-    for (size_t i = 0; i < sizeof organ / sizeof *organ; i++) {
+    for (size_t i = 0; i < sizeof organ / sizeof *organ; i += (size_t)test_every(3)) {
         fitted body = {0};
         lar_image image = {0};
         lar_lattice lattice = {0};

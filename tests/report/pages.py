@@ -60,6 +60,22 @@ def look_at_page(folder, name):
     return text, len(pictures)
 
 
+def look_at_speed_ups(text):
+    """A speed-up refers to the first line of its table, and a caption to what is drawn."""
+    for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
+        rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in table.splitlines()]
+        if rows[0][-1] != "speed-up":
+            continue
+        times = [float(row[1].split()[0].replace(",", "")) for row in rows[2:]]
+        for row, time in zip(rows[2:], times):
+            # Both are printed with three digits.
+            if abs(float(row[-1]) * time / times[0] - 1) > 0.015:
+                fail(f"results.md: {row[0]}: a speed-up of {row[-1]}, and {times[0]} over {time}")
+    after = text.split("results_8_2.svg", 1)[-1].split("![", 1)[0]
+    if "thesis's point" in after:
+        fail("results.md: figure 8.2 names a point that is not drawn")
+
+
 def main():
     folder = sys.argv[1]
     text, pictures = {}, 0
@@ -71,6 +87,10 @@ def main():
     for name, line in PRINTED:
         if line not in text[name]:
             fail(f"{name} lacks '{line}'")
+    look_at_speed_ups(text["results.md"])
+    front = re.search(r"an element, one processor \| [0-9,]+ ns \| ([0-9.]+) ns", text["README.md"])
+    if not front or f"| {front.group(1)} (" not in text["program.md"]:
+        fail("README.md: the time of an element is not one of table 6.1")
     if "come to the same bits" not in text["program.md"]:
         fail("program.md: states that differ")
     for line in failures:

@@ -15,16 +15,9 @@
 #ifndef LAR_TESTS_VALIDATION_REFERENCE_H
 #define LAR_TESTS_VALIDATION_REFERENCE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "simulation/simulation.h"
 #include "model/model.h"
+#include "simulation/simulation.h"
+#include "testing.h"
 
 /* ---- reference data ----------------------------------------------------------------------- */
 

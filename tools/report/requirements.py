@@ -22,7 +22,8 @@ def operations(page, runs, needs):
                "with the quantities counted from our demonstration organ and its own step of "
                f"{number(1e6 * needs['quantities']['dt_ex'])} us. {runs.command('requirements')}. "
                "The test `study/requirements` computes the thesis's tables 3.1 and 4.1 to 4.4 "
-               "exactly.")
+               "to their digits, but for those that do not follow from its equations "
+               "(docs/requirements.md).")
 
 
 def communication(page, runs, needs):
