@@ -70,9 +70,9 @@ compile() {
         src/CMakeFiles/lariat_core.dir/comm/mpi.c.o src/CMakeFiles/lariat_core.dir/comm/ucx.c.o \
         src/CMakeFiles/lariat_core.dir/comm/ucx_open.c.o \
         src/CMakeFiles/lariat_core.dir/divide/distribution_metis.c.o \
-        src/CMakeFiles/lariat_core.dir/meshing/image_nifti.c.o \
-        src/CMakeFiles/lariat_core.dir/session/device_gamepad.c.o \
-        src/CMakeFiles/lariat_core.dir/session/server_absent.c.o >"$scratch/$1.build" 2>&1 || {
+        src/CMakeFiles/lariat_core.dir/meshing/image/nifti.c.o \
+        src/CMakeFiles/lariat_core.dir/session/device/gamepad.c.o \
+        src/CMakeFiles/lariat_core.dir/server/absent.c.o >"$scratch/$1.build" 2>&1 || {
         fail "$1: what is built without the optional libraries does not compile:"
         cat "$scratch/$1.build" >&2
     }
