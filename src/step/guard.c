@@ -20,6 +20,23 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
         for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
 }
 
+/* How stiff an element's barriers are: now, and where its corners will be when the next step ends,
+ * if nothing stops them. What is found now counts for the next step. */
+static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    enum { STEPS = 2 };
+    double rest[8][3], now[8][3], v[8][3];
+    lar_guard guard, then;
+    corners_of(domain, state, e, rest, now);
+    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
+                   lar_domain_material(domain, e), &guard);
+    lar_domain_corners(domain, state->v, e, v);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) now[a][i] += STEPS * domain->time_step * v[a][i];
+    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
+                   lar_domain_material(domain, e), &then);
+    return fmax(guard.stiffness, then.stiffness);
+}
+
 /* (omega dt / 2)^2 of an element as it is strained. */
 static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
                       const float strain[LAR_STRAIN_NUMBERS]) {
@@ -27,13 +44,7 @@ static double need_of(const lar_domain *domain, const lar_state *state, lar_gid 
     const lar_material *material = lar_domain_material(domain, e);
     double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
     double square = factor * rate->square * lar_hex8_growth(material, strain);
-    if (pressed) {
-        double rest[8][3], now[8][3];
-        lar_guard guard;
-        corners_of(domain, state, e, rest, now);
-        lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &guard);
-        square += (1 + 2 * LEAD) * guard.stiffness / rate->mass;
-    }
+    if (pressed) square += (1 + 2 * LEAD) * barriers_of(domain, state, e) / rate->mass;
     double need = 0.25 * domain->time_step * domain->time_step * square;
     return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
@@ -62,8 +73,8 @@ void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch 
             int32_t lane = watch->lane[i] % LAR_BLOCK;
             if (element[lane] < 0) lanes &= ~(1u << lane);
             if (!measures || element[lane] < 0) continue;
-            double need =
-                need_of(domain, state, element[lane], below >> lane & 1, watch->strain[i]);
+            bool pressed = below >> LAR_BLOCK >> lane & 1;
+            double need = need_of(domain, state, element[lane], pressed, watch->strain[i]);
             if (!(need <= state->need)) state->need = need;
         }
         lanes &= below >> LAR_BLOCK;
@@ -89,13 +100,14 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
     }
 }
 
-/* Between decisions about parts of steps a barrier that has just been met is no harder than the
- * step bears; after the next one the step is divided for all of it. Returns which part of it. */
-static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step, bool close,
+/* A barrier is no harder than the step bears: one that has just been met is as hard as it should be
+ * after the next decision about parts of steps, and one that would ask for more parts than there
+ * can be never is. Returns which part of it. */
+static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step,
                      double force[8][3]) {
     static const double ROOM = 1; /* of (omega dt / 2)^2 */
     double takes = 0.25 * step * step * (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
-    if (close || !(takes > ROOM)) return 1;
+    if (!(takes > ROOM)) return 1;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) force[a][i] *= ROOM / takes;
     return ROOM / takes;
@@ -110,7 +122,7 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), LEAD * step, force, &guard);
     if (!(guard.least < LAR_GUARD_START)) return;
-    double part = soften(domain, e, guard.stiffness, step, state->close, force);
+    double part = soften(domain, e, guard.stiffness, step, force);
     add(domain, e, (const double(*)[3])force, state);
     if (counts) state->contact -= step * part * guard.taken;
 }
