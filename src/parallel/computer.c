@@ -268,7 +268,8 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
     if (p->board) lar_contact_watch(worker, stop - done);
     if (worker->trip.kind && !*tripped) {
         *tripped = true;
-        lar_trip_examine(&p->domain, &worker->state, &worker->trip);
+        lar_trip_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
+                         &worker->trip);
         lar_processor_ask_stop(p, stop);
     }
     if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&

@@ -207,7 +207,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
     state->need = 0;
     while (state->step < end && goes_on) {
         lar_step(domain, state, trip);
-        if (trip->kind) lar_trip_examine(domain, state, trip);
+        if (trip->kind) lar_trip_examine(domain, state, 0, domain->layout.node_count, trip);
         bool whole = state->part == 0;
         goes_on = !trip->kind && (!watch || !whole || watch(context, state->step));
     }
@@ -251,7 +251,8 @@ static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     if (!(given > NOTHING * simulation->measured)) return LAR_OK;
     simulation->trip =
         (lar_trip){.kind = LAR_TRIP_GAIN, .step = simulation->state.step, .given = given};
-    lar_trip_examine(&simulation->domain, &simulation->state, &simulation->trip);
+    lar_trip_examine(&simulation->domain, &simulation->state, 0,
+                     simulation->domain.layout.node_count, &simulation->trip);
     return LAR_OK;
 }
 

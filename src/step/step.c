@@ -56,7 +56,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
         if (found >= 0) trip_run(domain, r, found, state, trip);
     }
     /* Before the nodes move on: a step later the element says little. */
-    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, trip);
+    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, 0, 0, trip);
 }
 
 /* The oracle elements, one at a time: slow is fine. */

@@ -116,8 +116,10 @@ static inline lar_condition_context lar_domain_context(const lar_domain *domain)
 }
 
 /* Looks at what has tripped, at the end of the step in which it did: several processors stop some
- * steps later, when the state says little. `domain` has the element, or the nodes. */
-void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip);
+ * steps later, when the state says little. `domain` has the element, or the nodes; of these only
+ * those from `first` to before `end`, which nobody else moves meanwhile. */
+void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
+                      lar_trip *trip);
 
 /* Looks for the tool that has to do with an examined trip, once. `domain` is the whole model's; the
  * tools still move as they did. */

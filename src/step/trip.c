@@ -114,12 +114,13 @@ static lar_status report_element(const lar_domain *domain, const lar_trip *trip,
                     volume_ratio, domain->time_step, domain->stable_step, remedy, hint(trip));
 }
 
-/* The fastest node, and where it is. */
-static void examine_speed(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+/* The fastest of some nodes, and where it is. */
+static void examine_speed(const lar_domain *domain, const lar_state *state, lar_lid first,
+                          lar_lid end, lar_trip *trip) {
     const lar_mesh *mesh = &domain->model->mesh;
     lar_lid fastest = -1;
     double highest = -1;
-    for (lar_lid n = 0; n < domain->layout.node_count; n++)
+    for (lar_lid n = first; n < end && n < domain->layout.node_count; n++)
         for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++)
             if (!(fabs(state->v[4 * n + i]) <= highest)) {
                 highest = fabs(state->v[4 * n + i]);
@@ -213,7 +214,8 @@ static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, la
                     trip->place[1], trip->place[2], trip->speed, crowd);
 }
 
-void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
+                      lar_trip *trip) {
     if (trip->examined) return;
     trip->examined = true;
     if (trip->kind == LAR_TRIP_ELEMENT) {
@@ -223,7 +225,7 @@ void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_trip
         examine_surface(domain, state, trip);
         examine_place(domain, state, trip);
     } else if (trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH) {
-        examine_speed(domain, state, trip);
+        examine_speed(domain, state, first, end, trip);
     }
 }
 
