@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "base/folder.h"
+#include "contact/spares.h"
 #include "server/state.h"
 
 void lar_saved_add(lar_saved_list *list, const char *name) {
@@ -55,14 +56,15 @@ static bool good_name(const char *name) {
 static bool fits(const lar_server *server, const char *path, bool recording) {
     const lar_simulation *simulation = server->session->simulation;
     const lar_mesh *mesh = &server->model->mesh;
+    int32_t tools = lar_spares_first(&simulation->list); /* files may have others besides */
     lar_recording_info r;
     lar_checkpoint_info c;
     if (recording)
         return !lar_recording_inspect(path, &r, NULL) && r.nodes == mesh->node_count &&
-               r.elements == mesh->element_count && r.tools == server->session->tools &&
+               r.elements == mesh->element_count && r.tools == tools &&
                r.time_step == server->session->time_step && r.element == simulation->domain.kind;
     return !lar_checkpoint_inspect(path, &c, NULL) && c.nodes == mesh->node_count &&
-           c.elements == mesh->element_count && c.tools == server->session->tools &&
+           c.elements == mesh->element_count && c.tools == tools &&
            c.time_step == server->session->time_step && c.element == simulation->domain.kind;
 }
 
