@@ -443,7 +443,7 @@ static int view_main(int argc, char **argv) {
                  "where the viewer may save states and recordings; without:\nnowhere",
                  &s.save_folder),
         CLI_REAL("--save-most", "GB",
-                 "how much states and recordings may take there, those from\nbefore included",
+                 "how much states and recordings may take there, those from\nbefore included (4)",
                  &s.save_most, 1e-3, 1e6),
         CLI_TEXT(
             "--scan", "IMAGE",

@@ -141,6 +141,9 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
     bool done = end->error.status == LAR_OK;
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
+    bool over = end->job.kind == LAR_WISH_RECORD && !end->job.on;
+    if (!done && over) server->recording[0] = '\0'; /* it is lost, and the status says so */
+    if (over) server->recording_ends = false;
     if (!done) return;
     if (end->job.kind == LAR_WISH_SAVE) {
         lar_saved_add(&server->states, end->job.name);
@@ -155,7 +158,6 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
         lar_saved_add(&server->recordings, server->recording);
         if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
         server->recording[0] = '\0';
-        server->recording_ends = false;
     }
 }
 
