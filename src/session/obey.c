@@ -111,10 +111,9 @@ static lar_status attach(lar_session *session, const lar_request *request, lar_e
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "tool %ld, '%s', has a device already, and keeps it until the session ends",
                         (long)request->tool, tool->info.name);
-    double rate = lar_device_rate(request->device);
-    if (rate > 0) lar_coupling_set_rate(&tool->coupling, rate);
     /* The viewers' server looks who moves a tool. */
     __atomic_store_n(&tool->device, request->device, __ATOMIC_RELEASE);
+    lar_session_take_rate(tool);
     return LAR_OK;
 }
 

@@ -132,6 +132,8 @@ void lar_session_note_hash(lar_session *session);
 lar_status lar_session_note_state(lar_session *session, lar_error *error);
 void lar_session_note_end(lar_session *session);
 
+/* The force on the hand changes as fast as the tool's device allows, where it says so. */
+void lar_session_take_rate(lar_session_tool *tool);
 /* A hand and a tool come together anew: the tool is another one. */
 void lar_session_couple(lar_session *session, int32_t tool);
 /* Spares that have been added or removed since: they are where the simulation has them. */

@@ -37,12 +37,18 @@ void lar_session_take_tools(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) take_tool(session, i);
 }
 
+void lar_session_take_rate(lar_session_tool *tool) {
+    double rate = tool->device ? lar_device_rate(tool->device) : 0;
+    if (rate > 0) lar_coupling_set_rate(&tool->coupling, rate);
+}
+
 void lar_session_couple(lar_session *session, int32_t tool) {
     const lar_coupling_limits limits = {.tool_speed = session->options.tool_speed,
                                         .hand_force = session->options.hand_force,
                                         .seconds = (double)session->tick_steps * session->time_step,
                                         .time_step = session->time_step};
     lar_coupling_create(&session->tool[tool].coupling, &session->tool[tool].info, &limits);
+    lar_session_take_rate(&session->tool[tool]);
 }
 
 /* Names and shapes go together. */
