@@ -17,7 +17,7 @@ lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_
                     (long)session->tools);
 }
 
-/* Reading takes a letter out of the box, which changes nothing that callers see. */
+/* Reading takes over the newest view, which changes nothing that callers see. */
 static const lar_session_view *look_at_view(const lar_session *session) {
     lar_mailbox *box = &((lar_session *)session)->view;
     lar_mailbox_lock(box);
