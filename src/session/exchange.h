@@ -1,4 +1,4 @@
-/* Mailboxes between the engine's thread and all others: the latest letter wins, and neither side
+/* Mailboxes between the engine's thread and all others: the latest value wins, and neither side
  * ever waits for the other.
  *
  *     writer: draft --send--.           .--newest-- desk :reader
