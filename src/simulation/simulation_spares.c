@@ -77,17 +77,17 @@ static lar_status check_size(const lar_simulation *simulation, const lar_tool *t
     if (tool->radius < least)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a radius of %.4g mm is too thin: large faces of this body would not feel "
-                        "the tool everywhere; give it %.2g mm or more",
+                        "the tool everywhere; give it %.3g mm or more",
                         1e3 * tool->radius, 1e3 * 1.05 * least);
     if (tool->radius > RADIUS_MOST * size)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a radius of %.4g mm is too large for a body that is %.3g mm across; give "
-                        "the tool %.2g mm at most",
+                        "the tool %.3g mm at most",
                         1e3 * tool->radius, 1e3 * size, 1e3 * 0.99 * RADIUS_MOST * size);
     if (tool->length > LENGTH_MOST * size)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a length of %.4g mm is too large for a body that is %.3g mm across; give "
-                        "the tool %.2g mm at most",
+                        "the tool %.3g mm at most",
                         1e3 * tool->length, 1e3 * size, 1e3 * 0.99 * LENGTH_MOST * size);
     return LAR_OK;
 }

@@ -480,7 +480,7 @@ static void what_makes_no_sense_is_refused(void **unused) {
         {LAR_TOOL_SPHERE, 1e-4, 0, 0, "too thin"},
         {LAR_TOOL_SPHERE, 0.2, 0, 0, "too large for a body"},
         {LAR_TOOL_CAPSULE, 0.01, 0, 0, "length must be finite and more than zero"},
-        {LAR_TOOL_CAPSULE, 0.01, 3, 0, "a length of 3 m is too large"},
+        {LAR_TOOL_CAPSULE, 0.01, 3, 0, "a length of 3000 mm is too large"},
         {LAR_TOOL_GRASPER, 0.005, 0.02, 4, "spread"},
         {LAR_TOOL_HAND, 0.01, 0, 0, "shape must be"},
         {LAR_TOOL_NONE, 0.01, 0, 0, "shape must be"},
