@@ -114,6 +114,16 @@ static void middle_of(const double corner[4][3], double middle[3]) {
     lar_face_mean(corner, even, middle);
 }
 
+double lar_face_distance(const double x[3], const double corner[4][3]) {
+    double middle[3], weight[4], least = INFINITY;
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        closest_of_part(x, corner, middle, t, weight);
+        least = fmin(least, distance_to(x, corner, weight));
+    }
+    return least;
+}
+
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point) {
     double middle[3], least = INFINITY;
