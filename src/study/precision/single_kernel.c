@@ -193,7 +193,7 @@ LAR_INLINE void single_scatter_row(int64_t *nodes, const int32_t *a, const int32
 
 /* ---- lane_math.h in float ---------------------------------------------------------------- */
 
-#define LAR_MECHANICS_LANE_MATH_H
+#define LAR_LAW_LANE_MATH_H
 
 /* J^(-1/3): the guess reads the whole float as an integer, within 3.5 % as there. */
 LAR_INLINE single_lane lar_lane_rcbrt(single_lane J) {

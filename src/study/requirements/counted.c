@@ -116,6 +116,7 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 
 /* Other names for what other files define too. */
 #define lar_law_name                 counted_law_name
+#define lar_law_table                counted_law_table
 #define lar_material_shear           counted_material_shear
 #define lar_material_bulk            counted_material_bulk
 #define lar_material_check           counted_material_check
@@ -137,8 +138,9 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 #define lar_hex8_matrix_force        counted_hex8_matrix_force
 #define lar_kernels_c                counted_kernels
 
+#include "law/law.c"
 #include "model/material.c"
-#include "mechanics/law.c"
+#include "mechanics/stress.c"
 #include "mechanics/hexahedron.c"
 #include "mechanics/hex8_full.c"
 #define FREEDOMS MATRIX_FREEDOMS
