@@ -19,7 +19,7 @@
 #include "law/list.h"
 
 /* The most parameters that a law has, and the most numbers by which another program gives one. */
-enum { LAR_LAW_PARAMETERS = 3, LAR_LAW_GIVEN = 8 };
+enum { LAR_LAW_PARAMETERS = 4, LAR_LAW_GIVEN = 8 };
 
 typedef enum lar_law {
 #define LAR_LAW_ENUM(identifier) LAR_LAW_##identifier,

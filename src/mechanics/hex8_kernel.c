@@ -157,12 +157,15 @@ LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
 /* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. With the
  * corners' `limit` (may be NULL) *strained gets those to be looked at more closely. */
 LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
-                                 const lar_hex8_limits *limits, lane_law law,
-                                 lane_stiffened stiffened, const double *limit, lane_strain *strain,
-                                 unsigned *strained) {
+                                 const lar_block_more *more, const lar_hex8_limits *limits,
+                                 lane_law law, lane_stiffened stiffened, const double *limit,
+                                 lane_strain *strain, unsigned *strained) {
     lar_lane P[9], p[LAR_LAW_PARAMETERS];
-    UNROLL3 for (int k = 0; k < LAR_LAW_PARAMETERS; k++) p[k] =
+    UNROLL3 for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) p[k] =
         lar_lane_load(&head->modulus[k][lane]);
+    for (int k = 0; k < LAR_MORE_PARAMETERS; k++) /* not there for laws that do not look at them */
+        p[LAR_BLOCK_PARAMETERS + k] =
+            more ? lar_lane_load(&more->modulus[k][lane]) : lar_lane_set(0);
     lar_lane J = lar_lane_cofactor(record->F, P), I1 = lar_lane_square_sum(record->F);
     if (limit) {
         *strain = (lane_strain){{J, I1, lar_lane_square_sum(P)}};
@@ -278,9 +281,9 @@ enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
 
 typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const double *u,
                              lane_record *record);
-typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
-                                 const lar_hex8_limits *limits, const double *limit,
-                                 lane_strain *strain, unsigned *strained);
+typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more, size_t count,
+                                 size_t size, lane_record *record, const lar_hex8_limits *limits,
+                                 const double *limit, lane_strain *strain, unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
@@ -311,18 +314,18 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
 
 /* Returns a bit per element of the chunk that is beyond the limits. */
 #define DEFINE_LAW(identifier)                                                                     \
-    static unsigned stress_##identifier(const char *blocks, size_t count, size_t size,             \
-                                        lane_record *record, const lar_hex8_limits *limits,        \
-                                        const double *limit, lane_strain *strain,                  \
-                                        unsigned *strained) {                                      \
+    static unsigned stress_##identifier(const char *blocks, const lar_block_more *more,            \
+                                        size_t count, size_t size, lane_record *record,            \
+                                        const lar_hex8_limits *limits, const double *limit,        \
+                                        lane_strain *strain, unsigned *strained) {                 \
         unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
-            beyond |=                                                                              \
-                stress_lanes((const lar_block_head *)(const void *)block, lane, record, limits,    \
-                             lar_##identifier##_stress, lar_##identifier##_stiffened,              \
-                             limit ? limit + shift : NULL, strain, &part)                          \
-                << shift;                                                                          \
+            beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
+                                   more ? more + shift / LAR_BLOCK : NULL, limits,                 \
+                                   lar_##identifier##_stress, lar_##identifier##_stiffened,        \
+                                   limit ? limit + shift : NULL, strain, &part)                    \
+                      << shift;                                                                    \
             if (limit) *strained |= part << shift;                                                 \
             strain++;                                                                              \
             shift += LAR_LANES;                                                                    \
@@ -372,7 +375,9 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
         unsigned strained = 0;
         const double *limit = watch ? watch->limit + b * LAR_BLOCK : NULL;
-        unsigned beyond = stress(blocks, count, size, record, limits, limit, strains, &strained);
+        const lar_block_more *more = run->more ? run->more + b : NULL;
+        unsigned beyond =
+            stress(blocks, more, count, size, record, limits, limit, strains, &strained);
         forces(blocks, count, run->turn, record, force);
         if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
