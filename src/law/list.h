@@ -7,7 +7,8 @@
 #define LAR_LAWS(X)                                                                                \
     X(neo_hookean)                                                                                 \
     X(coupled_neo_hookean)                                                                         \
-    X(mooney_rivlin)
+    X(mooney_rivlin)                                                                               \
+    X(yeoh)
 
 #endif
 
@@ -16,4 +17,5 @@
 #include "law/coupled_neo_hookean.h"
 #include "law/mooney_rivlin.h"
 #include "law/neo_hookean.h"
+#include "law/yeoh.h"
 #endif

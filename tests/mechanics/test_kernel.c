@@ -446,6 +446,7 @@ static void golden_bits(void **state) {
         [LAR_LAW_neo_hookean] = 0x45dbd776b0e9f8ebULL,
         [LAR_LAW_coupled_neo_hookean] = 0xd435202178cc047eULL,
         [LAR_LAW_mooney_rivlin] = 0x079e701cc8e23e21ULL,
+        [LAR_LAW_yeoh] = 0xf2fec133faf1b20fULL,
     };
     static load l;
     static forces f;
