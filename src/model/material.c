@@ -10,6 +10,21 @@ double lar_material_bulk(const lar_material *material) {
     return lar_law_table[material->law].bulk(material->parameter);
 }
 
+/* A constant that moduli at rest do not know has been given in another unit when it dwarfs them:
+ * a strain of a thousandth would ask for forces that nothing has room for. */
+static lar_status check_constants(const lar_material *material, const char *where, double modulus,
+                                  lar_error *error) {
+    static const double MOST = 1e9;
+    const lar_law_row *law = &lar_law_table[material->law];
+    for (int k = 0; k < law->count; k++)
+        if (fabs(material->parameter[k]) > MOST * modulus)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: %s of the law %s is %g Pa, more than %g times its moduli at rest; "
+                            "check its unit",
+                            where, law->parameter[k].name, law->name, material->parameter[k], MOST);
+    return LAR_OK;
+}
+
 lar_status lar_material_check(const lar_material *material, const char *where, lar_error *error) {
     if (!((unsigned)material->law < LAR_LAW_COUNT))
         return lar_fail(error, LAR_ERROR_MODEL, "%s: material law number %d does not exist", where,
@@ -34,7 +49,7 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
                         "%s: the bulk modulus is %g Pa; it must be positive (Poisson's ratio "
                         "between -1 and 0.5, exclusive)",
                         where, bulk);
-    return LAR_OK;
+    return check_constants(material, where, bulk + 4.0 * shear / 3.0, error);
 }
 
 void lar_material_from_young(lar_material *material, double young, double poisson) {
