@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -42,6 +43,15 @@ void lar_text_show(char *text) {
     for (unsigned char *c = (unsigned char *)text; c && *c; c++) {
         if (*c < ' ' || *c == 0x7f) *c = '?';
         if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f) c[0] = c[1] = '?';
+    }
+}
+
+void lar_text_list(const char *const *name, int count, char *to, size_t size) {
+    size_t used = 0;
+    if (size > 0) to[0] = '\0';
+    for (int i = 0; i < count && used < size; i++) {
+        const char *before = i == 0 ? "" : i + 1 < count ? ", " : " and ";
+        used += (size_t)snprintf(to + used, size - used, "%s%s", before, name[i]);
     }
 }
 

@@ -67,6 +67,9 @@ bool lar_span_equal_nocase(lar_span span, const char *word);
  * those beyond ASCII (U+0080 to U+009F in UTF-8). All other UTF-8 stays. NULL is fine. */
 void lar_text_show(char *text);
 
+/* "a", "a and b", "a, b and c" into to[size], cut where it does not fit. */
+void lar_text_list(const char *const *name, int count, char *to, size_t size);
+
 /* The C locale, in which numbers have a point. For uselocale() around what prints numbers into a
  * file: an embedding program may have another one. Lives as long as the program; 0, with which
  * uselocale() changes nothing, when there is no memory for it. */

@@ -38,7 +38,7 @@
 #ifndef LAR_MECHANICS_HEX8_H
 #define LAR_MECHANICS_HEX8_H
 
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 
 enum { LAR_HEX8_GRADIENTS = 6, LAR_HEX8_HOURGLASS = 4 };
 

@@ -27,7 +27,13 @@
 
 #include "mechanics/hex8.h"
 
-enum { LAR_BLOCK = 8 };
+/* Elements; parameters of a law that a block has room for, and those that stand beside the blocks,
+ * for laws that have more. */
+enum {
+    LAR_BLOCK = 8,
+    LAR_BLOCK_PARAMETERS = 3,
+    LAR_MORE_PARAMETERS = LAR_LAW_PARAMETERS - LAR_BLOCK_PARAMETERS
+};
 
 /* How the lanes of a block hang together. */
 typedef enum lar_block_rows {
@@ -41,7 +47,7 @@ typedef enum lar_block_shape { LAR_SHAPE_GENERAL, LAR_SHAPE_BOX, LAR_SHAPE_COUNT
 
 /* What every block begins with. */
 typedef struct lar_block_head {
-    double modulus[LAR_LAW_PARAMETERS][LAR_BLOCK];   /* law parameters times volume and scale */
+    double modulus[LAR_BLOCK_PARAMETERS][LAR_BLOCK]; /* law parameters times volume and scale */
     double stiffness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* c_m times scale */
     int32_t node[8][LAR_BLOCK];                      /* 4 times the local node's index */
 } __attribute__((aligned(64))) lar_block_head;
@@ -63,6 +69,22 @@ static inline size_t lar_block_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
 }
 
+/* The other parameters of a block's law, likewise. */
+typedef struct lar_block_more {
+    double modulus[LAR_MORE_PARAMETERS][LAR_BLOCK];
+} __attribute__((aligned(64))) lar_block_more;
+
+/* Where parameter k of a lane stands; `more` is of that block, NULL for laws that fit. */
+static inline double *lar_block_parameter(lar_block_head *head, lar_block_more *more, int k,
+                                          int lane) {
+    return k < LAR_BLOCK_PARAMETERS ? &head->modulus[k][lane]
+                                    : &more->modulus[k - LAR_BLOCK_PARAMETERS][lane];
+}
+
+static inline bool lar_law_has_more(lar_law law) {
+    return lar_law_table[law].count > LAR_BLOCK_PARAMETERS;
+}
+
 /* Consecutive blocks of one law, one shape and one kind of rows. */
 typedef struct lar_block_run {
     lar_law law;
@@ -71,13 +93,14 @@ typedef struct lar_block_run {
     int turn;      /* of boxes, 0..2; else 0 */
     bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
     int32_t count;
-    const void *blocks; /* lar_hex8_block or lar_box_block [count] */
+    const void *blocks;         /* lar_hex8_block or lar_box_block [count] */
+    const lar_block_more *more; /* [count], NULL when the law has no more parameters */
 } lar_block_run;
 
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
     double least_volume;     /* det F must stay above this */
-    double stress_square;    /* the stress sum of law.h, scaled as `modulus`, must stay below */
+    double stress_square;    /* what a law's stress returns, scaled as `modulus`, must stay below */
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 

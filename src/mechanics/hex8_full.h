@@ -15,7 +15,7 @@
 #ifndef LAR_MECHANICS_HEX8_FULL_H
 #define LAR_MECHANICS_HEX8_FULL_H
 
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 
 /* Internal forces dW/du [8][3] in newtons. Returns the smallest det F of the Gauss points (NaN if
  * one is NaN); the forces mean nothing unless it is positive. */

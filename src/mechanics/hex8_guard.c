@@ -148,29 +148,13 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
     return 1 / worst;
 }
 
-/* Of a law's volume term U(J): its pressure U' (positive: tension) and, returned, U'' [Pa]. */
-static double volume_slope(const lar_material *material, double J, double *pressure) {
-    const double *p = material->parameter;
-    double log_J = lar_lane_log(J); /* the same bits everywhere */
-    switch (material->law) {
-    case LAR_LAW_neo_hookean:
-        *pressure = p[1] * (J - 1);
-        return p[1];
-    case LAR_LAW_coupled_neo_hookean: /* lambda/2 (ln J)^2 - mu ln J, and what holds I1 */
-        *pressure = p[1] * log_J / J;
-        return (p[1] * (1 - log_J) + p[0]) / (J * J);
-    default:
-        *pressure = p[2] * log_J / J;
-        return p[2] * (1 - log_J) / (J * J);
-    }
-}
-
 double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
     double J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA] / 3.0;
     if (!(J > 0)) return INFINITY;
-    double bulk = lar_material_bulk(material), shear = 4 * lar_material_shear(material) / 3;
-    double pressure, slope = volume_slope(material, J, &pressure);
+    lar_law_strained now = lar_law_table[material->law].strained(
+        material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
     double stretch = sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
-    double volume = fmax(slope, 0) * area + fabs(pressure) * stretch;
-    return (volume + shear * fmax(1, area / (J * J))) / (bulk + shear);
+    double volume = fmax(now.slope, 0) * area + fabs(now.pressure) * stretch;
+    double shear = now.shear * fmax(1, area / (J * J)) + now.further;
+    return (volume + shear) / wave_modulus(material);
 }

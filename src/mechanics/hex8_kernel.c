@@ -13,6 +13,7 @@
 #include "mechanics/hex8_block.h"
 
 #include "base/simd.h"
+#include "law/lanes.h"
 
 #define UNROLL3 _Pragma("GCC unroll 3")
 #define UNROLL4 _Pragma("GCC unroll 4")
@@ -133,12 +134,15 @@ LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
 }
 
 typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar_lane I1,
-                             const lar_lane p[3]);
+                             const lar_lane *p);
+typedef unsigned (*lane_stiffened)(lar_lane J, lar_lane I1, lar_lane area, const lar_lane *p,
+                                   lar_lane share);
 
 /* From where on an element is looked at more closely: its volume; the sum of the squares of its
- * cofactors, 3 at rest, with which its frequency goes; and how far the gradient in a corner may be
- * from the mean one, squared. */
-static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_CORNER = 0.09;
+ * cofactors, 3 at rest, with which its frequency goes; the part of its modulus at rest by which a
+ * law stiffens; and how far the gradient in a corner may be from the mean one, squared. */
+static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_SHEAR = 0.4,
+                    STRAINED_CORNER = 0.09;
 
 /* What a watch says of the strain of some lanes (hex8_block.h). */
 typedef struct lane_strain {
@@ -153,15 +157,20 @@ LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
 /* Phase 2: deformation gradient to stress, in place; returns the lanes beyond the limits. With the
  * corners' `limit` (may be NULL) *strained gets those to be looked at more closely. */
 LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
-                                 const lar_hex8_limits *limits, lane_law law, const double *limit,
+                                 const lar_block_more *more, const lar_hex8_limits *limits,
+                                 lane_law law, lane_stiffened stiffened, const double *limit,
                                  lane_strain *strain, unsigned *strained) {
     lar_lane P[9], p[LAR_LAW_PARAMETERS];
-    UNROLL3 for (int k = 0; k < LAR_LAW_PARAMETERS; k++) p[k] =
+    UNROLL3 for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) p[k] =
         lar_lane_load(&head->modulus[k][lane]);
+    for (int k = 0; k < LAR_MORE_PARAMETERS; k++) /* not there for laws that do not look at them */
+        p[LAR_BLOCK_PARAMETERS + k] =
+            more ? lar_lane_load(&more->modulus[k][lane]) : lar_lane_set(0);
     lar_lane J = lar_lane_cofactor(record->F, P), I1 = lar_lane_square_sum(record->F);
     if (limit) {
         *strain = (lane_strain){{J, I1, lar_lane_square_sum(P)}};
-        *strained = strained_lanes(strain);
+        *strained = strained_lanes(strain) | stiffened(J, I1, strain->number[LAR_STRAIN_AREA], p,
+                                                       lar_lane_set(STRAINED_SHEAR));
     }
     lar_lane stress = law(record->F, P, J, I1, p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
@@ -272,9 +281,9 @@ enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
 
 typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const double *u,
                              lane_record *record);
-typedef unsigned (*stress_phase)(const char *blocks, size_t count, size_t size, lane_record *record,
-                                 const lar_hex8_limits *limits, const double *limit,
-                                 lane_strain *strain, unsigned *strained);
+typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more, size_t count,
+                                 size_t size, lane_record *record, const lar_hex8_limits *limits,
+                                 const double *limit, lane_strain *strain, unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
@@ -304,16 +313,17 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
     {force_box_none, force_box_four, force_box_eight}};
 
 /* Returns a bit per element of the chunk that is beyond the limits. */
-#define DEFINE_LAW(identifier, name)                                                               \
-    static unsigned stress_##identifier(const char *blocks, size_t count, size_t size,             \
-                                        lane_record *record, const lar_hex8_limits *limits,        \
-                                        const double *limit, lane_strain *strain,                  \
-                                        unsigned *strained) {                                      \
+#define DEFINE_LAW(identifier)                                                                     \
+    static unsigned stress_##identifier(const char *blocks, const lar_block_more *more,            \
+                                        size_t count, size_t size, lane_record *record,            \
+                                        const lar_hex8_limits *limits, const double *limit,        \
+                                        lane_strain *strain, unsigned *strained) {                 \
         unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
             beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
-                                   limits, lar_##identifier##_stress,                              \
+                                   more ? more + shift / LAR_BLOCK : NULL, limits,                 \
+                                   lar_##identifier##_stress, lar_##identifier##_stiffened,        \
                                    limit ? limit + shift : NULL, strain, &part)                    \
                       << shift;                                                                    \
             if (limit) *strained |= part << shift;                                                 \
@@ -323,7 +333,7 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
         return beyond;                                                                             \
     }
 LAR_LAWS(DEFINE_LAW)
-#define LAW_ROW(identifier, name) [LAR_LAW_##identifier] = stress_##identifier,
+#define LAW_ROW(identifier) [LAR_LAW_##identifier] = stress_##identifier,
 static const stress_phase stress_table[LAR_LAW_COUNT] = {LAR_LAWS(LAW_ROW)};
 
 _Static_assert(CHUNK *LAR_BLOCK <= 32, "one bit per element of a chunk");
@@ -365,7 +375,9 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
         unsigned strained = 0;
         const double *limit = watch ? watch->limit + b * LAR_BLOCK : NULL;
-        unsigned beyond = stress(blocks, count, size, record, limits, limit, strains, &strained);
+        const lar_block_more *more = run->more ? run->more + b : NULL;
+        unsigned beyond =
+            stress(blocks, more, count, size, record, limits, limit, strains, &strained);
         forces(blocks, count, run->turn, record, force);
         if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {

@@ -30,7 +30,7 @@
 #ifndef LAR_MECHANICS_HEX8_MATRIX_H
 #define LAR_MECHANICS_HEX8_MATRIX_H
 
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 
 /* The secant matrix [N/m] for displacements u [8][3]; row and column 3 a + i belong to axis i of
  * node a. Returns the smallest det F of the Gauss points (NaN if one is NaN). */

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 #include "model/mesh/mesh.h"
 
 void lar_gauss_point(int g, double at[3]) {

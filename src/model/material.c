@@ -2,31 +2,27 @@
 
 #include <math.h>
 
-const char *const lar_law_name[LAR_LAW_COUNT] = {
-#define LAR_LAW_NAME(identifier, name) [LAR_LAW_##identifier] = name,
-    LAR_LAWS(LAR_LAW_NAME)
-#undef LAR_LAW_NAME
-};
-
-/* Small strains: every law is K, G linear elasticity there. With lambda = K - 2 G / 3:
- *   coupled-neo-hookean  G = mu, K = lambda + 2 mu / 3
- *   mooney-rivlin        G = 2 (c1 + c2) */
-
 double lar_material_shear(const lar_material *material) {
-    const double *p = material->parameter;
-    return material->law == LAR_LAW_mooney_rivlin ? 2.0 * (p[0] + p[1]) : p[0];
+    return lar_law_table[material->law].shear(material->parameter);
 }
 
 double lar_material_bulk(const lar_material *material) {
-    const double *p = material->parameter;
-    switch (material->law) {
-    case LAR_LAW_coupled_neo_hookean:
-        return p[1] + 2.0 * p[0] / 3.0;
-    case LAR_LAW_mooney_rivlin:
-        return p[2];
-    default:
-        return p[1];
-    }
+    return lar_law_table[material->law].bulk(material->parameter);
+}
+
+/* A constant that moduli at rest do not know has been given in another unit when it dwarfs them:
+ * a strain of a thousandth would ask for forces that nothing has room for. */
+static lar_status check_constants(const lar_material *material, const char *where, double modulus,
+                                  lar_error *error) {
+    static const double MOST = 1e9;
+    const lar_law_row *law = &lar_law_table[material->law];
+    for (int k = 0; k < law->count; k++)
+        if (fabs(material->parameter[k]) > MOST * modulus)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: %s of the law %s is %g Pa, more than %g times its moduli at rest; "
+                            "check its unit",
+                            where, law->parameter[k].name, law->name, material->parameter[k], MOST);
+    return LAR_OK;
 }
 
 lar_status lar_material_check(const lar_material *material, const char *where, lar_error *error) {
@@ -53,7 +49,7 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
                         "%s: the bulk modulus is %g Pa; it must be positive (Poisson's ratio "
                         "between -1 and 0.5, exclusive)",
                         where, bulk);
-    return LAR_OK;
+    return check_constants(material, where, bulk + 4.0 * shear / 3.0, error);
 }
 
 void lar_material_from_young(lar_material *material, double young, double poisson) {
@@ -62,20 +58,6 @@ void lar_material_from_young(lar_material *material, double young, double poisso
 }
 
 void lar_material_from_shear_bulk(lar_material *material, double shear, double bulk) {
-    double *p = material->parameter;
-    p[0] = p[1] = p[2] = 0.0;
-    switch (material->law) {
-    case LAR_LAW_coupled_neo_hookean:
-        p[0] = shear;
-        p[1] = bulk - 2.0 * shear / 3.0;
-        break;
-    case LAR_LAW_mooney_rivlin:
-        p[0] = shear / 2.0;
-        p[2] = bulk;
-        break;
-    default:
-        p[0] = shear;
-        p[1] = bulk;
-        break;
-    }
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++) material->parameter[k] = 0;
+    lar_law_table[material->law].from_moduli(shear, bulk, material->parameter);
 }

@@ -13,7 +13,7 @@
 #include "step/measure.h"
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 #include "model/format/mesh_io.h"
 
 /* Stress and energy of the elements: in the order of the columns of `cell`. */

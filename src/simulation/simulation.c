@@ -423,7 +423,7 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;
-    size_t bytes = domain->block_bytes + elements * sizeof *layout->corner +
+    size_t bytes = domain->block_bytes + domain->more_bytes + elements * sizeof *layout->corner +
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +
                    nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);

@@ -96,16 +96,21 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+static lar_block_more *more_of(const lar_domain *domain, int32_t r, int32_t b) {
+    return domain->run[r].more ? domain->more + domain->run_first[r] + b : NULL;
+}
+
 /* What an element's material says in its lane, and *limit of corner_limit. */
 static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
-                          int lane, lar_gid e, double *limit) {
+                          lar_block_more *more, int lane, lar_gid e, double *limit) {
     int32_t material = domain->model->element_material[e];
     double factor = domain->factor[lar_factor_of(material)];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         head->stiffness[m][lane] = base->stiffness[m] * factor * domain->scale;
-    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        head->modulus[k][lane] =
-            domain->material[material].parameter[k] * base->volume * domain->scale;
+    const lar_material *made = &domain->material[material];
+    for (int k = 0; k < lar_law_table[made->law].count; k++)
+        *lar_block_parameter(head, more, k, lane) =
+            made->parameter[k] * base->volume * domain->scale;
     *limit = base->limit * factor * factor;
 }
 
@@ -165,17 +170,20 @@ static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) 
         if (b == 0 || domain->run[domain->run_count - 1].count == most ||
             !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
-            domain->run[domain->run_count++] =
-                (lar_block_run){lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL};
+            domain->run[domain->run_count++] = (lar_block_run){
+                lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL, NULL};
         }
         domain->run[domain->run_count - 1].count++;
         domain->block_bytes += lar_block_size(lanes->shape);
+        if (lar_law_has_more(lanes->law))
+            domain->more_bytes = (size_t)layout->block_count * sizeof *domain->more;
     }
     return LAR_OK;
 }
 
 static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
+    if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
     domain->strained = lar_calloc(elements, sizeof *domain->strained);
     domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
@@ -183,8 +191,9 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->strain = lar_calloc(elements, sizeof *domain->strain);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
-    if (!domain->blocks || !domain->base || !domain->corner_limit || !domain->strained ||
-        !domain->strained_count || !domain->strain || !domain->rest)
+    if (!domain->blocks || (domain->more_bytes && !domain->more) || !domain->base ||
+        !domain->corner_limit || !domain->strained || !domain->strained_count || !domain->strain ||
+        !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -195,6 +204,7 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     for (int32_t r = 0; r < domain->run_count; r++) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
+        if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
         run->streamed = domain->block_bytes > CACHED_BYTES;
         for (int32_t b = 0; b < run->count; b++) {
             const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
@@ -205,8 +215,8 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
                     lar_lane_base *base =
                         domain->base + LAR_BLOCK * (domain->run_first[r] + b) + lane;
                     fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest, base);
-                    fill_material(domain, base, (void *)memory, lane, lanes->element[lane],
-                                  limit + lane);
+                    fill_material(domain, base, (void *)memory, more_of(domain, r, b), lane,
+                                  lanes->element[lane], limit + lane);
                 } else
                     for (int a = 0; a < 8; a++)
                         ((lar_block_head *)(void *)memory)->node[a][lane] =
@@ -261,7 +271,7 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST
                 lar_gid e = domain->layout.block[block].element[lane];
                 if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
                     fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
-                                  lane, e, limit + lane);
+                                  more_of(domain, r, b), lane, e, limit + lane);
             }
             memory += lar_block_size(domain->run[r].shape);
         }
@@ -447,6 +457,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run);
     free(domain->run_first);
     free(domain->blocks);
+    free(domain->more);
     free(domain->material);
     free(domain->base);
     free(domain->corner_limit);

@@ -54,6 +54,8 @@ typedef struct lar_domain {
     lar_element_rate *rate;              /* [elements of the model] */
     bool rate_lent;                      /* `rate` belongs to the whole */
     size_t block_bytes;
+    lar_block_more *more; /* [blocks] of models that have a law with so many parameters, or NULL */
+    size_t more_bytes;
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */
     double *mass;   /* [layout.node_padded] kg; spare nodes 0 */

@@ -39,6 +39,9 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
     const uint64_t *word = domain->blocks;
     for (size_t i = 0; word && i < domain->block_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
+    word = (const void *)domain->more;
+    for (size_t i = 0; word && i < domain->more_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
     return hash;
 }
 
@@ -63,7 +66,8 @@ static uint64_t hash_materials(const lar_model *model) {
         const lar_material *m = &model->material[i];
         hash = lar_hash_word(hash, (uint64_t)m->law);
         hash = lar_hash_double(hash, m->density);
-        hash = hash_doubles(hash, m->parameter, LAR_LAW_PARAMETERS);
+        int count = lar_law_table[m->law].count; /* at least three: so many all laws once had */
+        hash = hash_doubles(hash, m->parameter, count > 3 ? (size_t)count : 3);
     }
     return hash_indices(hash, model->element_material, model->mesh.element_count);
 }

@@ -24,6 +24,7 @@ static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_sta
     one.count = 1;
     for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
         one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;
+        one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
         found = domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)

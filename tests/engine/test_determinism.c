@@ -19,10 +19,12 @@ enum { GENERAL, BOXES, SHAPES };
 static const uint64_t golden[SHAPES][LAR_LAW_COUNT] = {
     [GENERAL] = {[LAR_LAW_neo_hookean] = 0xdb821fb1a6eadafc,
                  [LAR_LAW_coupled_neo_hookean] = 0xdc305067a2b3254d,
-                 [LAR_LAW_mooney_rivlin] = 0x36dea79ed0f69500},
+                 [LAR_LAW_mooney_rivlin] = 0x36dea79ed0f69500,
+                 [LAR_LAW_yeoh] = 0x6a92844e27e5d09a},
     [BOXES] = {[LAR_LAW_neo_hookean] = 0xf11232da2d32fd7a,
                [LAR_LAW_coupled_neo_hookean] = 0xadfa3d169a0a254a,
-               [LAR_LAW_mooney_rivlin] = 0x967bf77932001b3d},
+               [LAR_LAW_mooney_rivlin] = 0x967bf77932001b3d,
+               [LAR_LAW_yeoh] = 0x3cd0f0c5c6a3e83e},
 };
 
 static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};

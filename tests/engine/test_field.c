@@ -2,7 +2,7 @@
 #include <pthread.h>
 
 #include "engine/engine_test.h"
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 
 static const brick body = {{4, 3, 3}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
 

@@ -18,7 +18,7 @@
 #include "base/folder.h"
 #include "step/measure.h"
 #include "simulation/results_probe.h"
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 #include "meshing/shapes.h"
 #include "model/brick.h"
 #include "model/format/mesh_io.h"

@@ -1,8 +1,8 @@
 # The rooms, docs/architecture.md: what may use what. Rooms of one layer do not know each other.
 
 BEGIN {
-    split("base 0 model 1 mechanics 2 divide 2 comm 2 meshing 3 layout 3 contact 4 step 5 " \
-          "parallel 6 simulation 7 session 8 server 9 study 9 cli 10", words, " ")
+    split("base 0 law 1 model 2 mechanics 3 divide 3 comm 3 meshing 4 layout 4 contact 5 step 6 " \
+          "parallel 7 simulation 8 session 9 server 10 study 10 cli 11", words, " ")
     for (i = 1; i in words; i += 2) layer[words[i]] = words[i + 1]
     command_may["cli"] = command_may["study"] = 1
 }

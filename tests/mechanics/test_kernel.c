@@ -28,6 +28,7 @@ static int find_kernels(void **state) {
  * lanes of a block share nodes, sometimes as the same local node. */
 typedef struct load {
     lar_hex8_block block[BLOCKS];
+    lar_block_more more[BLOCKS];
     lar_hex8 element[LANES];
     lar_material material[LANES];
     int node[LANES][8];
@@ -52,7 +53,8 @@ static void fill_lane(load *l, int n) {
         block->head.stiffness[m][lane] = l->scale * element->stiffness[m];
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        block->head.modulus[k][lane] = l->scale * element->volume * l->material[n].parameter[k];
+        *lar_block_parameter(&block->head, &l->more[n / LAR_BLOCK], k, lane) =
+            l->scale * element->volume * l->material[n].parameter[k];
     for (int a = 0; a < 8; a++) block->head.node[a][lane] = 4 * l->node[n][a];
 }
 
@@ -94,9 +96,13 @@ static void empty_lane(load *l, int n) {
 }
 
 /* Loose blocks of general elements. */
-static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
-                    int64_t *force, const lar_hex8_limits *limits, bool watch) {
-    lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, count, blocks};
+static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, const lar_block_more *more,
+                    int count, const double *u, int64_t *force, const lar_hex8_limits *limits,
+                    bool watch) {
+    lar_block_run run = {law,           LAR_SHAPE_GENERAL,
+                         LAR_ROWS_NONE, 0,
+                         false,         count,
+                         blocks,        lar_law_has_more(law) ? more : NULL};
     enum { MOST = 64 };
     static int32_t lane[MOST * LAR_BLOCK];
     static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
@@ -112,7 +118,7 @@ static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count,
 static int64_t recover(const load *l, int k, bool watch, const lar_hex8_limits *limits, forces *f) {
     lar_law law = l->material[0].law;
     memset(f, 0, sizeof *f);
-    return call(k, law, l->block, BLOCKS, &l->u[0][0], &f->at[0][0], limits, watch);
+    return call(k, law, l->block, l->more, BLOCKS, &l->u[0][0], &f->at[0][0], limits, watch);
 }
 
 /* Each element within the rounding of its seven modal forces (half a unit each); the scale is
@@ -213,7 +219,8 @@ static void integers_balance(void **state) {
             make_load(&l, &seed, law, 0x1p38);
             recover(&l, k, false, &no_limits, &once);
             f = once;
-            call(k, (lar_law)law, l.block, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits, false);
+            call(k, (lar_law)law, l.block, l.more, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits,
+                 false);
             int64_t sum[4] = {0}, most = 0;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) {
@@ -238,11 +245,11 @@ static void any_count_of_blocks(void **state) {
             for (int count = 0; count <= BLOCKS; count++) {
                 memset(&together, 0, sizeof together);
                 memset(&single, 0, sizeof single);
-                assert_true(call(k, (lar_law)law, l.block, count, &l.u[0][0], &together.at[0][0],
-                                 &no_limits, false) == -1);
+                assert_true(call(k, (lar_law)law, l.block, l.more, count, &l.u[0][0],
+                                 &together.at[0][0], &no_limits, false) == -1);
                 for (int b = 0; b < count; b++)
-                    call(k, (lar_law)law, &l.block[b], 1, &l.u[0][0], &single.at[0][0], &no_limits,
-                         false);
+                    call(k, (lar_law)law, &l.block[b], &l.more[b], 1, &l.u[0][0], &single.at[0][0],
+                         &no_limits, false);
                 assert_memory_equal(&together, &single, sizeof single);
             }
     }
@@ -409,7 +416,7 @@ static void rounds_to_nearest_even(void **state) {
         l.u[0][2] = -x;
         for (int k = 0; k < kernel_count; k++) {
             memset(&f, 0, sizeof f);
-            call(k, (lar_law)0, &block, 1, &l.u[0][0], &f.at[0][0], &no_limits, false);
+            call(k, (lar_law)0, &block, NULL, 1, &l.u[0][0], &f.at[0][0], &no_limits, false);
             for (int a = 0; a < 8; a++) {
                 int sign = -lar_node_sign[a][0] * lar_node_sign[a][1] * lar_node_sign[a][2];
                 assert_true(f.at[a][0] == sign * llrint(x));
@@ -439,6 +446,7 @@ static void golden_bits(void **state) {
         [LAR_LAW_neo_hookean] = 0x45dbd776b0e9f8ebULL,
         [LAR_LAW_coupled_neo_hookean] = 0xd435202178cc047eULL,
         [LAR_LAW_mooney_rivlin] = 0x079e701cc8e23e21ULL,
+        [LAR_LAW_yeoh] = 0xf2fec133faf1b20fULL,
     };
     static load l;
     static forces f;
@@ -453,7 +461,7 @@ static void golden_bits(void **state) {
             for (int m = 0; m < 4; m++) element->stiffness[m] = 2 + random_value(&seed);
             element->volume = 0x1p-20 * (2 + random_value(&seed));
             l.material[n].law = (lar_law)law;
-            for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+            for (int k = 0; k < LAR_BLOCK_PARAMETERS || k < lar_law_table[law].count; k++)
                 l.material[n].parameter[k] = 4000 + 1000 * random_value(&seed);
             for (int a = 0; a < 8; a++) l.node[n][a] = (int)(random_bits(&seed) >> 33) % NODES;
             l.scale = 0x1p40;

@@ -28,6 +28,7 @@ typedef struct body {
     lar_block_rows rows;
     lar_hex8_block general[MOST];
     lar_box_block box[MOST];
+    lar_block_more more[MOST];
     double x[ROOM][3];
     double u[ROOM][4] __attribute__((aligned(64)));
 } body;
@@ -66,7 +67,8 @@ static void fill_lane(body *b, int n, const int node[8]) {
         general->head.stiffness[m][lane] = scale * element.stiffness[m];
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        general->head.modulus[k][lane] = scale * element.volume * material.parameter[k];
+        *lar_block_parameter(&general->head, &b->more[n / LAR_BLOCK], k, lane) =
+            scale * element.volume * material.parameter[k];
     for (int a = 0; a < 8; a++) general->head.node[a][lane] = 4 * node[a];
     box->head = general->head;
 }
@@ -148,7 +150,8 @@ static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, 
                          .rows = joined,
                          .turn = boxes ? b->turn : 0,
                          .count = count,
-                         .blocks = boxes ? (const void *)b->box : b->general};
+                         .blocks = boxes ? (const void *)b->box : b->general,
+                         .more = lar_law_has_more(b->law) ? b->more : NULL};
     memset(f, 0, sizeof *f);
     return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, watch);
 }

@@ -206,6 +206,19 @@ static void test_bad_materials(void **state) {
                                  "</c1><k>9</k>\n<pressure_model>NIKE3D</pressure_model>"
                                  "</material>"),
                    LAR_ERROR_UNSUPPORTED, 7, "'NIKE3D'");
+#define YEOH(rest)                                                                                 \
+    WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"Yeoh\">\n" rest "</material>")
+    expect_failure(YEOH("<c1>1</c1>"), LAR_ERROR_FORMAT, 6, "no parameter <k>");
+    expect_failure(YEOH("<c1>1</c1><k>9</k><c4>2</c4>"), LAR_ERROR_UNSUPPORTED, 6,
+                   "<c4> is 2; Lariat's Yeoh law does not have that term");
+    expect_failure(YEOH("<c1>1</c1><k>9</k><c3>inf</c3>"), LAR_ERROR_FORMAT, 7, "no finite number");
+    expect_failure(YEOH("<c1>1</c1><k>9</k><c3>1e90</c3>"), LAR_ERROR_MODEL, 6, "check its unit");
+    expect_failure(YEOH("<c1>-1</c1><k>9</k>"), LAR_ERROR_MODEL, 6, "shear modulus is -2 Pa");
+    expect_failure(YEOH("<c1>1</c1><k>0</k>"), LAR_ERROR_MODEL, 6, "bulk modulus is 0 Pa");
+    expect_failure(YEOH("<c1>1</c1><k>9</k><pressure_model>NIKE3D</pressure_model>"),
+                   LAR_ERROR_UNSUPPORTED, 7, "'NIKE3D'");
+    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"Ogden\"/>"),
+                   LAR_ERROR_UNSUPPORTED, 6, "Lariat has neo-Hookean, Mooney-Rivlin and Yeoh");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"hard\" type=\"neo-Hookean\"/>"),
                    LAR_ERROR_FORMAT, 0, "names the material 'soft'");
     expect_failure(WITH_MATERIAL("<material name=\"soft\" type=\"neo-Hookean\"/>"),
@@ -604,11 +617,12 @@ typedef struct expected_deck {
     unsigned fix_axes[3];
     int move_nodes;
     unsigned move_axes;
+    double move_by;
 } expected_deck;
 
 /* Counted in the files by other means. */
 static const expected_deck expected[] = {
-    {"dy01.feb", 8, 1, 3, LAR_LAW_coupled_neo_hookean, 0, 1.0, {0}, {0}, 0, 0},
+    {"dy01.feb", 8, 1, 3, LAR_LAW_coupled_neo_hookean, 0, 1.0, {0}, {0}, 0, 0, 0},
     {"dy02.feb",
      189,
      80,
@@ -618,6 +632,7 @@ static const expected_deck expected[] = {
      16.8,
      {9, 9, 9},
      {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
+     0,
      0,
      0},
     {"mi27.feb",
@@ -630,7 +645,8 @@ static const expected_deck expected[] = {
      {36, 66, 66},
      {LAR_AXIS_X, LAR_AXIS_Y, LAR_AXIS_Z},
      36,
-     LAR_AXIS_X},
+     LAR_AXIS_X,
+     1.0},
     {"tu01.feb",
      756,
      500,
@@ -641,7 +657,20 @@ static const expected_deck expected[] = {
      {72, 72, 36},
      {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
      36,
-     LAR_AXIS_X},
+     LAR_AXIS_X,
+     1.0},
+    {"ma61.feb",
+     27,
+     8,
+     1,
+     LAR_LAW_yeoh,
+     1,
+     1.0,
+     {9, 9, 9},
+     {LAR_AXIS_X, LAR_AXIS_Y, LAR_AXIS_Z},
+     9,
+     LAR_AXIS_Z,
+     2.0},
 };
 
 static void check_deck(const expected_deck *want) {
@@ -663,7 +692,7 @@ static void check_deck(const expected_deck *want) {
     if (model->move_count) {
         assert_int_equal(model->move[0].nodes.count, want->move_nodes);
         assert_int_equal(model->move[0].axes, want->move_axes);
-        assert_true(model->move[0].by == 1.0);
+        assert_true(model->move[0].by == want->move_by);
     }
     lar_model_destroy(model);
 }

@@ -106,6 +106,24 @@ static void test_materials(void **state) {
     lar_model_destroy(model);
 }
 
+/* Yeoh's law, and what it becomes where its further terms are zero. */
+static void test_yeoh(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, YEOH\n500, -60, 7, 1e-4, 0, 0, 20\n*DENSITY\n"
+             "1000\n*MATERIAL, NAME=b\n*HYPERELASTIC, YEOH\n500, , , 1e-4\n*DENSITY\n1000\n"
+             "*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n1.,\n*SOLID SECTION, ELSET=RIGHT, "
+             "MATERIAL=b\n");
+    assert_int_equal(model->material[0].law, LAR_LAW_yeoh);
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, -60, 7, 2e4}), 32);
+    assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[1]), 1000);
+    assert_int_equal(notices_with(model, "Lariat's Yeoh law answers a change of volume by K/2 (ln "
+                                         "J)^2 instead of (J - 1)^2 / D1"),
+                     1);
+    lar_model_destroy(model);
+}
+
 /* Without gravity the density of a static deck does not matter. */
 static void test_static_without_density(void **state) {
     (void)state;
@@ -138,12 +156,24 @@ static void test_bad_materials(void **state) {
             "change the answer; remove it");
     refused(OF("*VISCOELASTIC, TIME=PRONY\n"), LAR_ERROR_UNSUPPORTED, two, "*VISCOELASTIC");
     refused(OF("*HYPERELASTIC, OGDEN, N=1\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
-            "Lariat has NEO HOOKE and MOONEY-RIVLIN");
+            "Lariat has NEO HOOKE, MOONEY-RIVLIN and YEOH, with constants");
     refused(OF("*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n"), LAR_ERROR_UNSUPPORTED, two,
             "the parameter TEST DATA INPUT of *HYPERELASTIC");
     refused(OF("*HYPERELASTIC, NEO HOOKE\n500\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
     refused(OF("*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n600, 1e-4\n"), LAR_ERROR_UNSUPPORTED,
             three + 1, "depends on temperature");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500, 1e-4, 20, 7\n"), LAR_ERROR_FORMAT, three,
+            "expected the end of the line");
+    refused(OF("*HYPERELASTIC, YEOH\n500, -60, 7\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
+    refused(OF("*HYPERELASTIC, YEOH\n500, -60, 7, 1e-4, 1e-3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "D2 is 0.001; Lariat's Yeoh law does not have that term");
+    refused(OF("*HYPERELASTIC, YEOH\n500, nan, 7, 1e-4\n"), LAR_ERROR_FORMAT, three,
+            "expected C20, found");
+    refused(OF("*HYPERELASTIC, YEOH\n-500, 1, 7, 1e-4\n"), LAR_ERROR_MODEL, two, "shear modulus");
+    refused(OF("*HYPERELASTIC, YEOH\n500, 1, 7e99, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "check its unit");
+    refused(OF("*HYPERELASTIC, YEOH\n500, 1, 7, 1e-320\n"), LAR_ERROR_MODEL, two,
+            "not a finite number");
     refused(OF("*HYPERELASTIC, NEO HOOKE\n-5, 1e-4\n"), LAR_ERROR_MODEL, two, "shear modulus");
     refused(OF("*ELASTIC, TYPE=ORTHO\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two, "isotropic");
     refused(OF("*ELASTIC\n1000, 0.5\n"), LAR_ERROR_MODEL, three, "Poisson's ratio 0.5");
@@ -479,12 +509,19 @@ static void test_damage(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_materials),     cmocka_unit_test(test_static_without_density),
-        cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_supports),
-        cmocka_unit_test(test_bad_supports),  cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_bad_loads),     cmocka_unit_test(test_initial_velocity),
-        cmocka_unit_test(test_contact),       cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_parts),         cmocka_unit_test(test_is_deck),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_yeoh),
+        cmocka_unit_test(test_static_without_density),
+        cmocka_unit_test(test_bad_materials),
+        cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_bad_supports),
+        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bad_loads),
+        cmocka_unit_test(test_initial_velocity),
+        cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_is_deck),
         cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,6 +47,7 @@ static void test_names(void **state) {
     assert_string_equal(lar_law_name[LAR_LAW_neo_hookean], "neo-hookean");
     assert_string_equal(lar_law_name[LAR_LAW_coupled_neo_hookean], "coupled-neo-hookean");
     assert_string_equal(lar_law_name[LAR_LAW_mooney_rivlin], "mooney-rivlin");
+    assert_string_equal(lar_law_name[LAR_LAW_yeoh], "yeoh");
 }
 
 static void refused(lar_material material, const char *part) {
@@ -79,6 +80,11 @@ static void test_refusals(void **state) {
     refused(material, "not a finite number");
     lar_material_from_young(&material, 1.0e4, 0.6);
     refused(material, "bulk modulus");
+    material = good;
+    material.law = LAR_LAW_yeoh;
+    material.parameter[2] = 1e30;
+    material.parameter[3] = 4e5;
+    refused(material, "c3 of the law yeoh is 1e+30 Pa, more than 1e+09 times");
     material = good;
     material.law = LAR_LAW_COUNT;
     refused(material, "law");

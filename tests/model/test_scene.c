@@ -181,8 +181,12 @@ static void test_materials(void **state) {
              "  - {cells: [{nearest: [0, 0, 0]}, {list: [108]}], law: coupled-neo-hookean, "
              "density: 1200, mu: 3e3, lambda: 5e3}\n"
              "  - {cells: {list: [102]}, law: coupled-neo-hookean, density: 1, shear_modulus: 3e3, "
-             "bulk_modulus: 1e3}\n");
-    const int32_t expected[BRICK_ELEMENTS] = {2, 3, 0, 0, 1, 1, 1, 2};
+             "bulk_modulus: 1e3}\n"
+             "  - {cells: {list: [104]}, law: yeoh, density: 1, c1: 600, c2: -75, c3: 11, "
+             "bulk_modulus: 1e5}\n"
+             "  - {cells: {list: [103]}, law: yeoh, density: 1, youngs_modulus: 3e3, "
+             "poisson_ratio: 0.25}\n");
+    const int32_t expected[BRICK_ELEMENTS] = {2, 3, 5, 4, 1, 1, 1, 2};
     assert_memory_equal(model->element_material, expected, sizeof expected);
     same(lar_material_shear(&model->material[0]), 12e3 / 2.9);
     same(lar_material_bulk(&model->material[0]), 12e3 / 0.3);
@@ -190,6 +194,8 @@ static void test_materials(void **state) {
     same(model->material[1].parameter[1], 500.0);
     same(model->material[2].parameter[1], 5e3);
     same(model->material[3].parameter[1], -1e3);
+    assert_memory_equal(model->material[4].parameter, ((double[]){600, -75, 11, 1e5}), 32);
+    assert_memory_equal(model->material[5].parameter, ((double[]){600, 0, 0, 2e3}), 32);
     lar_model_destroy(model);
 }
 

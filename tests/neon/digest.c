@@ -39,6 +39,7 @@ static const form forms[] = {
 
 typedef struct world {
     lar_hex8_block general[BLOCKS];
+    lar_block_more more[BLOCKS];
     lar_box_block box[BLOCKS];
     double position[NODES][3];
     double u[NODES][4] __attribute__((aligned(64)));
@@ -98,7 +99,8 @@ static void pack_element(world *w, int e, int turn, const lar_material *material
         block->head.stiffness[m][lane] = hex8.stiffness[m] * SCALE;
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        block->head.modulus[k][lane] = material->parameter[k] * hex8.volume * SCALE;
+        *lar_block_parameter(&block->head, &w->more[e / LAR_BLOCK], k, lane) =
+            material->parameter[k] * hex8.volume * SCALE;
     box->head = block->head;
 }
 
@@ -129,7 +131,8 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
                                .turn = boxes ? as->turn : 0,
                                .streamed = as->turn == 1,
                                .count = BLOCKS,
-                               .blocks = boxes ? (const void *)w->box : w->general};
+                               .blocks = boxes ? (const void *)w->box : w->general,
+                               .more = lar_law_has_more(law) ? w->more : NULL};
     static int32_t lane[BLOCKS * LAR_BLOCK];
     static double limit[BLOCKS * LAR_BLOCK] __attribute__((aligned(64)));
     static float strain[BLOCKS * LAR_BLOCK][LAR_STRAIN_NUMBERS];

@@ -5,7 +5,7 @@
 #include "session/server_test.h"
 
 #include "simulation/simulation.h"
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 
 static served s;
 static client c;

@@ -150,7 +150,7 @@ static void print_kernels(const requirements_report *p) {
         bool node = k == LAR_KERNEL_KINDS;
         lar_kernel_kind kind = (lar_kernel_kind)k;
         lar_operations o = node ? lar_operations_of_node() : lar_operations_of_element(kind, 0);
-        lar_step_bytes b = node ? lar_bytes_of_node() : lar_bytes_of_element(kind);
+        lar_step_bytes b = node ? lar_bytes_of_node() : lar_bytes_of_element(kind, 0);
         printf("  %-14s%10" PRId64 "%10" PRId64 "%10" PRId64 "%10" PRId64 "%12" PRId64 "%12" PRId64
                "\n",
                node ? "node" : lar_kernel_kind_name[k], o.additions + o.integer_additions,

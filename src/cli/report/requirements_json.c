@@ -115,7 +115,7 @@ static void write_kernels(json_writer *json) {
     json_open(json, "kernels", '[');
     for (int k = 0; k < LAR_KERNEL_KINDS; k++) {
         lar_operations o = lar_operations_of_element((lar_kernel_kind)k, 0);
-        lar_step_bytes bytes = lar_bytes_of_element((lar_kernel_kind)k);
+        lar_step_bytes bytes = lar_bytes_of_element((lar_kernel_kind)k, 0);
         write_operations(json, lar_kernel_kind_name[k], &o, &bytes);
     }
     lar_operations node = lar_operations_of_node();

@@ -4,76 +4,88 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The ways to say the stiffness: with the law's own parameters, in the order of material.h, or
- * with two moduli that every law knows. */
+#include "base/text.h"
+
+/* A way to say the stiffness: with the law's own parameters, or with two moduli that every law
+ * knows. */
 typedef struct stiffness_form {
-    const char *key[LAR_LAW_PARAMETERS + 1]; /* ends with NULL */
+    int count;
+    const lar_law_parameter *key;
 } stiffness_form;
 
-static const stiffness_form own_form[LAR_LAW_COUNT] = {
-    [LAR_LAW_neo_hookean] = {{"shear_modulus", "bulk_modulus"}},
-    [LAR_LAW_coupled_neo_hookean] = {{"mu", "lambda"}},
-    [LAR_LAW_mooney_rivlin] = {{"c1", "c2", "bulk_modulus"}}};
-static const stiffness_form shear_bulk_form = {{"shear_modulus", "bulk_modulus"}};
-static const stiffness_form young_form = {{"youngs_modulus", "poisson_ratio"}};
+static const lar_law_parameter shear_bulk_key[] = {{"shear_modulus", LAR_VALUE_MODULUS},
+                                                   {"bulk_modulus", LAR_VALUE_MODULUS}};
+static const lar_law_parameter young_key[] = {{"youngs_modulus", LAR_VALUE_MODULUS},
+                                              {"poisson_ratio", LAR_VALUE_RATIO}};
+static const stiffness_form shear_bulk_form = {2, shear_bulk_key}, young_form = {2, young_key};
 
-static const char *const stiffness_key[] = {"shear_modulus",
-                                            "bulk_modulus",
-                                            "youngs_modulus",
-                                            "poisson_ratio",
-                                            "mu",
-                                            "lambda",
-                                            "c1",
-                                            "c2",
-                                            NULL};
-static const char *const material_key[] = {"cells",
-                                           "law",
-                                           "density",
-                                           "name",
-                                           "shear_modulus",
-                                           "bulk_modulus",
-                                           "youngs_modulus",
-                                           "poisson_ratio",
-                                           "mu",
-                                           "lambda",
-                                           "c1",
-                                           "c2",
-                                           NULL};
+static stiffness_form own_form(lar_law law) {
+    return (stiffness_form){lar_law_table[law].count, lar_law_table[law].parameter};
+}
+
+/* Keys of a material: its own four, then all that any law may be asked with. */
+enum { OWN_KEYS = 4, KEYS_MOST = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
+
+static void add_keys(const char **key, const stiffness_form *form) {
+    for (int i = 0; i < form->count; i++) {
+        int n = 0;
+        while (key[n] && strcmp(key[n], form->key[i].name) != 0) n++;
+        key[n] = form->key[i].name;
+    }
+}
+
+/* Ends with NULL. */
+static void list_keys(const char *key[KEYS_MOST + 1]) {
+    static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name"};
+    memset(key, 0, (KEYS_MOST + 1) * sizeof *key);
+    for (int i = 0; i < OWN_KEYS; i++) key[i] = own[i];
+    add_keys(key, &shear_bulk_form);
+    add_keys(key, &young_form);
+    for (int law = 0; law < LAR_LAW_COUNT; law++) {
+        stiffness_form form = own_form((lar_law)law);
+        add_keys(key, &form);
+    }
+}
 
 /* True when the entry has exactly the form's stiffness keys. */
 static bool has_form(const lar_yaml *node, const stiffness_form *form) {
-    int wanted = 0, present = 0;
-    for (; form->key[wanted]; wanted++)
-        if (!lar_yaml_get(node, form->key[wanted])) return false;
-    for (int i = 0; stiffness_key[i]; i++) present += lar_yaml_get(node, stiffness_key[i]) != NULL;
-    return present == wanted;
+    const char *key[KEYS_MOST + 1];
+    int present = 0;
+    for (int i = 0; i < form->count; i++)
+        if (!lar_yaml_get(node, form->key[i].name)) return false;
+    list_keys(key);
+    for (int i = OWN_KEYS; key[i]; i++) present += lar_yaml_get(node, key[i]) != NULL;
+    return present == form->count;
+}
+
+/* Whether a law's own parameters are the two moduli. */
+static bool is_shear_bulk(const stiffness_form *form) {
+    bool same = form->count == shear_bulk_form.count;
+    for (int i = 0; same && i < form->count; i++)
+        same = strcmp(form->key[i].name, shear_bulk_key[i].name) == 0;
+    return same;
 }
 
 static lar_status no_form(const lar_scene *scene, const lar_yaml *node, lar_law law) {
-    const stiffness_form *own = &own_form[law];
-    char also[64] = "";
-    if (law != LAR_LAW_neo_hookean)
-        snprintf(also, sizeof also, ", or %s%s%s%s%s", own->key[0], own->key[2] ? ", " : " and ",
-                 own->key[1], own->key[2] ? " and " : "", own->key[2] ? own->key[2] : "");
+    const stiffness_form own = own_form(law);
+    const char *name[LAR_LAW_PARAMETERS];
+    char also[160] = "";
+    for (int i = 0; i < own.count; i++) name[i] = own.key[i].name;
+    if (!is_shear_bulk(&own)) lar_text_list(name, own.count, also, sizeof also);
     return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
                           "a material of the law %s needs either shear_modulus and bulk_modulus, "
-                          "or youngs_modulus and poisson_ratio%s, and nothing besides",
-                          lar_law_name[law], also);
-}
-
-/* lambda and c2 may be negative or zero as long as the moduli that follow are positive. */
-static bool may_be_negative(const char *key) {
-    return strcmp(key, "lambda") == 0 || strcmp(key, "c1") == 0 || strcmp(key, "c2") == 0;
+                          "or youngs_modulus and poisson_ratio%s%s, and nothing besides",
+                          lar_law_name[law], *also ? ", or " : "", also);
 }
 
 static lar_status read_numbers(const lar_scene *scene, const lar_yaml *node,
                                const stiffness_form *form, double value[LAR_LAW_PARAMETERS]) {
     lar_status status = LAR_OK;
-    for (int i = 0; !status && form->key[i]; i++) {
-        const lar_yaml *number = lar_yaml_get(node, form->key[i]);
-        status = may_be_negative(form->key[i])
-                     ? lar_scene_number(scene, number, LAR_IN_PASCAL, &value[i])
-                     : lar_scene_positive(scene, number, LAR_IN_PASCAL, &value[i]);
+    for (int i = 0; !status && i < form->count; i++) {
+        const lar_yaml *number = lar_yaml_get(node, form->key[i].name);
+        status = form->key[i].value == LAR_VALUE_MODULUS
+                     ? lar_scene_positive(scene, number, LAR_IN_PASCAL, &value[i])
+                     : lar_scene_number(scene, number, LAR_IN_PASCAL, &value[i]);
     }
     return status;
 }
@@ -99,10 +111,11 @@ static lar_status read_young(const lar_scene *scene, const lar_yaml *node, lar_m
 static lar_status read_stiffness(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
     if (has_form(node, &young_form)) return read_young(scene, node, material);
+    const stiffness_form own = own_form(material->law);
     double value[LAR_LAW_PARAMETERS] = {0};
     lar_status status;
-    if (has_form(node, &own_form[material->law])) {
-        status = read_numbers(scene, node, &own_form[material->law], value);
+    if (has_form(node, &own)) {
+        status = read_numbers(scene, node, &own, value);
         memcpy(material->parameter, value, sizeof value);
     } else if (has_form(node, &shear_bulk_form)) {
         status = read_numbers(scene, node, &shear_bulk_form, value);
@@ -137,9 +150,10 @@ static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) 
 }
 
 static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
-    const char *const what = "a material", *name;
+    const char *const what = "a material", *name, *key[KEYS_MOST + 1];
     const lar_yaml *cells = NULL, *law = NULL, *density = NULL;
-    lar_status status = lar_scene_keys(scene, node, what, material_key);
+    list_keys(key);
+    lar_status status = lar_scene_keys(scene, node, what, key);
     if (!status) status = lar_scene_need(scene, node, what, "cells", "cells: all", &cells);
     if (!status) status = lar_scene_need(scene, node, what, "law", "law: neo-hookean", &law);
     if (!status) status = lar_scene_need(scene, node, what, "density", "density: 1050", &density);

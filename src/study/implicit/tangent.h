@@ -10,13 +10,8 @@
  *
  *     K_ai,bk = V g_aj (dP_ij / dF_kl) g_bl + delta_ik Z_ab
  *
- * Every law of law.h is w(I1, I2, J) with P = dw/dF and neither I1 nor I2 but linearly in it, thus
- *
- *     dP/dF = 2 w_1 1 + w_2 I2'' + w_J cof' + w_JJ C (x) C
- *             + w_1J (2F (x) C + C (x) 2F) + w_2J (I2' (x) C + C (x) I2'),      C = cof F
- *
- * and a law is six numbers. For study only: the engine never builds a matrix, which is its point
- * (T 2.2.4). Plain C and libm; the bits may differ between machines.
+ * dP/dF is that of the law's row (law/isotropic.h). For study only: the engine never builds a
+ * matrix, which is its point (T 2.2.4). Plain C and libm; the bits may differ between machines.
  */
 #ifndef LAR_STUDY_IMPLICIT_TANGENT_H
 #define LAR_STUDY_IMPLICIT_TANGENT_H

@@ -36,7 +36,7 @@ static void fill_half(const void *block, lar_block_shape shape, bool empty, int 
     for (int a = 0; a < 8; a++)
         memcpy(head->node[a] + half * LAR_BLOCK, from->node[a], sizeof from->node[a]);
     if (empty) return;
-    narrow(&from->modulus[0][0], LAR_LAW_PARAMETERS, half, &head->modulus[0][0]);
+    narrow(&from->modulus[0][0], LAR_BLOCK_PARAMETERS, half, &head->modulus[0][0]);
     narrow(&from->stiffness[0][0], LAR_HEX8_HOURGLASS, half, &head->stiffness[0][0]);
     if (shape == LAR_SHAPE_BOX) {
         narrow(((const lar_box_block *)block)->gradient[0], 3, half,
@@ -52,6 +52,22 @@ static size_t single_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_single_box) : sizeof(lar_single_general);
 }
 
+/* Blocks, and behind them what a law has more. */
+static size_t run_bytes(const lar_block_run *run) {
+    size_t pairs = (size_t)((run->count + 1) / 2);
+    return pairs * (single_size(run->shape) + (run->more ? sizeof(lar_single_more) : 0));
+}
+
+_Static_assert(sizeof(lar_single_more) == LAR_MORE_PARAMETERS * LAR_SINGLE_BLOCK * sizeof(float),
+               "single.h knows as many parameters as hex8_block.h");
+
+/* The run's pointer keeps its type, as that of its blocks does. */
+static void fill_more(lar_block_run *run, lar_single_more *to) {
+    for (int32_t b = 0; b < run->count; b++)
+        narrow(&run->more[b].modulus[0][0], LAR_MORE_PARAMETERS, b % 2, &to[b / 2].modulus[0][0]);
+    run->more = (const lar_block_more *)(const void *)to;
+}
+
 static void fill_run(lar_block_run *run, char *to) {
     const char *from = run->blocks;
     for (int32_t b = 0; b < run->count; b += 2) {
@@ -63,6 +79,8 @@ static void fill_run(lar_block_run *run, char *to) {
         fill_half(next, run->shape, alone, 1, pair);
     }
     run->blocks = to;
+    if (run->more)
+        fill_more(run, (void *)(to + (size_t)((run->count + 1) / 2) * single_size(run->shape)));
 }
 
 /* ---- in the place of production's kernels ------------------------------------------------- */
@@ -74,7 +92,8 @@ static void recover_single(const lar_single_kernels *kernels, const lar_block_ru
                                  .rows = (int)run->rows,
                                  .turn = run->turn,
                                  .count = (run->count + 1) / 2,
-                                 .blocks = run->blocks};
+                                 .blocks = run->blocks,
+                                 .more = (const lar_single_more *)(const void *)run->more};
     kernels->recover(&made, u, force);
 }
 
@@ -146,15 +165,15 @@ lar_status lar_single_adopt(lar_domain *domain, bool single_state, lar_single_do
                         "and avx512, not for %s; choose with --isa",
                         domain->kernels->name);
     size_t bytes = 0;
-    for (int32_t r = 0; r < domain->run_count; r++)
-        bytes += (size_t)((domain->run[r].count + 1) / 2) * single_size(domain->run[r].shape);
+    for (int32_t r = 0; r < domain->run_count; r++) bytes += run_bytes(&domain->run[r]);
     adopted->blocks = lar_calloc_aligned(bytes, 1);
     if (!adopted->blocks) return lar_fail_memory(error, bytes, "blocks in single precision");
     adopted->bytes = bytes;
     char *to = adopted->blocks;
     for (int32_t r = 0; r < domain->run_count; r++) {
+        size_t size = run_bytes(&domain->run[r]);
         fill_run(&domain->run[r], to);
-        to += (size_t)((domain->run[r].count + 1) / 2) * single_size(domain->run[r].shape);
+        to += size;
     }
     adopted->kernels = *found;
     if (!single_state) adopted->kernels.update = domain->kernels->update;

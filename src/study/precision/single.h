@@ -35,11 +35,16 @@ typedef struct lar_single_box {
     float gradient[3][LAR_SINGLE_BLOCK];
 } lar_single_box;
 
+typedef struct lar_single_more {
+    float modulus[1][LAR_SINGLE_BLOCK];
+} __attribute__((aligned(64))) lar_single_more;
+
 /* A run of such blocks; law, shape and rows as numbers of hex8_block.h and material.h. */
 typedef struct lar_single_run {
     int law, shape, rows, turn;
     int32_t count;
     const void *blocks;
+    const lar_single_more *more; /* NULL when the law has no more parameters */
 } lar_single_run;
 
 typedef struct lar_single_kernels {

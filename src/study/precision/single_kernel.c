@@ -193,7 +193,7 @@ LAR_INLINE void single_scatter_row(int64_t *nodes, const int32_t *a, const int32
 
 /* ---- lane_math.h in float ---------------------------------------------------------------- */
 
-#define LAR_MECHANICS_LANE_MATH_H
+#define LAR_LAW_LANE_MATH_H
 
 /* J^(-1/3): the guess reads the whole float as an integer, within 3.5 % as there. */
 LAR_INLINE single_lane lar_lane_rcbrt(single_lane J) {
@@ -256,10 +256,12 @@ LAR_INLINE single_lane lar_lane_log(single_lane J) {
 
 /* Instead of mechanics/hex8_block.h: 16 elements, and only what the kernel's source names. */
 #define LAR_MECHANICS_HEX8_BLOCK_H
-enum { LAR_BLOCK = LAR_SINGLE_BLOCK };
+enum { LAR_BLOCK = LAR_SINGLE_BLOCK, LAR_BLOCK_PARAMETERS = 3 };
+enum { LAR_MORE_PARAMETERS = LAR_LAW_PARAMETERS - LAR_BLOCK_PARAMETERS };
 typedef enum { LAR_ROWS_NONE, LAR_ROWS_FOUR, LAR_ROWS_EIGHT, LAR_ROWS_COUNT } lar_block_rows;
 typedef enum { LAR_SHAPE_GENERAL, LAR_SHAPE_BOX, LAR_SHAPE_COUNT } lar_block_shape;
 typedef lar_single_head lar_block_head;
+typedef lar_single_more lar_block_more;
 typedef lar_single_general lar_hex8_block;
 typedef lar_single_box lar_box_block;
 typedef struct lar_block_run {
@@ -270,6 +272,7 @@ typedef struct lar_block_run {
     bool streamed;
     int32_t count;
     const void *blocks;
+    const lar_block_more *more;
 } lar_block_run;
 typedef struct lar_hex8_limits {
     float least_volume, stress_square, hourglass_square;
@@ -320,7 +323,8 @@ static void recover_run(const lar_single_run *run, const double *u, int64_t *for
                                 .rows = (lar_block_rows)run->rows,
                                 .turn = run->turn,
                                 .count = run->count,
-                                .blocks = run->blocks};
+                                .blocks = run->blocks,
+                                .more = run->more};
     LAR_KERNELS_NAME.recover(&made, (const float *)(const void *)u, force, &none, NULL);
 }
 

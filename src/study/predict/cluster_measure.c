@@ -12,7 +12,7 @@
 
 #include "base/memory.h"
 #include "divide/traffic.h"
-#include "mechanics/law.h"
+#include "mechanics/stress.h"
 #include "study/bench/comm.h"
 #include "study/bench/scaling.h"
 #include "study/bench/comm_pair.h"

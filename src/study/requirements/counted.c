@@ -116,6 +116,7 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 
 /* Other names for what other files define too. */
 #define lar_law_name                 counted_law_name
+#define lar_law_table                counted_law_table
 #define lar_material_shear           counted_material_shear
 #define lar_material_bulk            counted_material_bulk
 #define lar_material_check           counted_material_check
@@ -137,8 +138,9 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 #define lar_hex8_matrix_force        counted_hex8_matrix_force
 #define lar_kernels_c                counted_kernels
 
+#include "law/law.c"
 #include "model/material.c"
-#include "mechanics/law.c"
+#include "mechanics/stress.c"
 #include "mechanics/hexahedron.c"
 #include "mechanics/hex8_full.c"
 #define FREEDOMS MATRIX_FREEDOMS
@@ -209,6 +211,10 @@ LAR_INLINE lar_lane counted_to_lane(counted a) {
 
 #include "mechanics/hex8_kernel.c"
 
+_Static_assert(sizeof(((lar_counted_block *)NULL)->modulus) ==
+                   LAR_LAW_PARAMETERS * LAR_BLOCK * sizeof(plain),
+               "counted.h knows as many parameters as laws have");
+
 #undef double
 #undef fma
 #undef sqrt
@@ -243,7 +249,7 @@ static void end(lar_operations *counts) {
 }
 
 static void fill_head(const lar_counted_block *from, lar_block_head *to) {
-    widen(&from->modulus[0][0], LAR_LAW_PARAMETERS * LAR_BLOCK, &to->modulus[0][0]);
+    widen(&from->modulus[0][0], LAR_BLOCK_PARAMETERS * LAR_BLOCK, &to->modulus[0][0]);
     widen(&from->stiffness[0][0], LAR_HEX8_HOURGLASS * LAR_BLOCK, &to->stiffness[0][0]);
     memcpy(to->node, from->node, sizeof to->node);
 }
@@ -254,9 +260,11 @@ void lar_counted_recover(int law, bool box, const lar_counted_block *block, cons
     counted displacement[4 * NODES_MOST];
     lar_hex8_block general;
     lar_box_block boxes;
+    lar_block_more more;
     if (nodes > NODES_MOST) return;
     widen(u, 4 * (size_t)nodes, displacement);
     fill_head(block, box ? &boxes.head : &general.head);
+    widen(block->modulus[LAR_BLOCK_PARAMETERS], LAR_MORE_PARAMETERS * LAR_BLOCK, more.modulus[0]);
     if (box) {
         for (int m = 0; m < 3; m++) widen(block->gradient[m][0], LAR_BLOCK, boxes.gradient[m]);
     } else {
@@ -267,7 +275,8 @@ void lar_counted_recover(int law, bool box, const lar_counted_block *block, cons
                                .shape = box ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL,
                                .rows = LAR_ROWS_NONE,
                                .count = 1,
-                               .blocks = box ? (const void *)&boxes : (const void *)&general};
+                               .blocks = box ? (const void *)&boxes : (const void *)&general,
+                               .more = lar_law_has_more((lar_law)law) ? &more : NULL};
     const lar_hex8_limits limits = {1e-3, INFINITY, INFINITY};
     begin();
     counted_kernels.recover(&run, displacement, force, &limits, NULL);
@@ -293,7 +302,7 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
 typedef counted element_force(const counted corner[8][3], const lar_material *material,
                               const counted u[8][3], counted force[8][3]);
 
-static double recover_element(element_force *recover_it, int law, const double parameter[3],
+static double recover_element(element_force *recover_it, int law, const double parameter[LAR_LAW_PARAMETERS],
                               const double corner[8][3], const double u[8][3], double force[8][3],
                               lar_operations *counts) {
     counted wide_corner[8][3], wide_u[8][3], wide_force[8][3];
@@ -309,12 +318,12 @@ static double recover_element(element_force *recover_it, int law, const double p
     return (double)det;
 }
 
-double lar_counted_full(int law, const double parameter[3], const double corner[8][3],
+double lar_counted_full(int law, const double parameter[LAR_LAW_PARAMETERS], const double corner[8][3],
                         const double u[8][3], double force[8][3], lar_operations *counts) {
     return recover_element(lar_hex8_full_force, law, parameter, corner, u, force, counts);
 }
 
-double lar_counted_matrix(int law, const double parameter[3], const double corner[8][3],
+double lar_counted_matrix(int law, const double parameter[LAR_LAW_PARAMETERS], const double corner[8][3],
                           const double u[8][3], double force[8][3], lar_operations *counts) {
     return recover_element(lar_hex8_matrix_force, law, parameter, corner, u, force, counts);
 }

@@ -31,7 +31,7 @@ lar_operations lar_operations_of_node(void);
 typedef struct lar_step_bytes {
     int64_t read, written;
 } lar_step_bytes;
-lar_step_bytes lar_bytes_of_element(lar_kernel_kind kind);
+lar_step_bytes lar_bytes_of_element(lar_kernel_kind kind, int law);
 lar_step_bytes lar_bytes_of_node(void);
 
 #endif

@@ -170,11 +170,12 @@ static lar_status count_division(const lar_model *model, const lar_requirements_
 
 /* ---- what our kernels do -------------------------------------------------------------------- */
 
-static void add_element(lar_requirements_kernel *k, lar_kernel_kind kind, const lar_operations *o,
-                        double elements) {
-    lar_step_bytes bytes = lar_bytes_of_element(kind);
-    k->floating += elements * (double)lar_operations_floating(o);
-    k->operations += elements * (double)lar_operations_all(o);
+static void add_elements(lar_requirements_kernel *k, lar_kernel_kind kind, int law,
+                         double elements) {
+    lar_operations o = lar_operations_of_element(kind, law);
+    lar_step_bytes bytes = lar_bytes_of_element(kind, law);
+    k->floating += elements * (double)lar_operations_floating(&o);
+    k->operations += elements * (double)lar_operations_all(&o);
     k->bytes += elements * (double)(bytes.read + bytes.written);
 }
 
@@ -206,8 +207,7 @@ static lar_status count_hex8(const lar_model *model, lar_requirements *r, lar_er
         *shape = (lar_requirements_shape){.kind = kind, .lanes = lanes[s]};
         for (int law = 0; law < LAR_LAW_COUNT; law++) {
             if (elements[s][law] == 0) continue;
-            lar_operations o = lar_operations_of_element(kind, law);
-            add_element(&r->kernel[LAR_NEEDS_HEX8], kind, &o, (double)elements[s][law]);
+            add_elements(&r->kernel[LAR_NEEDS_HEX8], kind, law, (double)elements[s][law]);
             shape->elements += elements[s][law];
         }
     }
@@ -222,11 +222,8 @@ static lar_status count_kernels(const lar_model *model, lar_requirements *r, lar
         elements[lar_model_material_of(model, e)->law]++;
     for (int law = 0; law < LAR_LAW_COUNT; law++) {
         if (elements[law] == 0) continue;
-        lar_operations full = lar_operations_of_element(LAR_KERNEL_FULL, law);
-        lar_operations matrix = lar_operations_of_element(LAR_KERNEL_MATRIX, law);
-        add_element(&r->kernel[LAR_NEEDS_FULL], LAR_KERNEL_FULL, &full, (double)elements[law]);
-        add_element(&r->kernel[LAR_NEEDS_MATRIX], LAR_KERNEL_MATRIX, &matrix,
-                    (double)elements[law]);
+        add_elements(&r->kernel[LAR_NEEDS_FULL], LAR_KERNEL_FULL, law, (double)elements[law]);
+        add_elements(&r->kernel[LAR_NEEDS_MATRIX], LAR_KERNEL_MATRIX, law, (double)elements[law]);
     }
     for (int k = 0; k < LAR_NEEDS; k++) add_nodes(&r->kernel[k], model->mesh.node_count);
     r->kernel[LAR_NEEDS_HEX8].name = "hex8";

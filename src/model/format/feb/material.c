@@ -1,9 +1,7 @@
 /* FEBio decks: <Material> and <MeshDomains>. See feb.h.
  *
- * Parameters are converted to those of Lariat's laws:
- *   neo-Hookean    W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2,
- *                  mu = E / (2 (1 + v)), lambda = E v / ((1 + v) (1 - 2 v))
- *   Mooney-Rivlin  W = c1 (I1' - 3) + c2 (I2' - 3) + k/2 (ln J)^2 (pressure_model "default")
+ * Which types are read, by which parameters, and what becomes of them stands in the rows of the
+ * laws (law/law.h).
  */
 #include "model/format/feb/feb.h"
 
@@ -112,38 +110,70 @@ static lar_status read_density(lar_feb *feb, const xmlNode *node, lar_material *
     return lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
 }
 
-static lar_status read_neo_hookean(lar_feb *feb, const xmlNode *node, lar_material *material) {
-    static const char *const known[] = {"density", "E", "v", NULL};
-    double young = 0.0, poisson = 0.0;
-    lar_status status = read_parameter(feb, node, "E", true, &young);
-    if (!status) status = read_parameter(feb, node, "v", true, &poisson);
-    if (status) return status;
-    if (!(poisson > -1.0 && poisson < 0.5))
+/* Lariat has one answer to a change of volume for each law. */
+static lar_status check_pressure_model(lar_feb *feb, const xmlNode *node,
+                                       const lar_law_dialect *dialect) {
+    const xmlNode *pressure = dialect->volume ? lar_feb_child(node, "pressure_model") : NULL;
+    if (!pressure) return LAR_OK;
+    lar_span model = lar_feb_text(feb, pressure);
+    if (lar_span_equal(model, "default") || lar_span_equal(model, "0")) return LAR_OK;
+    return lar_feb_fail(feb, pressure, LAR_ERROR_UNSUPPORTED,
+                        "pressure_model '%.*s' is not read; Lariat has FEBio's default, %s",
+                        (int)(model.length < 40 ? model.length : 40), model.at, dialect->volume);
+}
+
+static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_row *law,
+                              const lar_law_parameter *of, double value) {
+    if (of->value == LAR_VALUE_RATIO && !(value > -1.0 && value < 0.5))
         return lar_feb_fail(feb, node, LAR_ERROR_MODEL,
-                            "Poisson's ratio v = %g is not between -1 and 0.5; correct it",
-                            poisson);
-    material->law = LAR_LAW_coupled_neo_hookean;
-    material->parameter[0] = young / (2.0 * (1.0 + poisson));
-    material->parameter[1] = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+                            "Poisson's ratio %s = %g is not between -1 and 0.5; correct it",
+                            of->name, value);
+    if (of->value == LAR_VALUE_NOT_OURS && value != 0.0)
+        return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                            "the parameter <%s> is %g; Lariat's %s law does not have that term, "
+                            "give it 0 or remove it",
+                            of->name, value, law->title);
+    return LAR_OK;
+}
+
+static lar_status read_law(lar_feb *feb, const xmlNode *node, lar_law law, lar_material *material) {
+    const lar_law_dialect *dialect = lar_law_table[law].febio;
+    const char *known[LAR_LAW_GIVEN + 3] = {"density"};
+    double given[LAR_LAW_GIVEN] = {0};
+    material->law = law;
+    lar_status status = check_pressure_model(feb, node, dialect);
+    for (int i = 0; i < dialect->count && !status; i++) {
+        const lar_law_parameter *of = &dialect->parameter[i];
+        bool needed = of->value != LAR_VALUE_OPTIONAL && of->value != LAR_VALUE_NOT_OURS;
+        known[1 + i] = of->name;
+        status = read_parameter(feb, node, of->name, needed, &given[i]);
+    }
+    for (int i = 0; i < dialect->count && !status; i++)
+        status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
+    if (status) return status;
+    dialect->read(given, material->parameter);
+    known[1 + dialect->count] = dialect->volume ? "pressure_model" : NULL;
     return lar_feb_notice_others(feb, node, known);
 }
 
-static lar_status read_mooney_rivlin(lar_feb *feb, const xmlNode *node, lar_material *material) {
-    static const char *const known[] = {"density", "c1", "c2", "k", "pressure_model", NULL};
-    const xmlNode *pressure = lar_feb_child(node, "pressure_model");
-    if (pressure) {
-        lar_span model = lar_feb_text(feb, pressure);
-        if (!lar_span_equal(model, "default") && !lar_span_equal(model, "0"))
-            return lar_feb_fail(feb, pressure, LAR_ERROR_UNSUPPORTED,
-                                "pressure_model '%.*s' is not read; Lariat has FEBio's default, "
-                                "k/2 (ln J)^2",
-                                (int)(model.length < 40 ? model.length : 40), model.at);
-    }
-    material->law = LAR_LAW_mooney_rivlin;
-    lar_status status = read_parameter(feb, node, "c1", true, &material->parameter[0]);
-    if (!status) status = read_parameter(feb, node, "c2", false, &material->parameter[1]);
-    if (!status) status = read_parameter(feb, node, "k", true, &material->parameter[2]);
-    return status ? status : lar_feb_notice_others(feb, node, known);
+/* The law that FEBio calls so, LAR_LAW_COUNT when there is none. */
+static lar_law find_law(const char *type) {
+    int law = 0;
+    while (law < LAR_LAW_COUNT &&
+           !(lar_law_table[law].febio->name && strcmp(type, lar_law_table[law].febio->name) == 0))
+        law++;
+    return (lar_law)law;
+}
+
+static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *type) {
+    const char *name[LAR_LAW_COUNT];
+    char list[200];
+    int count = 0;
+    for (int law = 0; law < LAR_LAW_COUNT; law++)
+        if (lar_law_table[law].febio->name) name[count++] = lar_law_table[law].febio->name;
+    lar_text_list(name, count, list, sizeof list);
+    return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                        "material type '%.60s' is not read; of FEBio's, Lariat has %s", type, list);
 }
 
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
@@ -157,15 +187,9 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     if (!material->name) return lar_feb_no_memory(feb, "the materials");
     status = read_density(feb, entry->node, material);
     if (status) return status;
-    if (strcmp(type, "neo-Hookean") == 0)
-        status = read_neo_hookean(feb, entry->node, material);
-    else if (strcmp(type, "Mooney-Rivlin") == 0)
-        status = read_mooney_rivlin(feb, entry->node, material);
-    else
-        return lar_feb_fail(feb, entry->node, LAR_ERROR_UNSUPPORTED,
-                            "material type '%.60s' is not read; of FEBio's, Lariat has "
-                            "neo-Hookean and Mooney-Rivlin",
-                            type);
+    lar_law law = find_law(type);
+    if (law == LAR_LAW_COUNT) return refuse_type(feb, entry->node, type);
+    status = read_law(feb, entry->node, law, material);
     if (status) return status;
     char where[300];
     snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));

@@ -1,15 +1,14 @@
 /* Abaqus and CalculiX decks: materials and sections. See deck.h.
  *
- * Their parameters and ours:
- *   *ELASTIC E, nu                  neo-Hookean with the same G and K: equal at small strain
- *   *HYPERELASTIC, NEO HOOKE        U = C10 (I1' - 3) + (J - 1)^2 / D1 is neo-Hookean with
- *                                   G = 2 C10, K = 2 / D1
- *   *HYPERELASTIC, MOONEY-RIVLIN    U = C10 (I1' - 3) + C01 (I2' - 3) + (J - 1)^2 / D1; Lariat's
- * has K/2 (ln J)^2, equal where the volume changes little
+ *   *ELASTIC E, nu     neo-Hookean with the same G and K: equal at small strain
+ *   *HYPERELASTIC      which of them are read, by which constants, and what becomes of them stands
+ * in the rows of the laws (law/law.h). Of a law's terms only those count that are not zero:
+ * Mooney-Rivlin without C01 is neo-Hookean, to the letter.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/format/inp/deck.h"
 #include "model/rest.h"
@@ -115,47 +114,100 @@ lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
     return check_law(deck, material);
 }
 
-static lar_status read_constants(inp_deck *deck, const inp_card *card, inp_material *material,
-                                 const lar_span *field, int count, bool mooney) {
-    double c10, c01 = 0.0, d1 = 0.0;
-    int last = mooney ? 2 : 1;
-    lar_status status = inp_number(deck, field, count, 0, "C10", &c10);
-    if (!status && mooney) status = inp_number(deck, field, count, 1, "C01", &c01);
-    if (!status) status = inp_optional(deck, field, count, last, "D1", 0.0, &d1);
-    if (status) return status;
-    if (!(d1 > 0.0))
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "D1 is %g, which asks for a material that cannot change its volume; give "
-                        "it D1 = 2 / K, with a bulk modulus K of some hundred times C10",
-                        d1);
-    bool plain = c01 == 0.0; /* then our law is theirs to the letter */
-    status = take_law(deck, card, material, plain ? LAR_LAW_neo_hookean : LAR_LAW_mooney_rivlin);
-    if (status) return status;
-    double *p = material->value.parameter;
-    if (plain) {
-        p[0] = 2.0 * c10;
-        p[1] = 2.0 / d1;
-    } else {
-        p[0] = c10;
-        p[1] = c01;
-        p[2] = 2.0 / d1;
+/* The constants of a law, in the order of its deck. */
+static lar_status read_constants(inp_deck *deck, const inp_card *card, const lar_law_row *law,
+                                 const lar_span *field, int fields, double *given) {
+    const lar_law_dialect *dialect = law->abaqus;
+    for (int i = 0; i < dialect->count; i++) {
+        const lar_law_parameter *of = &dialect->parameter[i];
+        lar_status status = of->value == LAR_VALUE_CONSTANT
+                                ? inp_number(deck, field, fields, i, of->name, &given[i])
+                                : inp_optional(deck, field, fields, i, of->name, 0.0, &given[i]);
+        if (status) return status;
     }
-    return check_law(deck, material);
+    for (int i = 0; i < dialect->count; i++) {
+        const lar_law_parameter *of = &dialect->parameter[i];
+        if (of->value == LAR_VALUE_SOFTNESS && !(given[i] > 0.0))
+            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                            "%s is %g, which asks for a material that cannot change its volume; "
+                            "give it %s = 2 / K, with a bulk modulus K of some hundred times C10",
+                            of->name, given[i], of->name);
+        if (of->value == LAR_VALUE_NOT_OURS && given[i] != 0.0)
+            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                            "%s is %g; Lariat's %s law does not have that term, give it 0 or leave "
+                            "it out",
+                            of->name, given[i], law->title);
+    }
+    return LAR_OK;
+}
+
+static int find_constant(const lar_law_dialect *dialect, const char *name) {
+    for (int i = 0; i < dialect->count; i++)
+        if (strcmp(dialect->parameter[i].name, name) == 0) return i;
+    return -1;
+}
+
+/* Whether a law has every constant of another one that is not zero; then *own are they. */
+static bool has_constants(const lar_law_dialect *dialect, const lar_law_dialect *asked,
+                          const double *given, double *own) {
+    memset(own, 0, LAR_LAW_GIVEN * sizeof *own);
+    for (int i = 0; i < asked->count; i++) {
+        int at = find_constant(dialect, asked->parameter[i].name);
+        if (at < 0 && given[i] != 0.0) return false;
+        if (at >= 0) own[at] = given[i];
+    }
+    return dialect->count > 0;
+}
+
+/* The law that a card asks for: LAR_LAW_COUNT, none of ours. */
+static lar_law asked_law(const inp_card *card) {
+    lar_span ignored;
+    for (int law = LAR_LAW_COUNT - 1; law >= 0; law--) {
+        const char *name = lar_law_table[law].abaqus->name;
+        if (name && inp_parameter(card, name, &ignored)) return (lar_law)law;
+    }
+    return LAR_LAW_COUNT;
+}
+
+/* What Abaqus calls our laws; ends with NULL. */
+static int list_laws(const char *name[LAR_LAW_COUNT + 1]) {
+    int count = 0;
+    for (int law = 0; law < LAR_LAW_COUNT; law++)
+        if (lar_law_table[law].abaqus->name) name[count++] = lar_law_table[law].abaqus->name;
+    name[count] = NULL;
+    return count;
+}
+
+static lar_status refuse_law(inp_deck *deck, const inp_card *card) {
+    const char *name[LAR_LAW_COUNT + 1];
+    char list[200];
+    lar_text_list(name, list_laws(name), list, sizeof list);
+    return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                    "this kind of *HYPERELASTIC is not read; Lariat has %s, with constants", list);
 }
 
 lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"NEO HOOKE", "MOONEY-RIVLIN", "MODULI", NULL};
-    lar_span ignored, field[4];
-    int count;
+    const char *known[LAR_LAW_COUNT + 2];
+    lar_span field[LAR_LAW_GIVEN + 1]; /* and a temperature */
+    double given[LAR_LAW_GIVEN] = {0}, own[LAR_LAW_GIVEN];
+    int fields, count = list_laws(known);
     inp_material *material;
-    bool mooney = inp_parameter(card, "MOONEY-RIVLIN", &ignored);
-    if (!mooney && !inp_parameter(card, "NEO HOOKE", &ignored))
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "this kind of *HYPERELASTIC is not read; Lariat has NEO HOOKE and "
-                        "MOONEY-RIVLIN, with constants");
+    lar_law asked = asked_law(card), law = 0;
+    if (asked == LAR_LAW_COUNT) return refuse_law(deck, card);
+    known[count] = "MODULI";
+    known[count + 1] = NULL;
     lar_status status = inp_only(deck, card, known);
-    if (!status) status = read_option(deck, card, field, 4, &count, &material);
-    return status ? status : read_constants(deck, card, material, field, count, mooney);
+    if (!status)
+        status = read_option(deck, card, field, lar_law_table[asked].abaqus->count + 1, &fields,
+                             &material);
+    if (!status) status = read_constants(deck, card, &lar_law_table[asked], field, fields, given);
+    if (status) return status;
+    while (!has_constants(lar_law_table[law].abaqus, lar_law_table[asked].abaqus, given, own))
+        law++; /* as far as the one that is asked for */
+    status = take_law(deck, card, material, law);
+    if (status) return status;
+    lar_law_table[law].abaqus->read(own, material->value.parameter);
+    return check_law(deck, material);
 }
 
 lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
@@ -258,12 +310,13 @@ static lar_status notice_law(inp_deck *deck, const inp_material *material) {
                           "material '%.60s' is linear elastic; Lariat takes the neo-Hookean law "
                           "with the same moduli, which is equal at small strain only",
                           material->name);
-    if (material->value.law == LAR_LAW_mooney_rivlin)
+    const lar_law_row *law = &lar_law_table[material->value.law];
+    if (law->abaqus->volume)
         return inp_notice(deck, material->line,
-                          "material '%.60s': Lariat's Mooney-Rivlin law answers a change of volume "
-                          "by K/2 (ln J)^2 instead of (J - 1)^2 / D1, which is equal where the "
-                          "volume changes little",
-                          material->name);
+                          "material '%.60s': Lariat's %s law answers a change of volume by %s "
+                          "instead of (J - 1)^2 / D1, which is equal where the volume changes "
+                          "little",
+                          material->name, law->title, law->abaqus->volume);
     return LAR_OK;
 }
 

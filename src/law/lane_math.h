@@ -1,8 +1,8 @@
 /* Functions of a lane that must have the same bits on every machine: no libm, a fixed number of
  * operations, no branches.
  */
-#ifndef LAR_MECHANICS_LANE_MATH_H
-#define LAR_MECHANICS_LANE_MATH_H
+#ifndef LAR_LAW_LANE_MATH_H
+#define LAR_LAW_LANE_MATH_H
 
 #include "base/simd.h"
 
