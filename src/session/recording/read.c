@@ -173,7 +173,8 @@ static lar_status take_record(lar_recording_reader *reader, const uint64_t *word
         return lar_recording_refuse(reader, error, "goes back in time; it was altered");
     if (record->kind != LAR_RECORD_STATE && is_too_late(reader, record->step))
         return lar_recording_refuse(
-            reader, error, "comes far more steps after the last state hash than hashes are apart; it was altered");
+            reader, error,
+            "comes far more steps after the last state hash than hashes are apart; it was altered");
     reader->step = record->kind == LAR_RECORD_RESET ? 0 : record->step;
     if (record->kind == LAR_RECORD_STATE || record->kind == LAR_RECORD_RESET ||
         record->kind == LAR_RECORD_HASH)
