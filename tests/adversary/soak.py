@@ -147,7 +147,11 @@ class Soak:
             self.fail(f"{name}: no address: {session.errors()}")
             session.end(signal.SIGKILL)
             return None
-        samples = self.live(name, session, seconds, folder, recorded)
+        try:
+            samples = self.live(name, session, seconds, folder, recorded)
+        except BaseException:
+            session.end(signal.SIGKILL)
+            raise
         status = session.end(signal.SIGINT)
         if status not in (0, 3):
             self.fail(f"{name}: ends with {status}: {session.errors()[-2000:]}")
@@ -301,6 +305,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=30)
     parser.add_argument("--seed", type=int, default=1)
     settings = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what is mounted is let go
     shutil.rmtree(settings.scratch, ignore_errors=True)
     os.makedirs(settings.scratch)
     soak = Soak(settings)
