@@ -390,8 +390,8 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t 
 }
 
 /* Without contact of bodies and tools one stretch. */
-lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
-                                void *context, lar_trip *trip, lar_error *error) {
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
+                                lar_watch *watch, void *context, lar_trip *trip, lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
     const uint64_t *step = &computer->processor[0].worker[0].state.step;
     uint64_t end = *step + steps;
@@ -400,10 +400,9 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     computer->watch_context = context;
     computer->called_off = false;
     /* A trip before the first stretch leaves no step over which these could be a mean. */
-    memset(computer->report.tool, 0, sizeof computer->report.tool);
-    lar_interval_restart(&computer->interval);
-    if (steps == 0) return LAR_OK; /* what is decided before a step is decided once */
-    for (bool first = true; first || *step < end; first = false) {
+    if (first) memset(computer->report.tool, 0, sizeof computer->report.tool);
+    if (first) lar_interval_restart(&computer->interval);
+    for (; *step < end; first = false) { /* what is decided before a step is decided once */
         uint64_t begin = *step;
         status = lar_contact_refresh(computer, trip, error);
         if (status || trip->kind) break;

@@ -90,9 +90,11 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
 void lar_computer_destroy(lar_computer *computer);
 
 /* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
- * stopped everyone: *trip is then the first one. Processor zero only. */
-lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
-                                void *context, lar_trip *trip, lar_error *error);
+ * stopped everyone: *trip is then the first one. `first`: of the portions of an advance, which have
+ * one report together. Processor zero only. */
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
+                                lar_watch *watch, void *context, lar_trip *trip,
+                                lar_error *error);
 
 /* The state of all processors into that of the whole model, and back to all processors: they go on
  * from there, whatever has tripped before. Processor zero only. */

@@ -128,6 +128,7 @@ static lar_status end_player(lar_session *session, const lar_request *request, l
 static lar_status change_player(lar_session *session, const lar_request *request,
                                 lar_error *error) {
     lar_player *fresh = request->player;
+    if (!fresh && !session->player) return LAR_OK; /* nothing to leave: the run goes on as it was */
     if (!fresh) return end_player(session, request, lar_session_arrive(session, error));
     request->answer->player = fresh;
     if (session->status.recording)

@@ -230,25 +230,29 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
     return goes_on;
 }
 
-static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+/* `first`: of the portions of an advance. False when the watch has stopped it. */
+static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first, lar_watch *watch,
                           void *context) {
     const uint64_t *step = &simulation->state.step;
-    uint64_t end = *step + steps;
     bool goes_on = true;
-    lar_report_begin(&simulation->domain.acting);
-    lar_interval_restart(&simulation->interval);
+    if (first) lar_report_begin(&simulation->domain.acting);
+    if (first) lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
         uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
         goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
     }
+    return goes_on;
 }
+
+enum { STEPS_BETWEEN_LOOKS = 32 }; /* at what contact has given */
 
 /* Contact may keep or lose energy, but must not have given more than it took: then the bodies would
  * have more than they began with. Surfaces that fold over themselves do that to it. What counts as
  * nothing is measured by the energy of the bodies, which is asked for only when contact is behind
  * by more than it was the last time, or may be: what a report has lacks half of its last step,
- * which is taken for as much as all steps since the last report. */
+ * which is taken for as much as all steps since the last look. The steps of looks are the same
+ * however a run is divided into advances, and intervals end there (step/interval.h). */
 static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3;
     double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
@@ -268,22 +272,51 @@ static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     return LAR_OK;
 }
 
+/* Up to the step `end`, or less far when the watch or a trip stops it: *goes_on is false then. */
+static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool first,
+                                  lar_watch *watch, void *context, bool *goes_on,
+                                  lar_error *error) {
+    lar_computer *computer = simulation->computer;
+    lar_status status = LAR_OK;
+    if (computer) {
+        uint64_t steps = end - lar_simulation_steps(simulation);
+        status =
+            lar_computer_advance(computer, steps, first, watch, context, &simulation->trip, error);
+        simulation->report = computer->report;
+        simulation->gathered = false;
+        *goes_on = !computer->called_off;
+    } else {
+        *goes_on = advance_alone(simulation, end, first, watch, context);
+    }
+    if (status || simulation->trip.kind) *goes_on = false;
+    return status;
+}
+
+static lar_status advance(lar_simulation *simulation, uint64_t end, lar_watch *watch, void *context,
+                          lar_error *error) {
+    lar_status status = LAR_OK;
+    uint64_t step = lar_simulation_steps(simulation);
+    bool goes_on = true;
+    for (bool first = true; !status && goes_on && (first || step < end); first = false) {
+        uint64_t look = (step / STEPS_BETWEEN_LOOKS + 1) * STEPS_BETWEEN_LOOKS;
+        status = advance_portion(simulation, look < end ? look : end, first, watch, context,
+                                 &goes_on, error);
+        step = lar_simulation_steps(simulation);
+        if (status || simulation->trip.kind || step % STEPS_BETWEEN_LOOKS != 0) continue;
+        status = watch_contact(simulation, error);
+        if (simulation->trip.kind) goes_on = false;
+    }
+    return status;
+}
+
 lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
                                   void *context, lar_error *error) {
-    lar_computer *computer = simulation->computer;
     lar_trip *trip = &simulation->trip;
     lar_status status = LAR_OK;
     if (!trip->kind) {
         uint64_t before = lar_simulation_steps(simulation);
-        if (computer) {
-            status = lar_computer_advance(computer, steps, watch, context, trip, error);
-            simulation->report = computer->report;
-            simulation->gathered = false;
-        } else {
-            advance_alone(simulation, steps, watch, context);
-        }
+        status = advance(simulation, before + steps, watch, context, error);
         simulation->report_steps = lar_simulation_steps(simulation) - before;
-        if (!status && !trip->kind) status = watch_contact(simulation, error);
     }
     if (!status) lar_trip_blame(&simulation->domain, trip);
     return status ? status : lar_trip_report(&simulation->domain, trip, error);

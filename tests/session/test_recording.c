@@ -277,6 +277,30 @@ static void settings_are_played(void **unused) {
     lar_bytes_free(&file);
 }
 
+/* Who leaves a recording that is not played disturbs neither the run nor its hashes. */
+static void nothing_to_leave_changes_nothing(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    options.record = PATH;
+    options.hash_every = 50;
+    bench b = open_bench(NULL, 0, &options);
+    DONE(lar_session_start(b.session, &failure));
+    for (int i = 0; i < 20; i++) {
+        lead(&b, 20);
+        DONE(lar_session_replay(b.session, NULL, &failure));
+    }
+    close_bench(&b);
+    reload();
+    uint64_t before = 0, ticks = 2 * *word_at(64);
+    for (size_t at = FIRST; at < file.size; at = behind(at)) {
+        if (*word_at(at) != LAR_RECORD_HASH) continue;
+        assert_true(*word_at(at + 16) - before <= 50 + ticks);
+        before = *word_at(at + 16);
+    }
+    assert_true(before >= 400);
+    lar_bytes_free(&file);
+}
+
 /* Version 1 is what is left without settings. */
 static void recordings_of_before_are_played(void **unused) {
     (void)unused;
@@ -302,6 +326,7 @@ static void forged_files_are_refused(void **unused) {
     } forged[] = {
         {LAR_RECORD_MOVE, 3, 0, 0, "back in time"},
         {LAR_RECORD_MOVE, 3, 0, UINT64_MAX, "beyond all range"},
+        {LAR_RECORD_MOVE, 3, 0, 1u << 31, "more steps after the last state hash"},
         {LAR_RECORD_MOVE, 3, 1, 3, "a tool that the recording does not have"},
         {LAR_RECORD_MOVE, 3, 2, 0, "where none can be"},
         {LAR_RECORD_MOVE, 3, 3, 0x7ff8000000000000, "where none can be"},
@@ -594,6 +619,7 @@ static void replays_can_be_ended(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(plays_on_every_grid),
                                        cmocka_unit_test(broken_runs_break_again),
+                                       cmocka_unit_test(nothing_to_leave_changes_nothing),
                                        cmocka_unit_test(first_difference_is_named),
                                        cmocka_unit_test(damage_is_found),
                                        cmocka_unit_test(settings_are_played),

@@ -81,6 +81,7 @@ typedef struct lar_recording_reader {
     uint64_t checksum;
     uint64_t number; /* records so far */
     uint64_t step;   /* of the latest record */
+    uint64_t known;  /* of the latest state, reset or hash */
     lar_recording_header header;
 } lar_recording_reader;
 

@@ -155,6 +155,14 @@ static lar_status take_setting(const lar_recording_reader *reader, const uint64_
     return LAR_OK;
 }
 
+/* Hashes come every hash_every steps and a tick. What lies a thousand times as far behind the last
+ * one would make whoever plays it compute for ever. */
+static bool is_too_late(const lar_recording_reader *reader, uint64_t step) {
+    const lar_recording_header *h = &reader->header;
+    uint64_t after = (step - reader->known) / 1000;
+    return after > h->tick_steps && after - h->tick_steps > h->hash_every;
+}
+
 /* Only a reset or a new state goes back in time. */
 static lar_status take_record(lar_recording_reader *reader, const uint64_t *word,
                               lar_record *record, lar_error *error) {
@@ -163,7 +171,14 @@ static lar_status take_record(lar_recording_reader *reader, const uint64_t *word
         return lar_recording_refuse(reader, error, "has a step beyond all range; it was altered");
     if (record->kind != LAR_RECORD_STATE && record->step < reader->step)
         return lar_recording_refuse(reader, error, "goes back in time; it was altered");
+    if (record->kind != LAR_RECORD_STATE && is_too_late(reader, record->step))
+        return lar_recording_refuse(
+            reader, error,
+            "comes far more steps after the last state hash than hashes are apart; it was altered");
     reader->step = record->kind == LAR_RECORD_RESET ? 0 : record->step;
+    if (record->kind == LAR_RECORD_STATE || record->kind == LAR_RECORD_RESET ||
+        record->kind == LAR_RECORD_HASH)
+        reader->known = reader->step;
     if (record->kind == LAR_RECORD_HASH) record->hash = word[1];
     if (record->kind == LAR_RECORD_SET) return take_setting(reader, word, record, error);
     return record->kind == LAR_RECORD_MOVE ? take_move(reader, word, record, error) : LAR_OK;
