@@ -29,6 +29,7 @@ typedef struct tree_node {
  * same bits on it, and are equally near. */
 typedef struct leaf_triangle {
     double at[3][3];
+    float lower[3], upper[3]; /* a box around it, rounded outwards */
     int32_t triangle;
     uint8_t corner[3]; /* which of the triangle's it is */
 } leaf_triangle;
@@ -207,6 +208,11 @@ static leaf_triangle leaf_of(const lar_triangles *surface, int32_t triangle) {
             }
     for (int a = 0; a < 3; a++)
         memcpy(leaf.at[a], surface->vertex[corner[leaf.corner[a]]], sizeof leaf.at[a]);
+    const box around = box_around(leaf.at[0], leaf.at[1], leaf.at[2]);
+    for (int i = 0; i < 3; i++) {
+        leaf.lower[i] = nextafterf((float)around.lower[i], -INFINITY);
+        leaf.upper[i] = nextafterf((float)around.upper[i], INFINITY);
+    }
     return leaf;
 }
 
@@ -320,10 +326,16 @@ static void nearest_on_triangle(const leaf_triangle *leaf, const double p[3],
     }
 }
 
+/* How far p lies beyond one of two ends. Without a branch, which would go one way as often as the
+ * other: of x and 0 the larger one is (x + |x|) / 2, exactly. */
+static double beyond(double lower, double upper, double p) {
+    const double below = lower - p, above = p - upper;
+    return 0.5 * ((below + fabs(below)) + (above + fabs(above)));
+}
+
 static double box_distance(const box *around, const double p[3]) {
     double away[3];
-    for (int i = 0; i < 3; i++)
-        away[i] = larger(larger(around->lower[i] - p[i], p[i] - around->upper[i]), 0);
+    for (int i = 0; i < 3; i++) away[i] = beyond(around->lower[i], around->upper[i], p[i]);
     return square(away);
 }
 
@@ -337,19 +349,15 @@ typedef struct waiting {
 
 /* To the box around a triangle: cheaper than to the triangle itself, and mostly enough. */
 static double leaf_box_distance(const leaf_triangle *leaf, const double p[3]) {
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        const double a = leaf->at[0][i] - p[i], b = leaf->at[1][i] - p[i],
-                     c = leaf->at[2][i] - p[i];
-        const double away = larger(larger(smaller(smaller(a, b), c), -larger(larger(a, b), c)), 0);
-        sum += away * away;
-    }
-    return sum;
+    double away[3];
+    for (int i = 0; i < 3; i++) away[i] = beyond(leaf->lower[i], leaf->upper[i], p[i]);
+    return square(away);
 }
 
+/* Goes on until `best` is nearest, or with `any` until something is as near as that asks. */
 static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf, const double p[3],
-                           lar_nearest *best) {
-    for (int32_t k = 0; k < leaf->count; k++) {
+                           bool any, lar_nearest *best) {
+    for (int32_t k = 0; k < leaf->count && !(any && best->triangle >= 0); k++) {
         lar_nearest candidate;
         if (leaf_box_distance(&tree->leaf[leaf->next + k], p) > best->distance * SLACK) continue;
         nearest_on_triangle(&tree->leaf[leaf->next + k], p, &candidate);
@@ -360,19 +368,20 @@ static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf,
     }
 }
 
-bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
-                               lar_nearest *nearest) {
+/* The nearest triangle, or the first that is found within reach; best.triangle < 0: none is. */
+static lar_nearest descend(const lar_triangle_tree *tree, const double point[3], double reach,
+                           bool any) {
     lar_nearest best = {.triangle = -1, .distance = reach * reach};
     waiting stack[STACK];
     int height = 0;
     if (tree->node_count > 0 && reach >= 0)
         stack[height++] = (waiting){0, box_distance(&tree->node[0].box, point)};
-    while (height > 0) {
+    while (height > 0 && !(any && best.triangle >= 0)) {
         waiting next = stack[--height];
         while (next.distance <= best.distance * SLACK) {
             const tree_node *node = &tree->node[next.node];
             if (node->count > 0) {
-                look_into_leaf(tree, node, point, &best);
+                look_into_leaf(tree, node, point, any, &best);
                 break;
             }
             waiting near = {next.node + 1, box_distance(&node[1].box, point)};
@@ -386,10 +395,20 @@ bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point
             next = near;
         }
     }
+    return best;
+}
+
+bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
+                               lar_nearest *nearest) {
+    lar_nearest best = descend(tree, point, reach, false);
     if (best.triangle < 0) return false;
     best.distance = sqrt(best.distance);
     *nearest = best;
     return true;
+}
+
+bool lar_triangle_tree_is_near(const lar_triangle_tree *tree, const double point[3], double reach) {
+    return descend(tree, point, reach, true).triangle >= 0;
 }
 
 /* ---- boxes -------------------------------------------------------------------------------- */
