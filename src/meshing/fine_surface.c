@@ -32,10 +32,9 @@ typedef struct question {
 
 static void find_near(void *context, int32_t first, int32_t end) {
     const question *q = context;
-    lar_nearest nearest;
     for (int32_t v = first; v < end; v++)
-        q->is_near[v] = lar_triangle_tree_nearest(q->skin.tree, q->surface->vertex[v],
-                                                  NEAR * q->size, &nearest);
+        q->is_near[v] =
+            lar_triangle_tree_is_near(q->skin.tree, q->surface->vertex[v], NEAR * q->size);
 }
 
 static void find_shells(question *q, shells *found) {
@@ -98,6 +97,7 @@ static void draw_some(void *context, int32_t first, int32_t end) {
     for (int32_t v = first; v < end; v++) {
         double *vertex = q->surface->vertex[v];
         lar_nearest nearest;
+        if (lar_triangle_tree_is_near(q->skin.tree, vertex, FAR * q->size)) continue;
         if (!lar_triangle_tree_nearest(q->skin.tree, vertex, INFINITY, &nearest)) continue;
         if (nearest.distance > FAR * q->size) memcpy(vertex, nearest.point, sizeof nearest.point);
     }

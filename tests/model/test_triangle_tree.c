@@ -92,6 +92,9 @@ static void test_soup_against_all(void **state) {
         assert_below(fabs(brute_distance(&soup, found.triangle, p) - least), 1e-7 * (least + 1e-3));
         assert_false(lar_triangle_tree_nearest(tree, p, 0.999 * found.distance, &found));
         assert_true(lar_triangle_tree_nearest(tree, p, 1.001 * found.distance, &found));
+        assert_false(lar_triangle_tree_is_near(tree, p, 0.999 * found.distance));
+        assert_true(lar_triangle_tree_is_near(tree, p, 1.001 * found.distance));
+        assert_true(lar_triangle_tree_is_near(tree, p, INFINITY));
     }
     lar_triangle_tree_destroy(tree);
     lar_triangles_clear(&soup);

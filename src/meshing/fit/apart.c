@@ -29,7 +29,7 @@ static const double ALIKE = 0.8;
 void lar_fit_apart_clear(lar_fit_apart *apart) {
     void *const owned[] = {apart->face,    apart->start,      apart->around, apart->watched,
                            apart->from,    apart->near_start, apart->near,   apart->awake,
-                           apart->crosses, apart->way,        apart->strict, apart->ring};
+                           apart->crosses, apart->extent,     apart->strict, apart->ring};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     *apart = (lar_fit_apart){0};
 }
@@ -44,12 +44,12 @@ lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
     apart->crosses = lar_calloc((size_t)apart->count, sizeof *apart->crosses);
     apart->strict = lar_calloc((size_t)apart->count, sizeof *apart->strict);
     apart->ring = lar_calloc(nodes, sizeof *apart->ring);
-    apart->way = lar_calloc((size_t)apart->count, sizeof *apart->way);
+    apart->extent = lar_calloc((size_t)apart->count, sizeof *apart->extent);
     apart->near_start = lar_calloc((size_t)apart->count + 1, sizeof *apart->near_start);
     apart->watched = lar_calloc(nodes, sizeof *apart->watched);
     apart->awake = lar_calloc(nodes, sizeof *apart->awake);
     apart->from = lar_calloc(nodes, sizeof *apart->from);
-    bool ready = apart->face && apart->crosses && apart->strict && apart->ring && apart->way &&
+    bool ready = apart->face && apart->crosses && apart->strict && apart->ring && apart->extent &&
                  apart->near_start && apart->watched && apart->awake && apart->from;
     for (int32_t f = 0; ready && f < apart->count; f++)
         for (int a = 0; a < 4; a++)
@@ -110,6 +110,22 @@ static bool is_among(const bool *marked, const int32_t face[4]) {
     return marked[face[0]] || marked[face[1]] || marked[face[2]] || marked[face[3]];
 }
 
+/* Compares, where fmin and fmax would be calls: this is done for every step that is tried. */
+static void bound_face(const lar_fit_work *work, int32_t f) {
+    const int32_t *node = work->apart.face[f];
+    lar_fit_extent *extent = &work->apart.extent[f];
+    for (int i = 0; i < 3; i++) {
+        double lower = work->x[node[0]][i], upper = lower;
+        for (int a = 1; a < 4; a++) {
+            const double at = work->x[node[a]][i];
+            lower = at < lower ? at : lower;
+            upper = at > upper ? at : upper;
+        }
+        extent->lower[i] = lower;
+        extent->upper[i] = upper;
+    }
+}
+
 /* The faces that each face with a watched node may meet in this round. */
 static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
@@ -120,7 +136,8 @@ static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_status status = lar_face_boxes_create(
         (const double(*)[3])work->x, (const int32_t(*)[4])apart->face, apart->count, &boxes, error);
     for (int32_t f = 0; !status && f < apart->count; f++) {
-        apart->way[f] = 0;
+        apart->extent[f].way = 0;
+        bound_face(work, f);
         list.face = f;
         if (is_among(apart->watched, apart->face[f]))
             lar_face_boxes_near(&boxes, f, 2 * LEASH + GAP, add_near, &list);
@@ -141,13 +158,29 @@ lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error) {
     return apart->any ? list_near(work, error) : LAR_OK;
 }
 
+/* How far the boxes around two faces are apart; negative: they meet. */
+static double room_between(const lar_fit_extent *a, const lar_fit_extent *b) {
+    double widest = a->lower[0] - b->upper[0];
+    for (int i = 0; i < 3; i++) {
+        const double above = a->lower[i] - b->upper[i], below = b->lower[i] - a->upper[i];
+        widest = above > widest ? above : widest;
+        widest = below > widest ? below : widest;
+    }
+    return widest;
+}
+
 /* What was found to be far enough is not looked at again before the nodes have gone as far. */
 static bool is_pair_clear(const lar_fit_work *work, int32_t f, lar_fit_near *near) {
     const lar_fit_apart *apart = &work->apart;
     const double(*x)[3] = (const double(*)[3])work->x;
     const int32_t g = near->face;
-    const double way = apart->way[f] + apart->way[g];
+    const double way = apart->extent[f].way + apart->extent[g].way;
     if (way < near->clear) return true;
+    const double room = room_between(&apart->extent[f], &apart->extent[g]);
+    if (room > 2 * GAP) {
+        near->clear = way + (room - GAP);
+        return true;
+    }
     const double clearance = lar_faces_clearance(x, apart->face[f], apart->face[g], GAP);
     near->clear = way + clearance;
     return clearance > 0 || !(lar_faces_cross(x, apart->face[f], apart->face[g], GAP) > 0);
@@ -170,8 +203,11 @@ static void place(lar_fit_work *work, int32_t n, const double x[3]) {
     memcpy(work->x[n], x, sizeof work->x[n]);
     if (!apart->any) return;
     const double length = lar_length(step);
-    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++)
-        apart->way[apart->around[i] / 4] += length;
+    for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++) {
+        const int32_t f = apart->around[i] / 4;
+        apart->extent[f].way += length;
+        bound_face(work, f);
+    }
 }
 
 bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]) {

@@ -256,20 +256,35 @@ static void turn_from_edge(const double edge[3], double way[3]) {
     for (int i = 0; i < 3; i++) way[i] -= along * edge[i];
 }
 
-/* Planes through the node that both share, along an edge of the one there and one of the other:
- * where faces meet in a fold only these divide them. */
-static double room_at_node(const corners *c, const double to[3]) {
-    int own = 0, others = 0;
-    double widest = -INFINITY;
-    while (!c->both[0][own]) own++;
-    while (!c->both[1][others]) others++;
-    for (int k = 0; k < 4; k++) {
-        double way[3];
-        lar_cross(c->a[(own + (k & 1 ? 1 : 3)) & 3], c->b[(others + (k & 2 ? 1 : 3)) & 3], way);
-        const double sign = lar_dot(way, to) < 0 ? -1 : 1;
-        for (int i = 0; i < 3; i++) way[i] *= sign;
-        const double there = room(c, way);
-        widest = there > widest ? there : widest;
+/* Where faces share nodes, the widest plane through these that is found when, from `way` on, it is
+ * again and again turned to the corner that has least room (Rosenblatt's perceptron, 1958). `edge`:
+ * what they share, or NULL. */
+static double room_at_shared(const corners *c, const double *edge, const double way[3]) {
+    enum { TURNS = 12 };
+    double out[6][3], far[6], at[3], widest = -INFINITY;
+    int count = 0;
+    for (int k = 0; k < 8; k++) {
+        double *to = out[count];
+        if (c->both[k / 4][k & 3]) continue;
+        memcpy(to, k < 4 ? c->a[k] : c->b[k - 4], sizeof out[count]);
+        if (edge) turn_from_edge(edge, to);
+        far[count] = lar_length(to);
+        for (int i = 0; i < 3; i++) to[i] *= (k < 4 ? -1 : 1) / far[count];
+        count++;
+    }
+    const double length = lar_length(way);
+    for (int i = 0; i < 3; i++) at[i] = way[i] / length;
+    for (int turn = 0; turn < TURNS; turn++) {
+        int worst = 0;
+        double least = INFINITY, room = INFINITY;
+        for (int k = 0; k < count; k++) {
+            const double cosine = lar_dot(at, out[k]);
+            if (cosine < least) least = cosine, worst = k;
+            room = far[k] * cosine < room ? far[k] * cosine : room;
+        }
+        room /= lar_length(at);
+        widest = room > widest ? room : widest;
+        for (int i = 0; i < 3; i++) at[i] += out[worst][i];
     }
     return widest;
 }
@@ -291,7 +306,8 @@ static double widest_room(const corners *c) {
         const double other = room(c, across[s]);
         widest = other > widest ? other : widest;
     }
-    return c->shared == 1 && !(widest > 0) ? room_at_node(c, way) : widest;
+    if (c->shared == 0 || widest > 0) return widest;
+    return room_at_shared(c, c->shared == 2 ? edge : NULL, way);
 }
 
 /* A plane through the edge turns with it, by what its ends move by over its length. */

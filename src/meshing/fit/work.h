@@ -57,12 +57,18 @@ typedef struct lar_fit_region {
     double missing, weight;
 } lar_fit_region;
 
-/* A face near another one. Until the ways of both (lar_fit_apart.way) sum up to `clear`, they are
+/* A face near another one. Until the ways of both (lar_fit_extent.way) sum up to `clear`, they are
  * apart wherever their nodes went. */
 typedef struct lar_fit_near {
     double clear;
     int32_t face;
 } lar_fit_near;
+
+/* Of a face while nodes are watched: all that its nodes went since the lists of near faces were
+ * made, and the box around it. */
+typedef struct lar_fit_extent {
+    double way, lower[3], upper[3];
+} lar_fit_extent;
 
 /* What keeps outer faces apart (apart.c). */
 typedef struct lar_fit_apart {
@@ -78,7 +84,7 @@ typedef struct lar_fit_apart {
     lar_fit_near *near;
     double (*from)[3]; /* per node: where it was before this round, */
     bool *awake;       /* and whether it was worth moving */
-    double *way;       /* per face: all that its nodes went since these lists were made */
+    lar_fit_extent *extent; /* per face */
 } lar_fit_apart;
 
 typedef struct lar_fit_work {

@@ -19,8 +19,13 @@ typedef struct box {
     double lower[3], upper[3];
 } box;
 
+/* A box rounded outwards: it holds all, and is half as large. */
+typedef struct small_box {
+    float lower[3], upper[3];
+} small_box;
+
 typedef struct tree_node {
-    box box;
+    small_box box;
     int32_t next;  /* leaf: the first of its triangles; otherwise the second child */
     int32_t count; /* leaf: triangles; otherwise 0 */
 } tree_node;
@@ -29,6 +34,7 @@ typedef struct tree_node {
  * same bits on it, and are equally near. */
 typedef struct leaf_triangle {
     double at[3][3];
+    small_box box;
     int32_t triangle;
     uint8_t corner[3]; /* which of the triangle's it is */
 } leaf_triangle;
@@ -66,6 +72,15 @@ static box box_around(const double a[3], const double b[3], const double c[3]) {
         around.upper[i] = larger(larger(a[i], b[i]), c[i]);
     }
     return around;
+}
+
+static small_box small_box_of(const box *around) {
+    small_box made;
+    for (int i = 0; i < 3; i++) {
+        made.lower[i] = nextafterf((float)around->lower[i], -INFINITY);
+        made.upper[i] = nextafterf((float)around->upper[i], INFINITY);
+    }
+    return made;
 }
 
 static box box_of(const lar_triangles *surface, int32_t triangle) {
@@ -171,8 +186,9 @@ static int ascending(const void *a, const void *b) {
 static void build(builder *b, int32_t first, int32_t count, int depth) {
     lar_triangle_tree *tree = b->tree;
     tree_node *node = &tree->node[tree->node_count++];
-    node->box = nothing;
-    for (int32_t k = 0; k < count; k++) widen(&node->box, &b->box[b->item[first + k]]);
+    box around = nothing;
+    for (int32_t k = 0; k < count; k++) widen(&around, &b->box[b->item[first + k]]);
+    node->box = small_box_of(&around);
     if (count <= LEAF) {
         node->next = first;
         node->count = count;
@@ -207,6 +223,8 @@ static leaf_triangle leaf_of(const lar_triangles *surface, int32_t triangle) {
             }
     for (int a = 0; a < 3; a++)
         memcpy(leaf.at[a], surface->vertex[corner[leaf.corner[a]]], sizeof leaf.at[a]);
+    const box around = box_around(leaf.at[0], leaf.at[1], leaf.at[2]);
+    leaf.box = small_box_of(&around);
     return leaf;
 }
 
@@ -320,10 +338,16 @@ static void nearest_on_triangle(const leaf_triangle *leaf, const double p[3],
     }
 }
 
-static double box_distance(const box *around, const double p[3]) {
+/* How far p lies beyond one of two ends. Without a branch, which would go one way as often as the
+ * other: of x and 0 the larger one is (x + |x|) / 2, exactly. */
+static double beyond(double lower, double upper, double p) {
+    const double below = lower - p, above = p - upper;
+    return 0.5 * ((below + fabs(below)) + (above + fabs(above)));
+}
+
+static double box_distance(const small_box *around, const double p[3]) {
     double away[3];
-    for (int i = 0; i < 3; i++)
-        away[i] = larger(larger(around->lower[i] - p[i], p[i] - around->upper[i]), 0);
+    for (int i = 0; i < 3; i++) away[i] = beyond(around->lower[i], around->upper[i], p[i]);
     return square(away);
 }
 
@@ -335,23 +359,13 @@ typedef struct waiting {
     double distance; /* squared, from the point to the node's box */
 } waiting;
 
-/* To the box around a triangle: cheaper than to the triangle itself, and mostly enough. */
-static double leaf_box_distance(const leaf_triangle *leaf, const double p[3]) {
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        const double a = leaf->at[0][i] - p[i], b = leaf->at[1][i] - p[i],
-                     c = leaf->at[2][i] - p[i];
-        const double away = larger(larger(smaller(smaller(a, b), c), -larger(larger(a, b), c)), 0);
-        sum += away * away;
-    }
-    return sum;
-}
-
+/* Goes on until `best` is nearest, or with `any` until something is as near as that asks. */
 static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf, const double p[3],
-                           lar_nearest *best) {
-    for (int32_t k = 0; k < leaf->count; k++) {
+                           bool any, lar_nearest *best) {
+    for (int32_t k = 0; k < leaf->count && !(any && best->triangle >= 0); k++) {
         lar_nearest candidate;
-        if (leaf_box_distance(&tree->leaf[leaf->next + k], p) > best->distance * SLACK) continue;
+        /* Cheaper than the distance to the triangle itself, and mostly enough. */
+        if (box_distance(&tree->leaf[leaf->next + k].box, p) > best->distance * SLACK) continue;
         nearest_on_triangle(&tree->leaf[leaf->next + k], p, &candidate);
         if (candidate.distance < best->distance ||
             (candidate.distance == best->distance &&
@@ -360,19 +374,20 @@ static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf,
     }
 }
 
-bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
-                               lar_nearest *nearest) {
+/* The nearest triangle, or the first that is found within reach; best.triangle < 0: none is. */
+static lar_nearest descend(const lar_triangle_tree *tree, const double point[3], double reach,
+                           bool any) {
     lar_nearest best = {.triangle = -1, .distance = reach * reach};
     waiting stack[STACK];
     int height = 0;
     if (tree->node_count > 0 && reach >= 0)
         stack[height++] = (waiting){0, box_distance(&tree->node[0].box, point)};
-    while (height > 0) {
+    while (height > 0 && !(any && best.triangle >= 0)) {
         waiting next = stack[--height];
-        while (next.distance <= best.distance * SLACK) {
+        while (!(next.distance > best.distance * SLACK)) { /* of no number as well: who knows */
             const tree_node *node = &tree->node[next.node];
             if (node->count > 0) {
-                look_into_leaf(tree, node, point, &best);
+                look_into_leaf(tree, node, point, any, &best);
                 break;
             }
             waiting near = {next.node + 1, box_distance(&node[1].box, point)};
@@ -382,21 +397,38 @@ bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point
                 near = far;
                 far = swapped;
             }
-            if (far.distance <= best.distance * SLACK) stack[height++] = far;
+            if (!(far.distance > best.distance * SLACK)) stack[height++] = far;
             next = near;
         }
     }
+    return best;
+}
+
+bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
+                               lar_nearest *nearest) {
+    lar_nearest best = descend(tree, point, reach, false);
     if (best.triangle < 0) return false;
     best.distance = sqrt(best.distance);
     *nearest = best;
     return true;
 }
 
+bool lar_triangle_tree_is_near(const lar_triangle_tree *tree, const double point[3], double reach) {
+    return descend(tree, point, reach, true).triangle >= 0;
+}
+
 /* ---- boxes -------------------------------------------------------------------------------- */
 
-static bool boxes_meet(const box *a, const double lower[3], const double upper[3]) {
+static bool boxes_meet(const small_box *a, const double lower[3], const double upper[3]) {
     for (int i = 0; i < 3; i++)
         if (a->upper[i] < lower[i] || a->lower[i] > upper[i]) return false;
+    return true;
+}
+
+static bool meets(const leaf_triangle *leaf, const double lower[3], const double upper[3]) {
+    const box around = box_around(leaf->at[0], leaf->at[1], leaf->at[2]);
+    for (int i = 0; i < 3; i++)
+        if (around.upper[i] < lower[i] || around.lower[i] > upper[i]) return false;
     return true;
 }
 
@@ -422,8 +454,7 @@ void lar_triangle_tree_boxes(const lar_triangle_tree *tree, const double lower[3
         }
         for (int32_t k = 0; k < node->count; k++) {
             const leaf_triangle *leaf = &tree->leaf[node->next + k];
-            box around = box_around(leaf->at[0], leaf->at[1], leaf->at[2]);
-            if (boxes_meet(&around, from, to) && !visit(context, leaf->triangle)) return;
+            if (meets(leaf, from, to) && !visit(context, leaf->triangle)) return;
         }
     }
 }

@@ -26,6 +26,9 @@ void lar_triangle_tree_destroy(lar_triangle_tree *tree); /* NULL is fine */
 bool lar_triangle_tree_nearest(const lar_triangle_tree *tree, const double point[3], double reach,
                                lar_nearest *nearest);
 
+/* Whether there is one within `reach`: the same answer, sooner. */
+bool lar_triangle_tree_is_near(const lar_triangle_tree *tree, const double point[3], double reach);
+
 /* Calls `visit` for every triangle whose box, widened by `margin`, meets the box lower..upper;
  * false from `visit` ends it. */
 typedef bool lar_triangle_visit(void *context, int32_t triangle);
