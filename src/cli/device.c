@@ -25,10 +25,10 @@ static void write_json(const lar_device_client_options *o, const lar_device_clie
     json_integer(&json, "strange", (int64_t)r->strange);
     json_integer(&json, "steps", (int64_t)r->steps);
     json_open(&json, "round_trip_us", '{');
-    json_number(&json, "p50", 1e6 * r->trip_p50);
-    json_number(&json, "p99", 1e6 * r->trip_p99);
-    json_number(&json, "p999", 1e6 * r->trip_p999);
-    json_number(&json, "max", 1e6 * r->trip_max);
+    json_number(&json, "p50", 1e6 * r->round_trip_p50);
+    json_number(&json, "p99", 1e6 * r->round_trip_p99);
+    json_number(&json, "p999", 1e6 * r->round_trip_p999);
+    json_number(&json, "max", 1e6 * r->round_trip_max);
     json_close(&json);
     json_number(&json, "largest_force", r->force_most);
     json_number(&json, "mean_force", r->force_mean);
@@ -43,7 +43,8 @@ static void print_report(const lar_device_client_report *r) {
            " lost\n",
            "sent", r->sent, r->seconds, (double)r->sent / r->seconds, r->answered, r->lost);
     printf("%-12sp50 %.0f us, p99 %.0f us, p99.9 %.0f us, max %.0f us\n", "round trip",
-           1e6 * r->trip_p50, 1e6 * r->trip_p99, 1e6 * r->trip_p999, 1e6 * r->trip_max);
+           1e6 * r->round_trip_p50, 1e6 * r->round_trip_p99, 1e6 * r->round_trip_p999,
+           1e6 * r->round_trip_max);
     printf("%-12slargest %.3f N, mean %.3f N; torque at most %.4f N m\n", "force", r->force_most,
            r->force_mean, r->torque_most);
     printf("%-12s%" PRIu64 " steps meanwhile; it touched in %.0f %% of the answers, held in %.0f "

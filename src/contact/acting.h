@@ -23,7 +23,7 @@ static inline void lar_acting_destroy(lar_acting *acting) {
 static inline void lar_acting_forget(lar_acting *acting) {
     lar_touch_forget(&acting->touch);
     lar_collide_forget(&acting->collide);
-    acting->collide.crowded = false; /* the other state may have room for its pairs */
+    acting->collide.too_many_pairs = false; /* the other state may have room for its pairs */
     acting->touch.seen = acting->collide.info = (lar_contact_info){0};
 }
 

@@ -120,7 +120,7 @@ typedef struct lar_collide {
     const uint8_t *keeps;   /* [contact nodes] those that this thread moves; NULL: all */
     int32_t level_count;
     lar_collide_level *level; /* [list.group_room] of these nodes, from when they move on */
-    bool crowded;             /* there was no room for all pairs: the run must stop */
+    bool too_many_pairs;      /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
     lar_collide_motion *motion; /* of whoever has all nodes; otherwise NULL */
 } lar_collide;

@@ -46,7 +46,7 @@ static void search_now(lar_collide *collide, const lar_state *state, double way)
     fetch_places(collide, state);
     if (!lar_contact_search_run(motion->search, (const double(*)[3])motion->x,
                                 skin_for(motion, way)))
-        collide->crowded = true;
+        collide->too_many_pairs = true;
     take_list(collide, 0);
     motion->valid = true;
 }

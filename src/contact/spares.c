@@ -106,7 +106,7 @@ static bool good(const lar_spare_tool *spare) {
     if (spare->serial < 0 || spare->padding != 0) return false;
     if (!spare->placed) return spare->shape == 0;
     return spare->placed == 1 && spare->shape >= 0 && spare->shape < LAR_TOOL_HAND &&
-           !lar_tool_size_fault(&tool);
+           !lar_tool_size_problem(&tool);
 }
 
 bool lar_spares_good(const lar_spare_tool spare[LAR_SPARES_MOST], int32_t spares) {

@@ -144,7 +144,7 @@ typedef struct lar_touch_note {
 void lar_touch_remember(const lar_touch *touch, lar_touch_note *note);
 void lar_touch_restore(lar_touch *touch, const lar_touch_note *note);
 
-/* ---- for touch_face.c, touch_search.c, hold.c and trip_tool.c ------------------------------- */
+/* ---- for touch_face.c, touch_search.c, hold.c and fault_tool.c ------------------------------- */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_touch_group_faces(lar_touch *touch, lar_error *error);

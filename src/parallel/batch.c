@@ -183,7 +183,7 @@ static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t ro
             bring_near(p, &sends, true, PORTION, round);
             bring_near(p, &receives, false, PORTION, round);
         }
-        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->trip);
+        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->fault);
     }
 }
 
@@ -193,7 +193,7 @@ static lar_status move(lar_worker *worker, lar_error *error) {
     if (p->check)
         return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
                                         worker->context.end, &worker->state, error);
-    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->fault);
     return LAR_OK;
 }
 
@@ -230,7 +230,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     if (p->board) status = lar_contact_send(worker, round, error);
     if (!p->check && !status)
         lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
-                       &worker->trip);
+                       &worker->fault);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, round, error);
     if (p->board && worker->batch_first == worker->batch_end && !status)
@@ -246,6 +246,6 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     if (p->check)
         worker->state.step++;
     else
-        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->fault);
     return LAR_OK;
 }

@@ -43,7 +43,7 @@ static lar_status first_failure(lar_computer *computer, lar_error *error) {
 
 /* Of what several have found in a step the one that a processor alone would have found: elements
  * before nodes, the first element, the fastest node. */
-static bool earlier(const lar_trip *a, const lar_trip *b) {
+static bool earlier(const lar_fault *a, const lar_fault *b) {
     if (!a->kind || !b->kind) return a->kind;
     if (a->step != b->step) return a->step < b->step;
     if (a->part != b->part) return a->part < b->part;
@@ -52,11 +52,11 @@ static bool earlier(const lar_trip *a, const lar_trip *b) {
     return a->element < b->element;
 }
 
-static void first_trip(const lar_computer *computer, lar_trip *trip) {
+static void first_fault(const lar_computer *computer, lar_fault *fault) {
     for (int32_t i = 0; i < computer->hosted; i++)
         for (int32_t t = 0; t < computer->threads; t++) {
-            const lar_trip *other = &computer->processor[i].worker[t].trip;
-            if (earlier(other, trip)) *trip = *other;
+            const lar_fault *other = &computer->processor[i].worker[t].fault;
+            if (earlier(other, fault)) *fault = *other;
         }
 }
 
@@ -262,14 +262,14 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 
 /* After a step: does somebody here want everyone to stop? One step more than the way to the
  * farthest processor, because other threads of this one may have sent already. */
-static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *tripped) {
+static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
     if (p->board) lar_contact_watch(worker, stop - done);
-    if (worker->trip.kind && !*tripped) {
-        *tripped = true;
-        lar_trip_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
-                         &worker->trip);
+    if (worker->fault.kind && !*faulted) {
+        *faulted = true;
+        lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
+                          &worker->fault);
         lar_processor_ask_stop(p, stop);
     }
     if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
@@ -285,14 +285,14 @@ static void advance_seat(void *context, int32_t number) {
     lar_seat *seat = &computer->seat[number];
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
-    bool tripped = false;
+    bool faulted = false;
     if (p->board) lar_contact_publish(worker, worker->round + 1);
     while (worker->state.step < computer->until) {
         uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
         if (stop && worker->state.step >= stop) break;
         seat->status = lar_worker_step(worker, &seat->error);
         if (seat->status) break;
-        after_step(computer, worker, number, &tripped);
+        after_step(computer, worker, number, &faulted);
     }
     /* Nobody shall wait for this processor; after a verdict this changes nothing. */
     if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
@@ -343,14 +343,14 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
     return first_failure(computer, error);
 }
 
-static lar_status hear_all(lar_computer *computer, lar_trip *trip, lar_error *error) {
+static lar_status hear_all(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
         const lar_answer *answer;
         const void *report;
         status = lar_control_hear(computer->control, p, &answer, &report, error);
         if (status) break;
-        if (earlier(&answer->trip, trip)) *trip = answer->trip;
+        if (earlier(&answer->fault, fault)) *fault = answer->fault;
         lar_report own = {0}; /* a payload is aligned to 8 only */
         if (answer->bytes == sizeof own) memcpy(&own, report, sizeof own);
         lar_report_join(&computer->report, &own);
@@ -374,12 +374,12 @@ static lar_status order_advance(lar_computer *computer, uint64_t until, bool fir
     return status;
 }
 
-static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_trip *trip,
+static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_fault *fault,
                               lar_error *error) {
     lar_status status = computer->control ? order_advance(computer, until, first, error) : LAR_OK;
     if (!status) status = advance_here(computer, until, first, error);
-    first_trip(computer, trip);
-    if (!status && computer->control) status = hear_all(computer, trip, error);
+    first_fault(computer, fault);
+    if (!status && computer->control) status = hear_all(computer, fault, error);
     return status;
 }
 
@@ -391,7 +391,7 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t 
 
 /* Without contact of bodies and tools one stretch. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
-                                void *context, lar_trip *trip, lar_error *error) {
+                                void *context, lar_fault *fault, lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
     const uint64_t *step = &computer->processor[0].worker[0].state.step;
     uint64_t end = *step + steps;
@@ -399,23 +399,23 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watc
     computer->watch = watch;
     computer->watch_context = context;
     computer->called_off = false;
-    /* A trip before the first stretch leaves no step over which these could be a mean. */
+    /* A fault before the first stretch leaves no step over which these could be a mean. */
     memset(computer->report.tool, 0, sizeof computer->report.tool);
     lar_interval_restart(&computer->interval);
     if (steps == 0) return LAR_OK; /* what is decided before a step is decided once */
     for (bool first = true; first || *step < end; first = false) {
         uint64_t begin = *step;
-        status = lar_contact_refresh(computer, trip, error);
-        if (status || trip->kind) break;
+        status = lar_contact_refresh(computer, fault, error);
+        if (status || fault->kind) break;
         if (lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
-        status = advance_all(computer, next_stop(computer, begin, end), first, trip, error);
+        status = advance_all(computer, next_stop(computer, begin, end), first, fault, error);
         lar_interval_harvest(&computer->interval, &computer->report, *step - begin,
                              computer->tools);
         lar_contact_count(computer, *step - begin);
-        if (status || trip->kind || computer->called_off) break;
+        if (status || fault->kind || computer->called_off) break;
     }
-    trip->crowded = trip->kind == LAR_TRIP_RUSH && computer->contact.crowded;
+    fault->too_many_pairs = fault->kind == LAR_FAULT_TOO_FAST && computer->contact.too_many_pairs;
     if (status) computer->broken = true;
     return status;
 }
@@ -468,7 +468,7 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
         bool first = order->kind == LAR_ORDER_ADVANCE;
         status = take_tools(computer, payload, bytes, error);
         if (!status) status = advance_here(computer, order->argument, first, error);
-        first_trip(computer, &answer.trip);
+        first_fault(computer, &answer.fault);
         answer.step = p->worker[0].state.step;
         if (status) return status;
         return lar_control_answer(control, &answer, &computer->report, sizeof computer->report,

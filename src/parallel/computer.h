@@ -42,7 +42,7 @@ typedef struct lar_computer_contact {
     double skin;                    /* of that search [m] */
     double moved, way;              /* since then, and in the last step, at most [m] */
     bool valid;                     /* the search belongs to the state */
-    bool crowded;                   /* it had to be made with a thinner skin than asked for */
+    bool too_many_pairs;            /* it had to be made with a thinner skin than asked for */
     bool always;                    /* search in every step */
     lar_contact_info info;          /* what concerns all processors together */
 } lar_computer_contact;
@@ -89,13 +89,13 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
  * Accepts NULL. */
 void lar_computer_destroy(lar_computer *computer);
 
-/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
- * stopped everyone: *trip is then the first one. Processor zero only. */
+/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a fault
+ * stopped everyone: *fault is then the first one. Processor zero only. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
-                                void *context, lar_trip *trip, lar_error *error);
+                                void *context, lar_fault *fault, lar_error *error);
 
 /* The state of all processors into that of the whole model, and back to all processors: they go on
- * from there, whatever has tripped before. Processor zero only. */
+ * from there, whatever faults there were before. Processor zero only. */
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 
@@ -108,9 +108,9 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 /* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
 lar_status lar_contact_open(lar_computer *computer, lar_error *error);
 void lar_contact_close(lar_computer *computer); /* idempotent */
-/* Processor zero, before a stretch of steps: looks and searches where that is due. *trip: too many
+/* Processor zero, before a stretch of steps: looks and searches where that is due. *fault: too many
  * pairs. */
-lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error);
+lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error);
 /* The step that a stretch towards `end` may reach at most. */
 uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
 /* After a stretch of so many steps. */

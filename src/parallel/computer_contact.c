@@ -107,7 +107,7 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
 /* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
  * little more. */
 static double reserve(const lar_computer *computer, double way) {
-    double most = fmax(2 * way, LAR_CONTACT_RUSH * computer->whole->time_step);
+    double most = fmax(2 * way, LAR_CONTACT_SPEED * computer->whole->time_step);
     return (computer->division.spread + 3) * most + LEAST_STEPS * way;
 }
 
@@ -198,28 +198,28 @@ lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t 
 
 /* ---- searching ------------------------------------------------------------------------------- */
 
-static lar_status search(lar_computer *computer, double way, lar_trip *trip, lar_error *error) {
+static lar_status search(lar_computer *computer, double way, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     const lar_contact_surface *surface = contact->map.surface;
     double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_most);
     double skin = 2 * (reserve(computer, way) + room);
     if (!lar_contact_search_run(contact->search, (const double(*)[3])contact->x, skin)) {
-        *trip = (lar_trip){.kind = LAR_TRIP_CROWD,
-                           .element = -1,
-                           .step = computer->processor[0].worker[0].state.step};
+        *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS,
+                             .element = -1,
+                             .step = computer->processor[0].worker[0].state.step};
         return LAR_OK;
     }
     const lar_contact_list *list = &contact->search->list;
     memcpy(contact->searched, contact->x, (size_t)surface->node_count * sizeof *contact->x);
     contact->skin = list->skin;
-    contact->crowded = list->skin < skin;
+    contact->too_many_pairs = list->skin < skin;
     contact->moved = 0;
     contact->info.searches++;
     contact->info.boxed += (uint64_t)list->face_count;
     return hand_out(computer, list, 0, error);
 }
 
-lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error) {
+lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     if (!contact->map.surface) return LAR_OK;
     bool due = !contact->valid || contact->always;
@@ -231,7 +231,7 @@ lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error
     due = due || !(moved < 0.125 * contact->skin) ||
           !(moved + reserve(computer, way) < 0.5 * contact->skin);
     if (due) {
-        status = search(computer, way, trip, error);
+        status = search(computer, way, fault, error);
     } else {
         contact->moved = moved;
         status = hand_out(computer, NULL, moved, error);

@@ -127,10 +127,10 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
 void lar_contact_watch(lar_worker *worker, uint64_t steps) {
     const lar_collide *collide = &worker->acting.collide;
     double allowed = 0.5 * collide->list.skin;
-    double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_RUSH);
+    double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
     uint64_t done = worker->state.step;
-    if (!(collide->moved <= allowed) && !worker->trip.kind)
-        worker->trip = (lar_trip){.kind = LAR_TRIP_RUSH, .element = -1, .step = done - 1};
+    if (!(collide->moved <= allowed) && !worker->fault.kind)
+        worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST, .element = -1, .step = done - 1};
     if (collide->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
         lar_processor_ask_stop(worker->processor, done + steps);
 }

@@ -33,8 +33,8 @@
  * How long a list is good. Every thread adds up how far its own nodes can have moved since the
  * search, from the fastest of each step, and asks everyone to stop early enough for the steps that
  * the request takes to go round, at a speed of twice its present one, and of at least
- * LAR_CONTACT_RUSH. If it moves farther than the list allows even so, the run trips: nothing is
- * missed silently.
+ * LAR_CONTACT_SPEED. If it moves farther than the list allows even so, the run ends with a fault:
+ * nothing is missed silently.
  */
 #ifndef LAR_PARALLEL_CONTACT_EXCHANGE_H
 #define LAR_PARALLEL_CONTACT_EXCHANGE_H
@@ -42,7 +42,7 @@
 #include "parallel/processor.h"
 
 /* A speed that any node may reach within a few steps [m/s]. */
-#define LAR_CONTACT_RUSH 2.0
+#define LAR_CONTACT_SPEED 2.0
 
 /* Who has which contact nodes and faces. The same on all processors, constant. */
 typedef struct lar_contact_map {
@@ -126,7 +126,7 @@ void lar_contact_publish(lar_worker *worker, uint64_t round);
 lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error);
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error);
 
-/* After a step: asks for a stop in time, or trips. `steps`: until all have stopped. */
+/* After a step: asks for a stop in time, or reports a fault. `steps`: until all have stopped. */
 void lar_contact_watch(lar_worker *worker, uint64_t steps);
 
 #endif

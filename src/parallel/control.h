@@ -2,7 +2,7 @@
  *
  *     zero                                      the others
  *       order {advance until 5000, tools} ------>  compute
- *       <------------- answer {step 5000, trip, work; what the tools felt}
+ *       <------------- answer {step 5000, fault, work; what the tools felt}
  *       order {gather, round 0} ---------------->  copy
  *       <------------- answer {values of some nodes}      ... until all are there
  *       order {scatter, part of a state} ------->  keep the part
@@ -56,8 +56,8 @@ enum { LAR_PART_BYTES = 32768 };
 enum { LAR_ANSWER_NODES = LAR_PART_BYTES / (7 * (int)sizeof(double)) };
 
 typedef struct lar_answer {
-    uint64_t step; /* steps done */
-    lar_trip trip; /* the first of the processor */
+    uint64_t step;   /* steps done */
+    lar_fault fault; /* the first of the processor */
     double external, damped, contact;
     uint64_t bytes; /* of the payload */
 } lar_answer;

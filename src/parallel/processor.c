@@ -290,7 +290,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.parts = 1;
         worker->state.listed = false;
         worker->state.external = worker->state.damped = worker->state.contact = 0;
-        worker->trip = (lar_trip){0};
+        worker->fault = (lar_fault){0};
         lar_acting_forget(&worker->acting);
         memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
     }

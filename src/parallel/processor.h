@@ -65,7 +65,7 @@ typedef struct lar_worker {
     int32_t *joint; /* 4 * local node: moved here, and summed where it is (parcel.h) */
     int32_t foreign_count;
     int32_t *foreign; /* 4 * local node: read here, moved by others */
-    lar_trip trip;
+    lar_fault fault;
     unsigned char *gather; /* for packets to peers whose memory cannot be written from here */
     uint64_t random;       /* of the delays; 0: none */
     bool follows;          /* it failed because another thread of the processor had */
@@ -107,7 +107,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 void lar_processor_destroy(lar_processor *processor); /* idempotent */
 
 /* Displacements, velocities and step of the whole model into the part, at rest or between two
- * advances; sums, work and trips begin anew. Rounds go on: nobody mistakes packets. */
+ * advances; sums, work and faults begin anew. Rounds go on: nobody mistakes packets. */
 void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
                            const lar_state *state);
 
@@ -123,7 +123,7 @@ lar_status lar_processor_await(const lar_processor *processor, const uint64_t *m
 
 /* One step of one thread: batches, packets, waits (batch.c). Fails when a peer is lost, another
  * thread of the processor failed, or verification finds a difference; the processor is then of no
- * more use. A trip is no failure: the step is completed. */
+ * more use. A fault is no failure: the step is completed. */
 lar_status lar_worker_step(lar_worker *worker, lar_error *error);
 
 #endif

@@ -40,7 +40,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
             memcpy(state->v + 4 * domain->layout.local[initial->nodes.node[k]], initial->velocity,
                    sizeof initial->velocity);
     }
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
     lar_gravity_at(model, NULL, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
@@ -200,16 +200,16 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
                             void *context) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
-    lar_trip *trip = &simulation->trip;
+    lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
     lar_touch_forget_depths(&domain->acting.touch);
     state->need = 0;
     while (state->step < end && goes_on) {
-        lar_step(domain, state, trip);
-        if (trip->kind) lar_trip_examine(domain, state, 0, domain->layout.node_count, trip);
+        lar_step(domain, state, fault);
+        if (fault->kind) lar_fault_examine(domain, state, 0, domain->layout.node_count, fault);
         bool whole = state->part == 0;
-        goes_on = !trip->kind && (!watch || !whole || watch(context, state->step));
+        goes_on = !fault->kind && (!watch || !whole || watch(context, state->step));
     }
     simulation->report = (lar_report){0};
     lar_report_add(&simulation->report, &domain->acting, state);
@@ -249,32 +249,32 @@ static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     simulation->measured = fmax(simulation->measured, e.kinetic + e.strain + e.hourglass);
     double given = -e.contact;
     if (!(given > NOTHING * simulation->measured)) return LAR_OK;
-    simulation->trip =
-        (lar_trip){.kind = LAR_TRIP_GAIN, .step = simulation->state.step, .given = given};
-    lar_trip_examine(&simulation->domain, &simulation->state, 0,
-                     simulation->domain.layout.node_count, &simulation->trip);
+    simulation->fault =
+        (lar_fault){.kind = LAR_FAULT_ENERGY_GAIN, .step = simulation->state.step, .given = given};
+    lar_fault_examine(&simulation->domain, &simulation->state, 0,
+                      simulation->domain.layout.node_count, &simulation->fault);
     return LAR_OK;
 }
 
 lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
                                   void *context, lar_error *error) {
     lar_computer *computer = simulation->computer;
-    lar_trip *trip = &simulation->trip;
+    lar_fault *fault = &simulation->fault;
     lar_status status = LAR_OK;
-    if (!trip->kind) {
+    if (!fault->kind) {
         uint64_t before = lar_simulation_steps(simulation);
         if (computer) {
-            status = lar_computer_advance(computer, steps, watch, context, trip, error);
+            status = lar_computer_advance(computer, steps, watch, context, fault, error);
             simulation->report = computer->report;
             simulation->gathered = false;
         } else {
             advance_alone(simulation, steps, watch, context);
         }
         simulation->report_steps = lar_simulation_steps(simulation) - before;
-        if (!status && !trip->kind) status = watch_contact(simulation, error);
+        if (!status && !fault->kind) status = watch_contact(simulation, error);
     }
-    if (!status) lar_trip_blame(&simulation->domain, trip);
-    return status ? status : lar_trip_report(&simulation->domain, trip, error);
+    if (!status) lar_fault_attribute(&simulation->domain, fault);
+    return status ? status : lar_fault_report(&simulation->domain, fault, error);
 }
 
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
@@ -285,7 +285,7 @@ lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
 }
 
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
-    simulation->trip = (lar_trip){0};
+    simulation->fault = (lar_fault){0};
     simulation->report = (lar_report){0};
     simulation->report_steps = 0;
     simulation->measured = simulation->taken = 0;

@@ -12,7 +12,7 @@
 struct lar_simulation {
     lar_domain domain;
     lar_state state;
-    lar_trip trip;
+    lar_fault fault;
     lar_tool_list list;
     lar_tools tools;
     lar_interval interval;  /* of an advance without a computer */
@@ -70,7 +70,7 @@ lar_status lar_simulation_add_tool_at(lar_simulation *simulation, const lar_tool
                                       int32_t place, lar_error *error);
 int32_t lar_simulation_free_place(const lar_simulation *simulation);
 
-/* All processors go on from simulation->state and ->tools as they are now; what tripped and what
+/* All processors go on from simulation->state and ->tools as they are now; what failed and what
  * was felt is forgotten. */
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error);
 

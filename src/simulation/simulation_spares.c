@@ -71,7 +71,7 @@ static double least_radius(const lar_simulation *simulation) {
 static lar_status check_size(const lar_simulation *simulation, const lar_tool *tool, double size,
                              lar_error *error) {
     const double RADIUS_MOST = 0.5, LENGTH_MOST = 5;
-    const char *wrong = lar_tool_size_fault(tool);
+    const char *wrong = lar_tool_size_problem(tool);
     double least = least_radius(simulation);
     if (wrong) return lar_fail(error, LAR_ERROR_ARGUMENT, "the tool cannot be added: %s", wrong);
     if (tool->radius < least)
@@ -126,7 +126,7 @@ static void forget_tool(lar_simulation *simulation, int32_t tool) {
 static lar_status check_add(const lar_simulation *simulation, int32_t place, lar_error *error) {
     lar_status status = lar_simulation_check_change(simulation, "lar_simulation_add_tool", error);
     if (status) return status;
-    if (simulation->trip.kind)
+    if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "the run has broken off; reset it or load a state before tools are added");
     return check_place(simulation, place, error);

@@ -156,7 +156,7 @@ void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy
     double time = lar_state_time(domain, state), gravity[3];
     lar_step_enter(domain, &domain->acting, &context, state);
     gravity_at(domain, time, gravity);
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
 
     *energy = (lar_energy){.external = state->external,
@@ -209,7 +209,7 @@ lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_
     for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
     double gravity[3];
     gravity_at(domain, lar_state_time(domain, state), gravity);
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
     memset(sum, 0, 3 * sizeof *sum);
     for (int32_t i = 0; i < conditions->constraint_count; i++) {

@@ -8,17 +8,17 @@
 #include "mechanics/hex8_matrix.h"
 
 /* Of several elements in a step the first of the mesh, whoever computes them. */
-static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
-    if (!trip->kind || (trip->kind == LAR_TRIP_ELEMENT && trip->step == state->step &&
-                        trip->part == state->part && e < trip->element))
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step, .part = state->part};
+static void fault_element(lar_fault *fault, const lar_state *state, lar_gid e) {
+    if (!fault->kind || (fault->kind == LAR_FAULT_ELEMENT && fault->step == state->step &&
+                         fault->part == state->part && e < fault->element))
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_ELEMENT, .element = e, .step = state->step, .part = state->part};
 }
 
 /* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
  * no longer count. */
-static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
-                     lar_trip *trip) {
+static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
+                      lar_fault *fault) {
     lar_block_run one = domain->run[r];
     size_t size = lar_block_size(one.shape);
     one.count = 1;
@@ -28,7 +28,7 @@ static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_sta
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
-                trip_element(trip, state, lanes->element[lane]);
+                fault_element(fault, state, lanes->element[lane]);
     }
 }
 
@@ -39,7 +39,7 @@ static bool interval_ends(const lar_domain *domain, bool close, const lar_state 
 }
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
-                           lar_trip *trip) {
+                           lar_fault *fault) {
     /* Where elements are strained, listed in every part: in a step nodes that are thrown come from
      * anywhere to the barrier and beyond. */
     bool due = interval_ends(domain, state->close, state);
@@ -53,14 +53,15 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
                                                  &domain->limits, watches ? &watch : NULL);
         if (watches) lar_guard_select(domain, r, &watch, due, state);
         lar_guard_apply(domain, r, state);
-        if (found >= 0) trip_run(domain, r, found, state, trip);
+        if (found >= 0) fault_run(domain, r, found, state, fault);
     }
     /* Before the nodes move on: a step later the element says little. */
-    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, 0, 0, trip);
+    if (fault->kind == LAR_FAULT_ELEMENT) lar_fault_examine(domain, state, 0, 0, fault);
 }
 
 /* The oracle elements, one at a time: slow is fine. */
-static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state, lar_trip *trip) {
+static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state,
+                           lar_fault *fault) {
     const lar_model *model = domain->model;
     double corner[8][3], u[8][3], f[8][3];
     const lar_material *material = lar_domain_material(domain, e);
@@ -72,7 +73,7 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
     bool fits = J > domain->limits.least_volume;
     for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
     if (!fits) {
-        trip_element(trip, state, e);
+        fault_element(fault, state, e);
         return;
     }
     for (int a = 0; a < 8; a++)
@@ -82,16 +83,16 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
 }
 
 void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
-                      lar_trip *trip) {
+                      lar_fault *fault) {
     if (domain->kind == LAR_ELEMENT_HEX8) {
-        recover_blocks(domain, first, count, state, trip);
+        recover_blocks(domain, first, count, state, fault);
         return;
     }
     for (int32_t r = first; r < first + count; r++)
         for (int32_t b = 0; b < domain->run[r].count; b++)
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = domain->layout.block[domain->run_first[r] + b].element[lane];
-                if (e >= 0) recover_slowly(domain, e, state, trip);
+                if (e >= 0) recover_slowly(domain, e, state, fault);
             }
 }
 
@@ -161,7 +162,7 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
 
 static void move_nodes(const lar_domain *domain, const lar_acting *acting,
                        const lar_condition_context *context, double time, lar_state *state,
-                       lar_trip *trip) {
+                       lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts =
         acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
@@ -182,25 +183,25 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
     state->fastest = 0;
     if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
                                  state->force, domain->push, weight, &damped, &state->fastest) &&
-        !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+        !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
     state->damped += damping * damped * (mean / domain->time_step);
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
                         const lar_condition_context *context, double time, lar_state *state,
-                        lar_trip *trip) {
+                        lar_fault *fault) {
     int32_t beyond = lar_conditions_load(conditions, context, time, state);
-    if (beyond >= 0 && !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
+    if (beyond >= 0 && !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_LOAD, .element = domain->layout.global[beyond], .step = state->step};
 }
 
 /* Loads, tools and planes; half of their work when the nodes are about to move. */
 static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
-                lar_state *state, lar_trip *trip) {
-    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, trip);
+                lar_state *state, lar_fault *fault) {
+    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, fault);
     lar_touch_apply(&acting->touch, context, state);
 }
 
@@ -213,26 +214,26 @@ static void add_half_work(const lar_domain *domain, const lar_acting *acting,
 
 /* Contact of bodies, by who has all nodes. */
 static void collide(lar_collide *collide, const lar_condition_context *context, lar_state *state,
-                    lar_trip *trip) {
+                    lar_fault *fault) {
     lar_collide_apply(collide, context, state);
-    if (collide->crowded && !trip->kind)
-        *trip = (lar_trip){.kind = LAR_TRIP_CROWD, .element = -1, .step = state->step};
+    if (collide->too_many_pairs && !fault->kind)
+        *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
     lar_touch_note note;
     lar_step_enter(domain, &domain->acting, &context, state);
     lar_touch_remember(&domain->acting.touch, &note);
     lar_contact_info counted = domain->acting.collide.info;
-    act(domain, &domain->acting, &context, state, trip);
+    act(domain, &domain->acting, &context, state, fault);
     lar_collide_forget(&domain->acting.collide);
-    collide(&domain->acting.collide, &context, state, trip);
+    collide(&domain->acting.collide, &context, state, fault);
     lar_collide_forget(&domain->acting.collide);
     domain->acting.collide.info = counted;
     lar_touch_restore(&domain->acting.touch, &note);
     if (domain->kind != LAR_ELEMENT_HEX8) {
-        lar_step_recover(domain, 0, domain->run_count, state, trip);
+        lar_step_recover(domain, 0, domain->run_count, state, fault);
         return;
     }
     for (int32_t r = 0; r < domain->run_count; r++)
@@ -241,31 +242,31 @@ void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
 }
 
 void lar_step_begin(const lar_domain *domain, lar_acting *acting,
-                    const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    act(domain, acting, context, state, trip);
+                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    act(domain, acting, context, state, fault);
     add_half_work(domain, acting, context, state);
 }
 
 void lar_step_move(const lar_domain *domain, lar_acting *acting,
-                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+                   const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     lar_conditions *conditions = &acting->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
     lar_touch_observe(&acting->touch, context, state);
-    move_nodes(domain, acting, context, time, state, trip);
+    move_nodes(domain, acting, context, time, state, fault);
     state->external += lar_conditions_impose(conditions, context, time, state);
     lar_touch_stop(&acting->touch, context, state);
     lar_collide_moved(&acting->collide, state, state->fastest * context->time_step);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,
-                  const lar_condition_context *context, lar_state *state, lar_trip *trip) {
+                  const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     add_half_work(domain, acting, context, state);
     lar_collide_half_work(&acting->collide, context, state);
     /* The watch over speeds does not see nodes that are moved. */
-    if (!isfinite(state->external) && !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+    if (!isfinite(state->external) && !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
     state->round++;
     state->listed = true;
     if (++state->part < state->parts) return;
@@ -273,13 +274,13 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
     state->step++;
 }
 
-void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
+void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
     lar_step_enter(domain, &domain->acting, &context, state);
-    lar_step_begin(domain, &domain->acting, &context, state, trip);
-    collide(&domain->acting.collide, &context, state, trip);
+    lar_step_begin(domain, &domain->acting, &context, state, fault);
+    collide(&domain->acting.collide, &context, state, fault);
     lar_collide_half_work(&domain->acting.collide, &context, state);
-    lar_step_recover(domain, 0, domain->run_count, state, trip);
-    lar_step_move(domain, &domain->acting, &context, state, trip);
-    lar_step_end(domain, &domain->acting, &context, state, trip);
+    lar_step_recover(domain, 0, domain->run_count, state, fault);
+    lar_step_move(domain, &domain->acting, &context, state, fault);
+    lar_step_end(domain, &domain->acting, &context, state, fault);
 }

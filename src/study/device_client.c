@@ -171,10 +171,10 @@ static lar_status finish(client *c, lar_error *error) {
                         "nobody at %s answered %llu packets; start a session with a tool on that "
                         "device first, and give the same token",
                         c->options->address, (unsigned long long)r->sent);
-    r->trip_p50 = 1e-9 * lar_histogram_quantile(&c->trip, 0.5);
-    r->trip_p99 = 1e-9 * lar_histogram_quantile(&c->trip, 0.99);
-    r->trip_p999 = 1e-9 * lar_histogram_quantile(&c->trip, 0.999);
-    r->trip_max = 1e-9 * (double)c->trip.most;
+    r->round_trip_p50 = 1e-9 * lar_histogram_quantile(&c->trip, 0.5);
+    r->round_trip_p99 = 1e-9 * lar_histogram_quantile(&c->trip, 0.99);
+    r->round_trip_p999 = 1e-9 * lar_histogram_quantile(&c->trip, 0.999);
+    r->round_trip_max = 1e-9 * (double)c->trip.most;
     r->force_mean = c->force_sum / (double)r->answered;
     return LAR_OK;
 }

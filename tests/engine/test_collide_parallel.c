@@ -179,10 +179,10 @@ static void hurl(lar_simulation *s) {
 }
 
 /* Who is too fast for the search is named, and where it is, and the tool beside it. */
-static void a_rush_says_who_and_where(void **unused) {
+static void what_is_too_fast_says_who_and_where(void **unused) {
     (void)unused;
     for (int with_tool = 0; with_tool < 2; with_tool++)
-        for (int crowded = 0; crowded < 2; crowded++) {
+        for (int too_many_pairs = 0; too_many_pairs < 2; too_many_pairs++) {
             lar_model *model = sliding_model(false);
             if (with_tool)
                 *(lar_tool *)LAR_MODEL_APPEND(model, tool) =
@@ -196,20 +196,20 @@ static void a_rush_says_who_and_where(void **unused) {
             lar_error error = {0};
             advance(s, 1);
             hurl(s);
-            s->computer->contact.crowded = crowded;
+            s->computer->contact.too_many_pairs = too_many_pairs;
             assert_int_equal(lar_simulation_advance(s, 50, &error), LAR_ERROR_UNSTABLE);
             print_message("%s\n", error.message);
-            assert_int_equal(s->trip.kind, LAR_TRIP_RUSH);
+            assert_int_equal(s->fault.kind, LAR_FAULT_TOO_FAST);
             assert_non_null(strstr(error.message, "node "));
             assert_non_null(strstr(error.message, " near ("));
             assert_true((strstr(error.message, "tool probe") != NULL) == with_tool);
-            assert_true((strstr(error.message, "crowd") != NULL) == crowded);
+            assert_true((strstr(error.message, "crowd") != NULL) == too_many_pairs);
             finish(s, model);
         }
 }
 
 /* A run that stops before its first step has felt nothing. */
-static void a_crowd_before_the_first_step_leaves_no_forces(void **unused) {
+static void too_many_pairs_before_the_first_step_leave_no_forces(void **unused) {
     (void)unused;
     lar_model *model = sliding_model(false);
     *(lar_tool *)LAR_MODEL_APPEND(model, tool) =
@@ -227,7 +227,7 @@ static void a_crowd_before_the_first_step_leaves_no_forces(void **unused) {
     s->computer->contact.valid = false;
     s->computer->contact.search->list.face_room = s->computer->contact.search->next.face_room = 0;
     assert_int_equal(lar_simulation_advance(s, 10, &error), LAR_ERROR_UNSTABLE);
-    assert_int_equal(s->trip.kind, LAR_TRIP_CROWD);
+    assert_int_equal(s->fault.kind, LAR_FAULT_TOO_MANY_PAIRS);
     assert_int_equal(lar_simulation_tool_force(s, 0, &force, NULL), LAR_OK);
     assert_true(force.force[0] == 0);
     finish(s, model);
@@ -240,8 +240,8 @@ int main(int count, char **argument) {
         cmocka_unit_test(nor_on_delays_nor_on_searches),
         cmocka_unit_test(searches_are_not_seen_from_outside),
         cmocka_unit_test(going_back_repeats_every_bit),
-        cmocka_unit_test(a_rush_says_who_and_where),
-        cmocka_unit_test(a_crowd_before_the_first_step_leaves_no_forces),
+        cmocka_unit_test(what_is_too_fast_says_who_and_where),
+        cmocka_unit_test(too_many_pairs_before_the_first_step_leave_no_forces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -309,7 +309,7 @@ static void copies_hold_all_of_it(void **unused) {
         go(simulation, middle + 90, 10);
         if (lar_simulation_reset(simulation, &error)) fail_msg("%s", error.message);
         go(simulation, 20, 10);                /* nothing is strained */
-        simulation->state.part = grid ? 0 : 1; /* a trip leaves it so */
+        simulation->state.part = grid ? 0 : 1; /* a fault leaves it so */
         if (lar_simulation_go_back(simulation, &state, tools, &error))
             fail_msg("%s", error.message);
         assert_true(hash_of(simulation) == c.middle);

@@ -152,7 +152,7 @@ static void assert_stops_everywhere(const lar_model *model, int kind) {
     lar_simulation *simulation = start(model);
     assert_int_equal(lar_simulation_advance(simulation, 500, &alone), LAR_ERROR_UNSTABLE);
     print_message("%s\n", alone.message);
-    assert_int_equal(simulation->trip.kind, kind);
+    assert_int_equal(simulation->fault.kind, kind);
     lar_simulation_destroy(simulation);
     for (int grid = 0; grid < GRIDS; grid++) {
         simulation = start_with(model, combination(grid, 1 + grid % THREADS, 0, 0));
@@ -172,11 +172,11 @@ static void an_unstable_run_stops_everywhere(void **unused) {
     static const double crash[3] = {-200, 0, 0}, rush[3] = {0, 0, 1e5};
     lar_model *model = everything_model(&small);
     throw_node(model, brick_node(&small, 3, 2, 2), crash);
-    assert_stops_everywhere(model, LAR_TRIP_ELEMENT);
+    assert_stops_everywhere(model, LAR_FAULT_ELEMENT);
     lar_model_destroy(model);
     model = everything_model(&small);
     throw_node(model, brick_node(&small, 3, 2, 2), rush);
-    assert_stops_everywhere(model, LAR_TRIP_SPEED);
+    assert_stops_everywhere(model, LAR_FAULT_SPEED);
     lar_model_destroy(model);
 }
 

@@ -161,7 +161,7 @@ static void violence_never_makes_nan(void **unused) {
             stopped++;
             break;
         }
-        fine += simulation->trip.kind == LAR_TRIP_NONE;
+        fine += simulation->fault.kind == LAR_FAULT_NONE;
         finish(simulation, model);
     }
     print_message("violence: %d runs went well, %d were stopped\n", fine, stopped);

@@ -279,7 +279,7 @@ static void move_element(load *l, bool hourglass, double amount) {
         l->u[a][0] = amount * lar_node_sign[a][0] * (hourglass ? lar_node_sign[a][1] : 1);
 }
 
-static void limits_trip_their_lane(void **state) {
+static void limits_name_their_lane(void **state) {
     (void)state;
     static load l;
     static forces f;
@@ -497,7 +497,7 @@ int main(void) {
         cmocka_unit_test(every_lane_alike),
         cmocka_unit_test(integers_balance),
         cmocka_unit_test(any_count_of_blocks),
-        cmocka_unit_test(limits_trip_their_lane),
+        cmocka_unit_test(limits_name_their_lane),
         cmocka_unit_test(first_of_all_blocks),
         cmocka_unit_test(neighbours_keep_their_bits),
         cmocka_unit_test(rounds_to_nearest_even),

@@ -192,8 +192,8 @@ static void every_kind_gives_the_same_bits(void **state) {
 
 /* Squeezes, stretches or spoils one element of an otherwise resting body by the node in its middle
  * (`corner` 6 of place p), which only it and its neighbours in the row see. */
-static int64_t tripped(body *b, int k, bool boxes, int n, const double u[3], bool watch,
-                       const lar_hex8_limits *limits) {
+static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool watch,
+                      const lar_hex8_limits *limits) {
     static forces f, loose;
     double *at = b->u[b->general[n / 8].head.node[6][n % 8] / 4];
     memcpy(at, u, 3 * sizeof *u);
@@ -212,7 +212,7 @@ static int64_t first_with_node(const body *b, int n) {
     return -1;
 }
 
-static void limits_trip_in_every_kind(void **state) {
+static void limits_are_reported_in_every_kind(void **state) {
     (void)state;
     static body b;
     double stress = 2e5 * size * size * size * scale, hourglass = 0.004 * scale;
@@ -232,11 +232,11 @@ static void limits_trip_in_every_kind(void **state) {
                         int k = form / 4;
                         bool boxes = turn >= 0 && form % 2, watch = form / 2 % 2;
                         int64_t own = first_with_node(&b, n);
-                        assert_true(tripped(&b, k, boxes, n, nothing, watch, &limits) == -1);
-                        assert_true(tripped(&b, k, boxes, n, spoiled, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, endless, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, far, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, bent, watch, &limits) ==
+                        assert_true(beyond(&b, k, boxes, n, nothing, watch, &limits) == -1);
+                        assert_true(beyond(&b, k, boxes, n, spoiled, watch, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, endless, watch, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, far, watch, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, bent, watch, &limits) ==
                                     (watch ? own : -1));
                     }
             }
@@ -279,7 +279,7 @@ static void no_other_node_is_touched(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_gives_the_same_bits),
-        cmocka_unit_test(limits_trip_in_every_kind),
+        cmocka_unit_test(limits_are_reported_in_every_kind),
         cmocka_unit_test(no_other_node_is_touched),
     };
     return cmocka_run_group_tests(tests, find_kernels, NULL);

@@ -135,7 +135,7 @@ static void test_answer_times_are_told(void **state) {
     assert_true(device.answer_p50 > 0 && device.answer_p50 <= device.answer_p99);
     assert_true(device.answer_p99 <= device.answer_p999);
     assert_true(device.answer_p999 <= device.answer_max);
-    assert_true(report.trip_p50 >= 0.5 * device.answer_p50);
+    assert_true(report.round_trip_p50 >= 0.5 * device.answer_p50);
     close_bench(&b);
 }
 

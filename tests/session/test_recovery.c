@@ -61,8 +61,8 @@ static int32_t held_by(const bench *b, int32_t tool) {
 
 /* The engine sleeps: its next tick finds that the run has broken off. */
 static void forge_break(const bench *b) {
-    b->simulation->trip =
-        (lar_trip){.kind = LAR_TRIP_LOAD, .step = lar_simulation_steps(b->simulation)};
+    b->simulation->fault =
+        (lar_fault){.kind = LAR_FAULT_LOAD, .step = lar_simulation_steps(b->simulation)};
 }
 
 /* Somebody moves a tool, far from the block, and the run breaks at `time`. Returns where it went.

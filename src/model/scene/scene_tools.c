@@ -48,11 +48,11 @@ static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
 static lar_status read_name(lar_scene *scene, const lar_yaml *node, lar_tool *tool) {
     const lar_model *model = scene->model;
     const char *name;
-    char fault[LAR_FAULT_SIZE];
+    char problem[LAR_PROBLEM_SIZE];
     lar_status status = lar_scene_text(scene, node, "the name of the tool", &name);
     if (status) return status;
-    if (lar_tool_name_fault(name, fault))
-        return lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", fault);
+    if (lar_tool_name_problem(name, problem))
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", problem);
     for (int i = 0; i < model->tool_count - 1; i++)
         if (strcmp(model->tool[i].name, name) == 0)
             return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
@@ -133,9 +133,9 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     status = read_name(scene, name, tool);
     if (!status) status = read_size(scene, entry, shape, tool);
     if (!status) status = read_pose(scene, entry, shape, tool);
-    char fault[LAR_FAULT_SIZE];
-    if (!status && lar_tool_fault(scene->model, tool, fault))
-        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", fault);
+    char problem[LAR_PROBLEM_SIZE];
+    if (!status && lar_tool_problem(scene->model, tool, problem))
+        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);
     return status;
 }
 

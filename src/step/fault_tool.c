@@ -43,18 +43,18 @@ static double holding_distance(const lar_domain *domain, int32_t tool, const dou
     return nearest;
 }
 
-void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
+void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
     const lar_touch *touch = &domain->acting.touch;
-    bool moves = trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH;
-    bool of_element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
-    if (trip->blamed || !(moves || of_element)) return;
-    trip->blamed = true;
-    if (touch->face_count == 0 || trip->element < 0) return;
+    bool moves = fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST;
+    bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
+    if (fault->attributed || !(moves || of_element)) return;
+    fault->attributed = true;
+    if (touch->face_count == 0 || fault->element < 0) return;
     double rest[3], edge = 0, closest = 1;
     if (of_element) {
-        edge = element_at_rest(domain, trip->element, rest);
+        edge = element_at_rest(domain, fault->element, rest);
     } else {
-        memcpy(rest, domain->model->mesh.position[trip->element], sizeof rest);
+        memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
         edge = touch->face[0].edge;
     }
     for (int32_t t = 0; t < touch->list->count; t++) {
@@ -62,40 +62,40 @@ void lar_trip_blame(const lar_domain *domain, lar_trip *trip) {
         lar_tool_pose pose;
         double velocity[3];
         if (tool->shape == LAR_TOOL_NONE) continue;
-        lar_tool_at(&touch->tools->motion[t], trip->step, domain->time_step, &pose, velocity);
+        lar_tool_at(&touch->tools->motion[t], fault->step, domain->time_step, &pose, velocity);
         double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
         const lar_tool_motion *motion = &touch->tools->motion[t];
-        bool moving = motion->end > 0 && trip->step < motion->end + JUST;
+        bool moving = motion->end > 0 && fault->step < motion->end + JUST;
         if (tool->shape != LAR_TOOL_HAND)
-            touching =
-                touching_distance(tool, &pose, trip->place) / ((moving ? MOVING : TOUCHING) * edge);
+            touching = touching_distance(tool, &pose, fault->place) /
+                       ((moving ? MOVING : TOUCHING) * edge);
         if (!(fmin(holding, touching) < closest)) continue;
         closest = fmin(holding, touching);
-        trip->tool = t + 1;
-        trip->tool_pulls = holding < touching;
-        trip->tool_speed =
+        fault->tool = t + 1;
+        fault->tool_pulls = holding < touching;
+        fault->tool_speed =
             sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]);
     }
 }
 
-lar_status lar_trip_report_tool(const lar_domain *domain, const lar_trip *trip,
-                                const char *what_it_does, lar_error *error) {
+lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
+                                 const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_tool *tool = &domain->acting.touch.list->tool[trip->tool - 1];
-    bool element = trip->kind == LAR_TRIP_ELEMENT || trip->kind == LAR_TRIP_GAIN;
-    long long number = (long long)(element ? mesh->element_id : mesh->node_id)[trip->element];
+    const lar_tool *tool = &domain->acting.touch.list->tool[fault->tool - 1];
+    bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
+    long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
     char motion[80];
-    if (trip->tool_speed > 0)
-        snprintf(motion, sizeof motion, "moves at %.3g m/s and", trip->tool_speed);
+    if (fault->tool_speed > 0)
+        snprintf(motion, sizeof motion, "moves at %.3g m/s and", fault->tool_speed);
     else
         snprintf(motion, sizeof motion,
-                 trip->tool_pulls ? "holds the tissue there and" : "is pressed in there and");
+                 fault->tool_pulls ? "holds the tissue there and" : "is pressed in there and");
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): tool %s %s %s %s %lld near "
                     "(%.4g, %.4g, %.4g) m; move it slower or %s, or use a smaller time step or a "
                     "finer mesh there",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                     tool->name, motion, what_it_does, element ? "element" : "node", number,
-                    trip->place[0], trip->place[1], trip->place[2],
-                    trip->tool_pulls ? "pull less far" : "less deep");
+                    fault->place[0], fault->place[1], fault->place[2],
+                    fault->tool_pulls ? "pull less far" : "less deep");
 }

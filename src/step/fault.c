@@ -39,20 +39,20 @@ static double worst_corner(const lar_domain *domain, const lar_state *state, lar
 }
 
 /* Where the surface is folded most. */
-static void examine_surface(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+static void examine_surface(const lar_domain *domain, const lar_state *state, lar_fault *fault) {
     const lar_surface *surface = &domain->model->surface;
-    trip->volume_ratio = INFINITY;
+    fault->volume_ratio = INFINITY;
     for (int32_t f = 0; f < surface->face_count; f++) {
         double ratio = worst_corner(domain, state, surface->element[f]);
-        if (ratio >= trip->volume_ratio) continue;
-        trip->volume_ratio = ratio;
-        trip->element = surface->element[f];
+        if (ratio >= fault->volume_ratio) continue;
+        fault->volume_ratio = ratio;
+        fault->element = surface->element[f];
     }
 }
 
 /* What the instability begins with says more than the step size: nothing has had time to grow. */
-static const char *hint(const lar_trip *trip) {
-    return trip->step < 8 ? ", and check the units of mesh, material and loads" : "";
+static const char *hint(const lar_fault *fault) {
+    return fault->step < 8 ? ", and check the units of mesh, material and loads" : "";
 }
 
 /* The place of a node or element, or its place at rest when it has left the range of numbers. */
@@ -61,41 +61,43 @@ static void choose_place(const double now[3], const double rest[3], double place
     for (int i = 0; i < 3; i++) place[i] = finite ? now[i] : rest[i];
 }
 
-static void examine_place(const lar_domain *domain, const lar_state *state, lar_trip *trip) {
+static void examine_place(const lar_domain *domain, const lar_state *state, lar_fault *fault) {
     const lar_mesh *mesh = &domain->model->mesh;
     double center[3] = {0}, rest[3] = {0};
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
-            lar_gid node = mesh->element[trip->element][a];
+            lar_gid node = mesh->element[fault->element][a];
             rest[i] += mesh->position[node][i] / 8;
             center[i] +=
                 (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
         }
-    choose_place(center, rest, trip->place);
+    choose_place(center, rest, fault->place);
 }
 
 /* What a tool does to an element. */
-static const char *deed_of(const lar_domain *domain, const lar_trip *trip) {
-    if (!isfinite(trip->volume_ratio) || !isfinite(trip->growth)) return "tears apart";
-    if (!(trip->volume_ratio > domain->limits.least_volume)) return "turns inside out or crushes";
-    if (trip->growth * domain->time_step > domain->stable_step)
+static const char *describe_action(const lar_domain *domain, const lar_fault *fault) {
+    if (!isfinite(fault->volume_ratio) || !isfinite(fault->growth)) return "tears apart";
+    if (!(fault->volume_ratio > domain->limits.least_volume)) return "turns inside out or crushes";
+    if (fault->growth * domain->time_step > domain->stable_step)
         return "squeezes more than the time step allows";
     return "loads beyond all reason";
 }
 
-static lar_status report_element(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+static lar_status report_element(const lar_domain *domain, const lar_fault *fault,
+                                 lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const double *place = trip->place, volume_ratio = trip->volume_ratio, growth = trip->growth;
+    const double *place = fault->place, volume_ratio = fault->volume_ratio, growth = fault->growth;
     const char *cause, *remedy;
-    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, deed_of(domain, trip), error);
+    if (fault->tool > 0)
+        return lar_fault_report_tool(domain, fault, describe_action(domain, fault), error);
     if (!isfinite(volume_ratio) || !isfinite(growth))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
                         "torn beyond the range of numbers; use a smaller time step, or slower or "
                         "smaller loads and motions%s",
-                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                        (long long)mesh->element_id[trip->element], place[0], place[1], place[2],
-                        hint(trip));
+                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                        (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
+                        hint(fault));
     if (!(volume_ratio > domain->limits.least_volume)) {
         cause = "is turned inside out or crushed";
         remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
@@ -109,14 +111,15 @@ static lar_status report_element(const lar_domain *domain, const lar_trip *trip,
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
                     "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s%s",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    (long long)mesh->element_id[trip->element], place[0], place[1], place[2], cause,
-                    volume_ratio, domain->time_step, domain->stable_step, remedy, hint(trip));
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
+                    cause, volume_ratio, domain->time_step, domain->stable_step, remedy,
+                    hint(fault));
 }
 
 /* The fastest of some nodes, and where it is. */
 static void examine_speed(const lar_domain *domain, const lar_state *state, lar_lid first,
-                          lar_lid end, lar_trip *trip) {
+                          lar_lid end, lar_fault *fault) {
     const lar_mesh *mesh = &domain->model->mesh;
     lar_lid fastest = -1;
     double highest = -1;
@@ -127,114 +130,116 @@ static void examine_speed(const lar_domain *domain, const lar_state *state, lar_
                 fastest = n;
             }
     if (fastest < 0) return;
-    trip->element = domain->layout.global[fastest];
-    trip->speed = highest;
-    const double *u = state->u + 4 * fastest, *rest = mesh->position[trip->element];
+    fault->element = domain->layout.global[fastest];
+    fault->speed = highest;
+    const double *u = state->u + 4 * fastest, *rest = mesh->position[fault->element];
     double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]};
-    choose_place(now, rest, trip->place);
+    choose_place(now, rest, fault->place);
 }
 
-static lar_status report_speed(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+static lar_status report_speed(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    lar_gid node = trip->element;
-    const double *place = trip->place, highest = trip->speed;
-    if (trip->tool > 0) return lar_trip_report_tool(domain, trip, "hurls away", error);
+    lar_gid node = fault->element;
+    const double *place = fault->place, highest = fault->speed;
+    if (fault->tool > 0) return lar_fault_report_tool(domain, fault, "hurls away", error);
     if (!isfinite(highest))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
                         "left the range of numbers; use a smaller time step, or slower or smaller "
                         "loads and motions%s",
-                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                        (long long)mesh->node_id[node], place[0], place[1], place[2], hint(trip));
+                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                        (long long)mesh->node_id[node], place[0], place[1], place[2], hint(fault));
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
                     "%.3g m/s, hundreds of elements per time step (the limit is %.3g m/s); use a "
                     "smaller time step, or slower or smaller loads and motions%s",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                     (long long)mesh->node_id[node], place[0], place[1], place[2], highest,
-                    domain->motion.speed, hint(trip));
+                    domain->motion.speed, hint(fault));
 }
 
-static lar_status report_load(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+static lar_status report_load(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const double *at = mesh->position[trip->element];
+    const double *at = mesh->position[fault->element];
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): the forces and pressures on node %lld, at "
                     "(%.4g, %.4g, %.4g) m at rest, are far beyond what the material can bear; use "
                     "smaller loads, and check the units of mesh, material and loads",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    (long long)mesh->node_id[trip->element], at[0], at[1], at[2]);
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    (long long)mesh->node_id[fault->element], at[0], at[1], at[2]);
 }
 
-static lar_status report_gain(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
-    if (trip->tool > 0)
-        return lar_trip_report_tool(domain, trip, "folds the surface over itself at", error);
+static lar_status report_gain(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
+    if (fault->tool > 0)
+        return lar_fault_report_tool(domain, fault, "folds the surface over itself at", error);
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): contact has given %.3g J more than it took, "
                     "for the surface is crushed or folded over itself, most at element %lld near "
                     "(%.4g, %.4g, %.4g) m (volume ratio of its worst corner %.3g); use slower or "
                     "smaller loads and motions, or a stiffer or finer mesh there",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    trip->given, (long long)domain->model->mesh.element_id[trip->element],
-                    trip->place[0], trip->place[1], trip->place[2], trip->volume_ratio);
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    fault->given, (long long)domain->model->mesh.element_id[fault->element],
+                    fault->place[0], fault->place[1], fault->place[2], fault->volume_ratio);
 }
 
-static lar_status report_crowd(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
+static lar_status report_pairs(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): more than %d faces lie close to the surface "
                     "nodes that may touch them, on average: the surface is crushed; use slower or "
                     "smaller loads and motions, or a finer mesh where bodies touch",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                     LAR_PAIRS_PER_NODE);
 }
 
-static lar_status report_rush(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
-    const char *crowd =
-        trip->crowded ? ", the less since many faces are crowded around the nodes that may touch "
-                        "them"
-                      : "";
-    if (trip->tool > 0)
-        return lar_trip_report_tool(
-            domain, trip, trip->crowded ? "crowds the surface and hurls away" : "hurls away",
-            error);
-    if (trip->element < 0)
+static lar_status report_too_fast(const lar_domain *domain, const lar_fault *fault,
+                                  lar_error *error) {
+    const char *pairs =
+        fault->too_many_pairs
+            ? ", the less since many faces are crowded around the nodes that may touch "
+              "them"
+            : "";
+    if (fault->tool > 0)
+        return lar_fault_report_tool(
+            domain, fault,
+            fault->too_many_pairs ? "crowds the surface and hurls away" : "hurls away", error);
+    if (fault->element < 0)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): the surface became so fast within a few "
                         "steps that the search for contact on several processors could not "
                         "follow%s; use slower or smaller loads and motions, or one processor",
-                        (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                        crowd);
+                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                        pairs);
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m became so "
                     "fast within a few steps (%.3g m/s) that the search for contact on several "
                     "processors could not follow%s; use slower or smaller loads and motions, or "
                     "one processor",
-                    (unsigned long long)trip->step, (double)trip->step * domain->time_step,
-                    (long long)domain->model->mesh.node_id[trip->element], trip->place[0],
-                    trip->place[1], trip->place[2], trip->speed, crowd);
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    (long long)domain->model->mesh.node_id[fault->element], fault->place[0],
+                    fault->place[1], fault->place[2], fault->speed, pairs);
 }
 
-void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
-                      lar_trip *trip) {
-    if (trip->examined) return;
-    trip->examined = true;
-    if (trip->kind == LAR_TRIP_ELEMENT) {
-        examine_element(domain, state, trip->element, &trip->volume_ratio, &trip->growth);
-        examine_place(domain, state, trip);
-    } else if (trip->kind == LAR_TRIP_GAIN) {
-        examine_surface(domain, state, trip);
-        examine_place(domain, state, trip);
-    } else if (trip->kind == LAR_TRIP_SPEED || trip->kind == LAR_TRIP_RUSH) {
-        examine_speed(domain, state, first, end, trip);
+void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
+                       lar_fault *fault) {
+    if (fault->examined) return;
+    fault->examined = true;
+    if (fault->kind == LAR_FAULT_ELEMENT) {
+        examine_element(domain, state, fault->element, &fault->volume_ratio, &fault->growth);
+        examine_place(domain, state, fault);
+    } else if (fault->kind == LAR_FAULT_ENERGY_GAIN) {
+        examine_surface(domain, state, fault);
+        examine_place(domain, state, fault);
+    } else if (fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST) {
+        examine_speed(domain, state, first, end, fault);
     }
 }
 
-lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error) {
-    if (trip->kind == LAR_TRIP_NONE) return LAR_OK;
-    if (trip->kind == LAR_TRIP_ELEMENT) return report_element(domain, trip, error);
-    if (trip->kind == LAR_TRIP_LOAD) return report_load(domain, trip, error);
-    if (trip->kind == LAR_TRIP_GAIN) return report_gain(domain, trip, error);
-    if (trip->kind == LAR_TRIP_CROWD) return report_crowd(domain, trip, error);
-    if (trip->kind == LAR_TRIP_RUSH) return report_rush(domain, trip, error);
-    return report_speed(domain, trip, error);
+lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
+    if (fault->kind == LAR_FAULT_NONE) return LAR_OK;
+    if (fault->kind == LAR_FAULT_ELEMENT) return report_element(domain, fault, error);
+    if (fault->kind == LAR_FAULT_LOAD) return report_load(domain, fault, error);
+    if (fault->kind == LAR_FAULT_ENERGY_GAIN) return report_gain(domain, fault, error);
+    if (fault->kind == LAR_FAULT_TOO_MANY_PAIRS) return report_pairs(domain, fault, error);
+    if (fault->kind == LAR_FAULT_TOO_FAST) return report_too_fast(domain, fault, error);
+    return report_speed(domain, fault, error);
 }
