@@ -2,29 +2,29 @@
 #ifndef LAR_CONTACT_ACTING_H
 #define LAR_CONTACT_ACTING_H
 
-#include "contact/collide.h"
+#include "contact/body_contact.h"
 #include "contact/conditions.h"
-#include "contact/touch.h"
+#include "contact/tool_contact.h"
 
 typedef struct lar_acting {
-    lar_conditions conditions; /* supports, prescribed motion, loads */
-    lar_touch touch;           /* tools and planes */
-    lar_collide collide;       /* bodies */
+    lar_conditions conditions;     /* supports, prescribed motion, loads */
+    lar_tool_contact tool_contact; /* tools and planes */
+    lar_body_contact body_contact; /* bodies */
 } lar_acting;
 
 /* All of them; idempotent. */
 static inline void lar_acting_destroy(lar_acting *acting) {
     lar_conditions_destroy(&acting->conditions);
-    lar_touch_destroy(&acting->touch);
-    lar_collide_destroy(&acting->collide);
+    lar_tool_contact_destroy(&acting->tool_contact);
+    lar_body_contact_destroy(&acting->body_contact);
 }
 
 /* The state has been replaced by another one: what contact knew of it, and had counted, is void. */
 static inline void lar_acting_forget(lar_acting *acting) {
-    lar_touch_forget(&acting->touch);
-    lar_collide_forget(&acting->collide);
-    acting->collide.too_many_pairs = false; /* the other state may have room for its pairs */
-    acting->touch.seen = acting->collide.info = (lar_contact_info){0};
+    lar_tool_contact_forget(&acting->tool_contact);
+    lar_body_contact_forget(&acting->body_contact);
+    acting->body_contact.too_many_pairs = false; /* the other state may have room for its pairs */
+    acting->tool_contact.seen = acting->body_contact.info = (lar_contact_info){0};
 }
 
 #endif

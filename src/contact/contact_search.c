@@ -327,7 +327,8 @@ typedef struct overlap {
 } overlap;
 
 /* What contact would do to the node of a group at rest: of its faces within reach the closest one
- * counts, of equally close ones the one over or under whose plane it is farthest (collide.h). */
+ * counts, of equally close ones the one over or under whose plane it is farthest (body_contact.h).
+ */
 static void find_overlap(const lar_contact_surface *s, const lar_contact_list *list,
                          const lar_contact_group *group, overlap *deepest) {
     const int32_t *face = list->face + group->first;

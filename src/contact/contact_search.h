@@ -14,7 +14,7 @@
  * made a few nodes at a time, for the places at its beginning, while the last list is still good.
  *
  * What is found depends on the skin, what touches does not: a list with more pairs than another
- * gives the same contacts (collide.h). A search asks for no memory: lists have room for
+ * gives the same contacts (body_contact.h). A search asks for no memory: lists have room for
  * LAR_PAIRS_PER_NODE pairs per node; where that is not enough, it is made again with a thinner
  * skin.
  */

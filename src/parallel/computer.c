@@ -333,7 +333,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
     for (int32_t i = 0; i < seats(computer); i++) {
         lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
         if (first) lar_report_begin(acting);
-        lar_touch_forget_depths(&acting->touch);
+        lar_tool_contact_forget_depths(&acting->tool_contact);
         processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);

@@ -159,8 +159,8 @@ static void plan_peer(lar_contact_board *board, const lar_contact_list *list, in
 
 /* The groups in which a thread adds something, or whose node's level it keeps. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
-    lar_collide *collide = &worker->acting.collide;
-    lar_contact_list *own = &collide->list;
+    lar_body_contact *contact = &worker->acting.body_contact;
+    lar_contact_list *own = &contact->list;
     own->group_count = own->face_count = 0;
     own->skin = list->skin;
     for (int32_t g = 0; g < list->group_count; g++) {
@@ -168,20 +168,20 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         const int32_t *face = list->face + group->first;
         int32_t parent[2];
         double weight[2];
-        lar_contact_parents(collide->surface, group->node, parent, weight);
-        bool takes = collide->adds_node[parent[0]] || collide->adds_node[parent[1]] ||
-                     (is_own_body(collide->surface, list, group) && collide->keeps[group->node]);
+        lar_contact_parents(contact->surface, group->node, parent, weight);
+        bool takes = contact->adds_node[parent[0]] || contact->adds_node[parent[1]] ||
+                     (is_own_body(contact->surface, list, group) && contact->keeps[group->node]);
         for (int32_t i = 0; i < group->count && !takes; i++)
-            takes = collide->adds_corner[face[i]] &&
-                    lar_contact_active(&collide->surface->node[group->node],
-                                       &collide->surface->face[face[i]]);
+            takes = contact->adds_corner[face[i]] &&
+                    lar_contact_active(&contact->surface->node[group->node],
+                                       &contact->surface->face[face[i]]);
         if (!takes) continue;
         own->group[own->group_count++] =
             (lar_contact_group){group->node, own->face_count, group->count, group->gap};
         memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);
         own->face_count += group->count;
     }
-    lar_collide_restart(collide);
+    lar_body_contact_restart(contact);
 }
 
 void lar_contact_compile(lar_processor *p, const lar_contact_map *map,
@@ -201,34 +201,34 @@ void lar_contact_compile(lar_processor *p, const lar_contact_map *map,
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_processor *p,
+static lar_status create_contact(const lar_body_contact *whole, int32_t thread, lar_processor *p,
                                  lar_error *error) {
     const lar_contact_surface *surface = whole->surface;
     const lar_contact_board *board = p->board;
-    lar_collide *collide = &p->worker[thread].acting.collide;
+    lar_body_contact *contact = &p->worker[thread].acting.body_contact;
     size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
     size_t groups = (size_t)whole->list.group_room, pairs = (size_t)whole->list.face_room;
     uint8_t *adds_node = lar_calloc(nodes, 1), *adds_corner = lar_calloc(faces, 1);
     uint8_t *keeps = lar_calloc(nodes, 1);
-    *collide = (lar_collide){.surface = surface,
-                             .law = whole->law,
-                             .time_step = whole->time_step,
-                             .view = {.value = board->value, .slot = board->slot},
-                             .adds_node = adds_node,
-                             .adds_corner = adds_corner,
-                             .keeps = keeps,
-                             .due = lar_calloc(groups, sizeof *collide->due),
-                             .last = lar_calloc(groups, sizeof *collide->last),
-                             .near = lar_calloc(groups, sizeof *collide->near),
-                             .away = lar_calloc(pairs, sizeof *collide->away),
-                             .part = lar_calloc(groups, sizeof *collide->part),
-                             .level = lar_calloc(groups, sizeof *collide->level)};
-    collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
-    collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
-    if (!adds_node || !adds_corner || !keeps || !collide->due || !collide->last || !collide->near ||
-        !collide->away || !collide->part || !collide->level || !collide->list.group ||
-        !collide->list.face)
-        return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
+    *contact = (lar_body_contact){.surface = surface,
+                                  .law = whole->law,
+                                  .time_step = whole->time_step,
+                                  .view = {.value = board->value, .slot = board->slot},
+                                  .adds_node = adds_node,
+                                  .adds_corner = adds_corner,
+                                  .keeps = keeps,
+                                  .due = lar_calloc(groups, sizeof *contact->due),
+                                  .last = lar_calloc(groups, sizeof *contact->last),
+                                  .near = lar_calloc(groups, sizeof *contact->near),
+                                  .away = lar_calloc(pairs, sizeof *contact->away),
+                                  .part = lar_calloc(groups, sizeof *contact->part),
+                                  .level = lar_calloc(groups, sizeof *contact->level)};
+    contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
+    contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
+    if (!adds_node || !adds_corner || !keeps || !contact->due || !contact->last || !contact->near ||
+        !contact->away || !contact->part || !contact->level || !contact->list.group ||
+        !contact->list.face)
+        return lar_fail_memory(error, groups * sizeof *contact->part + 4 * pairs,
                                "contact of bodies");
     for (size_t n = 0; n < nodes; n++) {
         adds_node[n] = board->loader[n] == thread;
@@ -272,7 +272,7 @@ static lar_status allocate_board(int32_t processors, int32_t threads, size_t nod
                 : lar_fail_memory(error, nodes * (200 + 8 * (size_t)processors), "contact places");
 }
 
-lar_status lar_contact_board_create(const lar_collide *whole, const lar_condition_share *share,
+lar_status lar_contact_board_create(const lar_body_contact *whole, const lar_condition_share *share,
                                     const int32_t *reporter, int32_t processors, lar_processor *p,
                                     lar_error *error) {
     const lar_contact_surface *surface = whole->surface;
@@ -292,7 +292,7 @@ lar_status lar_contact_board_create(const lar_collide *whole, const lar_conditio
     for (int32_t f = 0; f < surface->face_count; f++)
         board->pusher[f] = share->presses[surface->face[f].element];
     for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = create_collide(whole, t, p, error);
+        status = create_contact(whole, t, p, error);
     return status;
 }
 
@@ -300,14 +300,14 @@ void lar_contact_board_destroy(lar_processor *p) {
     lar_contact_board *board = p->board;
     if (!board) return;
     for (int32_t t = 0; t < p->thread_count; t++) {
-        lar_collide *collide = &p->worker[t].acting.collide;
-        free((uint8_t *)collide->adds_node);
-        free((uint8_t *)collide->adds_corner);
-        free((uint8_t *)collide->keeps);
-        free(collide->list.group);
-        free(collide->list.face);
-        collide->adds_node = collide->adds_corner = collide->keeps = NULL;
-        collide->list = (lar_contact_list){0};
+        lar_body_contact *contact = &p->worker[t].acting.body_contact;
+        free((uint8_t *)contact->adds_node);
+        free((uint8_t *)contact->adds_corner);
+        free((uint8_t *)contact->keeps);
+        free(contact->list.group);
+        free(contact->list.face);
+        contact->adds_node = contact->adds_corner = contact->keeps = NULL;
+        contact->list = (lar_contact_list){0};
         if (!board->page) continue;
         free(board->page[t].slot);
         free(board->page[t].node);

@@ -103,7 +103,7 @@ static lar_status receive_places(const lar_processor *p, uint64_t round, lar_err
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error) {
     lar_processor *p = worker->processor;
     lar_contact_board *board = p->board;
-    lar_collide *collide = &worker->acting.collide;
+    lar_body_contact *contact = &worker->acting.body_contact;
     lar_status status = wait_for_threads(p, round, error);
     if (status) return status;
     if (worker->thread == 0)
@@ -114,23 +114,23 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     double speed = board->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)
         speed = lar_most(speed, board->mark[t].speed[round & 1]);
-    collide->view.place = (const double(*)[LAR_PLACE_VALUES])board->place[round & 1];
+    contact->view.place = (const double(*)[LAR_PLACE_VALUES])board->place[round & 1];
     /* What stands on the board has come here in the last step with this speed. */
-    collide->travel += speed * worker->context.whole_step;
-    lar_collide_add(collide, &worker->context, &worker->state);
-    lar_collide_half_work(collide, &worker->context, &worker->state);
+    contact->travel += speed * worker->context.whole_step;
+    lar_body_contact_add(contact, &worker->context, &worker->state);
+    lar_body_contact_half_work(contact, &worker->context, &worker->state);
     return LAR_OK;
 }
 
 /* ---- in time --------------------------------------------------------------------------------- */
 
 void lar_contact_watch(lar_worker *worker, uint64_t steps) {
-    const lar_collide *collide = &worker->acting.collide;
-    double allowed = 0.5 * collide->list.skin;
+    const lar_body_contact *contact = &worker->acting.body_contact;
+    double allowed = 0.5 * contact->list.skin;
     double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
     uint64_t done = worker->state.step;
-    if (!(collide->moved <= allowed) && !worker->fault.kind)
+    if (!(contact->moved <= allowed) && !worker->fault.kind)
         worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST, .element = -1, .step = done - 1};
-    if (collide->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
+    if (contact->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
         lar_processor_ask_stop(worker->processor, done + steps);
 }

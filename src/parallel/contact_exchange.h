@@ -106,9 +106,10 @@ typedef struct lar_contact_board {
     uint8_t *marked; /* [contact nodes] scratch */
 } lar_contact_board;
 
-/* For a processor whose threads are there: also their worker->acting.collide. `whole` is the whole
- * model's; without contacts of bodies nothing is made. Of `share` the thread does not matter. */
-lar_status lar_contact_board_create(const lar_collide *whole, const lar_condition_share *share,
+/* For a processor whose threads are there: also their worker->acting.body_contact. `whole` is the
+ * whole model's; without contacts of bodies nothing is made. Of `share` the thread does not matter.
+ */
+lar_status lar_contact_board_create(const lar_body_contact *whole, const lar_condition_share *share,
                                     const int32_t *reporter, int32_t processors,
                                     lar_processor *processor, lar_error *error);
 void lar_contact_board_destroy(lar_processor *processor); /* idempotent */

@@ -197,11 +197,12 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
     if (!status)
         status = lar_conditions_create(setting->whole->model, layout->local, &share,
                                        &worker->acting.conditions, error);
-    const lar_touch *touch = &setting->whole->acting.touch;
+    const lar_tool_contact *contact = &setting->whole->acting.tool_contact;
     if (!status)
-        status = lar_touch_create(setting->whole->model, layout->local, &share, touch->list,
-                                  touch->tools, &worker->acting.touch, error);
-    worker->acting.touch.always = touch->always;
+        status =
+            lar_tool_contact_create(setting->whole->model, layout->local, &share, contact->list,
+                                    contact->tools, &worker->acting.tool_contact, error);
+    worker->acting.tool_contact.always = contact->always;
     return status;
 }
 
@@ -215,7 +216,7 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
         status = create_worker(schedule, setting, a, t, p, error);
     const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
     if (!status && !p->check)
-        status = lar_contact_board_create(&setting->whole->acting.collide, &share,
+        status = lar_contact_board_create(&setting->whole->acting.body_contact, &share,
                                           setting->reporter, schedule->grid.count, p, error);
     return status ? status : lar_parcels_create(schedule, a->thread, p, error);
 }

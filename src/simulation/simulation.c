@@ -147,13 +147,13 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
     domain->interval = lar_interval_length(domain, &simulation->tools);
-    status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
-                              &simulation->tools, &domain->acting.touch, error);
-    domain->acting.touch.always = options->search_always != 0;
+    status = lar_tool_contact_create(model, domain->layout.local, NULL, &simulation->list,
+                                     &simulation->tools, &domain->acting.tool_contact, error);
+    domain->acting.tool_contact.always = options->search_always != 0;
     if (!status)
-        status = lar_collide_create(model, domain->mass, domain->layout.local, domain->time_step,
-                                    domain->stable_step, options->search_always != 0,
-                                    &domain->acting.collide, error);
+        status = lar_body_contact_create(
+            model, domain->mass, domain->layout.local, domain->time_step, domain->stable_step,
+            options->search_always != 0, &domain->acting.body_contact, error);
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;
@@ -203,7 +203,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
     lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
-    lar_touch_forget_depths(&domain->acting.touch);
+    lar_tool_contact_forget_depths(&domain->acting.tool_contact);
     state->need = 0;
     while (state->step < end && goes_on) {
         lar_step(domain, state, fault);

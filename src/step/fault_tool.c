@@ -26,17 +26,17 @@ static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
                                 const double place[3]) {
     lar_tool_body body;
     lar_tool_place(tool, pose, &body, body.now);
-    return lar_touch_distance(&body, tool->radius, place);
+    return lar_tool_contact_distance(&body, tool->radius, place);
 }
 
 static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
-    const lar_touch *touch = &domain->acting.touch;
+    const lar_tool_contact *contact = &domain->acting.tool_contact;
     double nearest = INFINITY;
-    for (int32_t i = 0; i < touch->tools->hold_count; i++) {
-        const lar_hold *hold = &touch->tools->hold[i];
+    for (int32_t i = 0; i < contact->tools->hold_count; i++) {
+        const lar_hold *hold = &contact->tools->hold[i];
         if (hold->tool != tool) continue;
         double point[3], square = 0;
-        lar_face_mean(touch->face[touch->face_of[hold->face]].rest, hold->weight, point);
+        lar_face_mean(contact->face[contact->face_of[hold->face]].rest, hold->weight, point);
         for (int k = 0; k < 3; k++) square += (point[k] - rest[k]) * (point[k] - rest[k]);
         nearest = fmin(nearest, sqrt(square));
     }
@@ -44,27 +44,27 @@ static double holding_distance(const lar_domain *domain, int32_t tool, const dou
 }
 
 void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
-    const lar_touch *touch = &domain->acting.touch;
+    const lar_tool_contact *contact = &domain->acting.tool_contact;
     bool moves = fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST;
     bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     if (fault->attributed || !(moves || of_element)) return;
     fault->attributed = true;
-    if (touch->face_count == 0 || fault->element < 0) return;
+    if (contact->face_count == 0 || fault->element < 0) return;
     double rest[3], edge = 0, closest = 1;
     if (of_element) {
         edge = element_at_rest(domain, fault->element, rest);
     } else {
         memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
-        edge = touch->face[0].edge;
+        edge = contact->face[0].edge;
     }
-    for (int32_t t = 0; t < touch->list->count; t++) {
-        const lar_tool *tool = &touch->list->tool[t];
+    for (int32_t t = 0; t < contact->list->count; t++) {
+        const lar_tool *tool = &contact->list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
         if (tool->shape == LAR_TOOL_NONE) continue;
-        lar_tool_at(&touch->tools->motion[t], fault->step, domain->time_step, &pose, velocity);
+        lar_tool_at(&contact->tools->motion[t], fault->step, domain->time_step, &pose, velocity);
         double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
-        const lar_tool_motion *motion = &touch->tools->motion[t];
+        const lar_tool_motion *motion = &contact->tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
         if (tool->shape != LAR_TOOL_HAND)
             touching = touching_distance(tool, &pose, fault->place) /
@@ -81,7 +81,7 @@ void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_tool *tool = &domain->acting.touch.list->tool[fault->tool - 1];
+    const lar_tool *tool = &domain->acting.tool_contact.list->tool[fault->tool - 1];
     bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
     char motion[80];

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/touch_face.h"
+#include "contact/tool_contact_face.h"
 
 /* All holds of one tool together [N/m]: the pads of two fingers give by about a centimetre at 5 N;
  * jaws are metal, and what is left is the tissue between them. */
@@ -47,15 +47,15 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
                           double most, int32_t every, int32_t tool, lar_tools *tools,
                           double *nearest) {
-    const lar_touch *touch = &whole->acting.touch;
+    const lar_tool_contact *contact = &whole->acting.tool_contact;
     int32_t count = 0;
     for (int32_t s = 0; s < whole->model->surface.face_count; s++) {
-        const lar_touch_face *face = &touch->face[touch->face_of[s]];
+        const lar_tool_contact_face *face = &contact->face[contact->face_of[s]];
         double x[4][3], weight[4], point[3], own[3];
-        lar_touch_corners(face, state->u, x);
-        int n = lar_touch_points(face, reach->tool->radius);
+        lar_tool_contact_corners(face, state->u, x);
+        int n = lar_tool_contact_points(face, reach->tool->radius);
         for (int i = 0; i < n * n; i++) {
-            lar_touch_weights(i, n, weight);
+            lar_tool_contact_weights(i, n, weight);
             lar_face_mean((const double(*)[3])x, weight, point);
             double distance = reach_of(reach, point, own);
             if (distance < *nearest) *nearest = distance;
@@ -88,7 +88,7 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
     int32_t before = tools->hold_count, room = room_of(list, tools);
     double most = INFINITY, nearest = INFINITY;
     bool hand = reach.tool->shape == LAR_TOOL_HAND;
-    if (whole->acting.touch.face_count == 0 || room <= 0) return;
+    if (whole->acting.tool_contact.face_count == 0 || room <= 0) return;
     if (hand) {
         most = reach.tool->radius;
     } else {
@@ -147,7 +147,7 @@ int32_t lar_hold_count(const lar_tools *tools, int32_t tool) {
 
 void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
                    lar_tools *tools) {
-    const lar_touch *touch = &whole->acting.touch;
+    const lar_tool_contact *contact = &whole->acting.tool_contact;
     if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
     lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
     double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));
@@ -156,7 +156,7 @@ void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t t
         lar_hold *hold = &tools->hold[i];
         if (hold->tool != tool) continue;
         /* Of what it really has, or softening would begin unseen. */
-        double most = lar_hold_most(&touch->face[touch->face_of[hold->face]],
+        double most = lar_hold_most(&contact->face[contact->face_of[hold->face]],
                                     list->tool[tool].radius, &law, whole->mass);
         hold->stiffness = share * fmin(wanted, most);
     }

@@ -6,12 +6,12 @@
  *     opening 0.25 .. 0.5  grasper: holds softer and softer
  *     opening 0.2 ... 0.6  lets go
  *
- * Points are those at which tools touch (contact/touch.h). A hold is a spring and a damper between
- * the point and where it was in the tool's own axes when it was taken, so taking hold moves
+ * Points are those at which tools touch (contact/tool_contact.h). A hold is a spring and a damper
+ * between the point and where it was in the tool's own axes when it was taken, so taking hold moves
  * nothing. All holds of a tool together are as stiff as what it stands for: finger tips, or jaws.
  *
  * Decided between advances by whoever has the whole state (contact/tools.h); the springs themselves
- * are contact/touch.h's.
+ * are contact/tool_contact.h's.
  */
 #ifndef LAR_STEP_HOLD_H
 #define LAR_STEP_HOLD_H

@@ -91,20 +91,20 @@ static double supported_velocity(const lar_domain *domain, const lar_state *stat
  * half of what the stop takes. */
 static void add_stops(const lar_domain *domain, const lar_state *state, const double gravity[3],
                       lar_energy *energy) {
-    const lar_planes *planes = &domain->acting.touch.planes;
+    const lar_plane_contact *plane_contact = &domain->acting.tool_contact.plane_contact;
     lar_condition_context context = lar_domain_context(domain);
     context.time_step = part_of_step(domain);
     double half = 0.5 * damping_of(domain) * mean_step(domain, state);
-    for (int32_t entry = 0; entry < planes->count;) {
-        int32_t value = planes->node[entry].value;
+    for (int32_t entry = 0; entry < plane_contact->count;) {
+        int32_t value = plane_contact->node[entry].value;
         double free[3], ahead[3], mass = domain->mass[value / 4];
         for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
-            const lar_plane_way *way = &planes->way[planes->node[entry].way];
+            const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
             bool held = way->slide[i] == 0 && way->normal[i] != 0;
             free[i] = held ? state->v[value + i] : next_velocity(domain, state, value + i, gravity);
             ahead[i] = free[i];
         }
-        entry = lar_planes_ahead(planes, &context, state, entry, ahead);
+        entry = lar_plane_contact_ahead(plane_contact, &context, state, entry, ahead);
         for (int i = 0; i < 3; i++) {
             double change = ahead[i] - free[i], behind = state->v[value + i];
             energy->kinetic += 0.5 * mass * behind * change;
@@ -139,8 +139,8 @@ static void add_motion(const lar_domain *domain, const lar_state *state, const d
 static void add_contact(const lar_domain *domain, const lar_condition_context *context,
                         lar_state *state, lar_energy *energy) {
     double external = state->external, contact = state->contact;
-    lar_touch_half_work(&domain->acting.touch, context, state);
-    lar_collide_half_work(&domain->acting.collide, context, state);
+    lar_tool_contact_half_work(&domain->acting.tool_contact, context, state);
+    lar_body_contact_half_work(&domain->acting.body_contact, context, state);
     energy->external += state->external - external;
     energy->contact += state->contact - contact;
     state->external = external;

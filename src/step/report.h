@@ -26,7 +26,7 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
 
 /* Before an advance: what one thread has felt is forgotten. */
 static inline void lar_report_begin(lar_acting *acting) {
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->touch.sum[i] = (lar_tool_sum){0};
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->tool_contact.sum[i] = (lar_tool_sum){0};
 }
 
 /* Adds `other` to `sum`. */
@@ -56,11 +56,11 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
 static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
                                   const lar_state *state) {
     lar_report own;
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
-    own.contact = acting->touch.seen;
-    lar_report_contact(&own.contact, &acting->collide.info);
-    own.moved = acting->collide.moved;
-    own.way = acting->collide.way;
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->tool_contact.sum[i];
+    own.contact = acting->tool_contact.seen;
+    lar_report_contact(&own.contact, &acting->body_contact.info);
+    own.moved = acting->body_contact.moved;
+    own.way = acting->body_contact.way;
     own.need = state->need;
     own.taken = state->contact;
     lar_report_join(sum, &own);

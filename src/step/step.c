@@ -100,7 +100,7 @@ void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, la
 
 const lar_step_division *lar_division_of(const lar_acting *acting) {
     static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1, .base = 1};
-    return acting->touch.tools ? &acting->touch.tools->division : &undivided;
+    return acting->tool_contact.tools ? &acting->tool_contact.tools->division : &undivided;
 }
 
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
@@ -111,7 +111,7 @@ double lar_mean_step(const lar_domain *domain, const lar_step_division *division
 }
 
 const lar_settings *lar_settings_of(const lar_acting *acting) {
-    return acting->touch.tools ? &acting->touch.tools->settings : NULL;
+    return acting->tool_contact.tools ? &acting->tool_contact.tools->settings : NULL;
 }
 
 static bool is_set(const lar_settings *settings) {
@@ -164,8 +164,8 @@ static void move_nodes(const lar_domain *domain, const lar_acting *acting,
                        const lar_condition_context *context, double time, lar_state *state,
                        lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
-    bool predicts =
-        acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
+    bool predicts = acting->body_contact.surface || acting->tool_contact.plane_contact.count > 0 ||
+                    acting->tool_contact.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
     const lar_settings *settings = lar_settings_of(acting);
@@ -202,36 +202,36 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
 static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
                 lar_state *state, lar_fault *fault) {
     apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, fault);
-    lar_touch_apply(&acting->touch, context, state);
+    lar_tool_contact_apply(&acting->tool_contact, context, state);
 }
 
 static void add_half_work(const lar_domain *domain, const lar_acting *acting,
                           const lar_condition_context *context, lar_state *state) {
     state->external += lar_conditions_half_work(&acting->conditions, context,
                                                 lar_state_time(domain, state), state);
-    lar_touch_half_work(&acting->touch, context, state);
+    lar_tool_contact_half_work(&acting->tool_contact, context, state);
 }
 
 /* Contact of bodies, by who has all nodes. */
-static void collide(lar_collide *collide, const lar_condition_context *context, lar_state *state,
-                    lar_fault *fault) {
-    lar_collide_apply(collide, context, state);
-    if (collide->too_many_pairs && !fault->kind)
+static void add_body_contact(lar_body_contact *contact, const lar_condition_context *context,
+                             lar_state *state, lar_fault *fault) {
+    lar_body_contact_apply(contact, context, state);
+    if (contact->too_many_pairs && !fault->kind)
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_touch_note note;
+    lar_tool_contact_saved note;
     lar_step_enter(domain, &domain->acting, &context, state);
-    lar_touch_remember(&domain->acting.touch, &note);
-    lar_contact_info counted = domain->acting.collide.info;
+    lar_tool_contact_remember(&domain->acting.tool_contact, &note);
+    lar_contact_info counted = domain->acting.body_contact.info;
     act(domain, &domain->acting, &context, state, fault);
-    lar_collide_forget(&domain->acting.collide);
-    collide(&domain->acting.collide, &context, state, fault);
-    lar_collide_forget(&domain->acting.collide);
-    domain->acting.collide.info = counted;
-    lar_touch_restore(&domain->acting.touch, &note);
+    lar_body_contact_forget(&domain->acting.body_contact);
+    add_body_contact(&domain->acting.body_contact, &context, state, fault);
+    lar_body_contact_forget(&domain->acting.body_contact);
+    domain->acting.body_contact.info = counted;
+    lar_tool_contact_restore(&domain->acting.tool_contact, &note);
     if (domain->kind != LAR_ELEMENT_HEX8) {
         lar_step_recover(domain, 0, domain->run_count, state, fault);
         return;
@@ -252,17 +252,17 @@ void lar_step_move(const lar_domain *domain, lar_acting *acting,
     lar_conditions *conditions = &acting->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
-    lar_touch_observe(&acting->touch, context, state);
+    lar_tool_contact_observe(&acting->tool_contact, context, state);
     move_nodes(domain, acting, context, time, state, fault);
     state->external += lar_conditions_impose(conditions, context, time, state);
-    lar_touch_stop(&acting->touch, context, state);
-    lar_collide_moved(&acting->collide, state, state->fastest * context->time_step);
+    lar_tool_contact_stop(&acting->tool_contact, context, state);
+    lar_body_contact_moved(&acting->body_contact, state, state->fastest * context->time_step);
 }
 
 void lar_step_end(const lar_domain *domain, const lar_acting *acting,
                   const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     add_half_work(domain, acting, context, state);
-    lar_collide_half_work(&acting->collide, context, state);
+    lar_body_contact_half_work(&acting->body_contact, context, state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !fault->kind)
         *fault = (lar_fault){
@@ -278,8 +278,8 @@ void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
     lar_step_enter(domain, &domain->acting, &context, state);
     lar_step_begin(domain, &domain->acting, &context, state, fault);
-    collide(&domain->acting.collide, &context, state, fault);
-    lar_collide_half_work(&domain->acting.collide, &context, state);
+    add_body_contact(&domain->acting.body_contact, &context, state, fault);
+    lar_body_contact_half_work(&domain->acting.body_contact, &context, state);
     lar_step_recover(domain, 0, domain->run_count, state, fault);
     lar_step_move(domain, &domain->acting, &context, state, fault);
     lar_step_end(domain, &domain->acting, &context, state, fault);

@@ -96,7 +96,7 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
 /* What the conditions need of a domain, for the nodes first .. end - 1. */
 static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
                                                           lar_lid end) {
-    const lar_tools *tools = domain->acting.touch.tools;
+    const lar_tools *tools = domain->acting.tool_contact.tools;
     return (lar_condition_context){.model = domain->model,
                                    .settings = tools ? &tools->settings : NULL,
                                    .scale = domain->scale,

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "simulation/checkpoint.h"
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 #include "engine/engine_test.h"
 #include "engine/fleet_test.h"
 #include "engine/tools_test.h"

@@ -1,7 +1,7 @@
 /* Jaws that hold tissue: what they press it with, that opening lets go without a jump, and that two
  * of them stretch an organ between them. */
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 static const double upright[4] = {1, 0, 0, 0};
 
@@ -158,7 +158,7 @@ static void vanish(lar_simulation *simulation) {
     tools->hold_count = 0;
     tools->motion[0] = (lar_tool_motion){.from = away, .to = away};
     tools->follower[0] = (lar_tool_follower){.hand = tools->motion[0]};
-    lar_touch_forget(&simulation->domain.acting.touch);
+    lar_tool_contact_forget(&simulation->domain.acting.tool_contact);
 }
 
 typedef struct release {

@@ -1,7 +1,7 @@
 /* Holds: what hands and graspers take, that taking hold moves nothing, what pulling does, and that
  * letting go lets go. */
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 /* 6 x 4 x 3 cm, held at its bottom. */
 static const brick block = {{6, 4, 3}, 0.01, 0.05, LAR_LAW_neo_hookean, 4e3, 2e5, 1000};

@@ -5,8 +5,8 @@
  * the functions below; system calls are forbidden by a seccomp filter in a child process, which the
  * kernel kills at the first one. Where the sandbox of the test allows no filter, that part says so
  * and is skipped. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 
 #include <errno.h>
 #include <linux/audit.h>

@@ -1,6 +1,6 @@
 /* A body that slides over another one keeps its speed: there is no friction. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 
 /* One slide: a brick that has come to rest on a slab is set going, and runs over some of the slab's
  * elements. */
@@ -85,7 +85,7 @@ static void set_going(lar_simulation *s, lar_model *model, int32_t first, double
     for (int32_t n = first; n < model->mesh.node_count; n++)
         s->state.v[4 * domain->layout.local[n]] += speed;
     s->state.fastest = speed;
-    lar_collide_forget(&domain->acting.collide);
+    lar_body_contact_forget(&domain->acting.body_contact);
 }
 
 static outcome slide(const ride *r) {

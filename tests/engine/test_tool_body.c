@@ -2,7 +2,7 @@
  * and comes back to it. */
 #include "contact/tool_body.h"
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 static const brick block = {{6, 6, 4}, 0.005, 0.05, LAR_LAW_neo_hookean, 2e3, 2e5, 1000};
 static const double upright[4] = {1, 0, 0, 0};
@@ -131,7 +131,7 @@ static void hardness_grows_with_time(void **unused) {
     const lar_step_room room = {.most = 0.9};
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.acting.touch.list;
+    const lar_tool_list *list = simulation->domain.acting.tool_contact.list;
     lar_tools tools = simulation->tools;
     for (int n = 1; n <= 100; n++) {
         double before = tools.division.hardness;

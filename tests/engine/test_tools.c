@@ -284,10 +284,10 @@ static void long_advances_add_up(void **unused) {
     static lar_acting acting;
     const lar_state state = {.contact = 0.25};
     lar_report sum = {0};
-    acting.touch.sum[1] = (lar_tool_sum){.touching = 2};
+    acting.tool_contact.sum[1] = (lar_tool_sum){.touching = 2};
     for (int step = 0; step < 1000; step++) {
-        acting.touch.sum[1].force[0] -= (int64_t)1 << 60;
-        acting.touch.sum[1].torque[2] += (int64_t)1 << 60;
+        acting.tool_contact.sum[1].force[0] -= (int64_t)1 << 60;
+        acting.tool_contact.sum[1].torque[2] += (int64_t)1 << 60;
     }
     for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &acting, &state);
     assert_true(sum.taken == 1);
@@ -295,7 +295,7 @@ static void long_advances_add_up(void **unused) {
     assert_true((double)sum.tool[1].torque[2] == 4000 * 0x1p60);
     assert_int_equal(sum.tool[1].touching, 8);
     lar_report_begin(&acting);
-    assert_true(acting.touch.sum[1].force[0] == 0);
+    assert_true(acting.tool_contact.sum[1].force[0] == 0);
 }
 
 int main(void) {

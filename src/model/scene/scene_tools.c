@@ -150,8 +150,8 @@ static double longest_edge(const lar_model *model) {
     return longest;
 }
 
-/* A face feels tools at 6 x 6 points at most (contact/touch.h). Between four of them there is room
- * for a tool of that radius. */
+/* A face feels tools at 6 x 6 points at most (contact/tool_contact.h). Between four of them there
+ * is room for a tool of that radius. */
 static lar_status notice_thin_tools(lar_scene *scene) {
     lar_model *model = scene->model;
     double edge = longest_edge(model), room = edge / 6 * sqrt(0.5);

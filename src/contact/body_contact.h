@@ -39,8 +39,8 @@
  *
  * Several threads and processors: contact_exchange.h.
  */
-#ifndef LAR_CONTACT_COLLIDE_H
-#define LAR_CONTACT_COLLIDE_H
+#ifndef LAR_CONTACT_BODY_CONTACT_H
+#define LAR_CONTACT_BODY_CONTACT_H
 
 #include <math.h>
 
@@ -67,11 +67,11 @@ typedef struct lar_contact_view {
 enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1) };
 
 /* What this thread adds in the step under way: forces on its local nodes. */
-typedef struct lar_collide_part {
+typedef struct lar_body_contact_part {
     int32_t count;
     int32_t value[LAR_CONTACT_PARTS]; /* 4 * local node */
     double force[LAR_CONTACT_PARTS][3];
-} lar_collide_part;
+} lar_body_contact_part;
 
 /* Levels that cannot be measured, but are not 0: of a node that came through the face; of one that
  * belongs inside and is outside, having come out through the back of a face; of the same on its way
@@ -81,13 +81,13 @@ typedef struct lar_collide_part {
 #define LAR_LEVEL_HOME  3e-300
 
 /* A level that is another than in the last step. */
-typedef struct lar_collide_level {
+typedef struct lar_body_contact_level {
     int32_t value; /* 4 * local node + 3 */
     double depth;  /* [m] */
-} lar_collide_level;
+} lar_body_contact_level;
 
 /* The list and what has moved since, of whoever has the whole model. */
-typedef struct lar_collide_motion {
+typedef struct lar_body_contact_motion {
     lar_contact_search *search;
     double (*x)[3];               /* [contact nodes] places at the search under way [m] */
     double (*searched)[3];        /* and at the last one */
@@ -97,9 +97,9 @@ typedef struct lar_collide_motion {
     bool searching;               /* a search is under way */
     bool valid;                   /* the list belongs to the state */
     bool always;                  /* search in every step */
-} lar_collide_motion;
+} lar_body_contact_motion;
 
-typedef struct lar_collide {
+typedef struct lar_body_contact {
     const lar_contact_surface *surface; /* NULL: nothing to do */
     lar_contact_law law;
     double time_step;
@@ -116,41 +116,42 @@ typedef struct lar_collide {
     double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
     double way;   /* the same in the last step [m] */
     int32_t part_count;
-    lar_collide_part *part; /* [list.group_room] */
-    const uint8_t *keeps;   /* [contact nodes] those that this thread moves; NULL: all */
+    lar_body_contact_part *part; /* [list.group_room] */
+    const uint8_t *keeps;        /* [contact nodes] those that this thread moves; NULL: all */
     int32_t level_count;
-    lar_collide_level *level; /* [list.group_room] of these nodes, from when they move on */
-    bool too_many_pairs;      /* there was no room for all pairs: the run must stop */
+    lar_body_contact_level *level; /* [list.group_room] of these nodes, from when they move on */
+    bool too_many_pairs;           /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
-    lar_collide_motion *motion; /* of whoever has all nodes; otherwise NULL */
-} lar_collide;
+    lar_body_contact_motion *motion; /* of whoever has all nodes; otherwise NULL */
+} lar_body_contact;
 
 /* For the whole model. Without contacts of bodies it costs nothing. */
-lar_status lar_collide_create(const lar_model *model, const double *mass, const int32_t *local,
-                              double time_step, double stable_step, bool search_always,
-                              lar_collide *collide, lar_error *error);
-void lar_collide_destroy(lar_collide *collide); /* idempotent */
+lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+                                   double time_step, double stable_step, bool search_always,
+                                   lar_body_contact *contact, lar_error *error);
+void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */
 
 /* The state was changed by others: nothing is known of its motion. */
-void lar_collide_forget(lar_collide *collide);
+void lar_body_contact_forget(lar_body_contact *contact);
 
 /* Adds the forces at the state's step to state->force, after a search where that is due. Asks for
  * no memory. */
-void lar_collide_apply(lar_collide *collide, const lar_condition_context *context,
-                       lar_state *state);
+void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_context *context,
+                            lar_state *state);
 
 /* The same for a list that somebody else keeps. */
-void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state);
+void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
+                          lar_state *state);
 
 /* All groups are to be looked at again. */
-void lar_collide_restart(lar_collide *collide);
+void lar_body_contact_restart(lar_body_contact *contact);
 
 /* The nodes have moved, none farther than `way` along any axis [m]; levels become theirs. */
-void lar_collide_moved(lar_collide *collide, lar_state *state, double way);
+void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way);
 
 /* Half the work of these forces in this step, to state->contact: once before and once after the
  * nodes move. */
-void lar_collide_half_work(const lar_collide *collide, const lar_condition_context *context,
-                           lar_state *state);
+void lar_body_contact_half_work(const lar_body_contact *contact,
+                                const lar_condition_context *context, lar_state *state);
 
 #endif

@@ -1,4 +1,4 @@
-#include "contact/planes.h"
+#include "contact/plane_contact.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,8 +17,8 @@ static void mark_held(const lar_model *model, uint8_t *held) {
 
 /* Supports are stronger than planes: a node gives way along its free axes only, and not at all when
  * these lie along the plane. */
-static void add_node(lar_planes *planes, const lar_contact *plane, const double position[3],
-                     int32_t value, unsigned held) {
+static void add_node(lar_plane_contact *plane_contact, const lar_contact *plane,
+                     const double position[3], int32_t value, unsigned held) {
     lar_plane_way way;
     lar_plane_node node = {.value = value};
     double free = 0;
@@ -30,14 +30,16 @@ static void add_node(lar_planes *planes, const lar_contact *plane, const double 
     }
     if (free < 1e-6) return;
     for (int i = 0; i < 3; i++) way.slide[i] /= free;
-    while (node.way < planes->way_count && memcmp(&planes->way[node.way], &way, sizeof way) != 0)
+    while (node.way < plane_contact->way_count &&
+           memcmp(&plane_contact->way[node.way], &way, sizeof way) != 0)
         node.way++;
-    if (node.way == planes->way_count) planes->way[planes->way_count++] = way;
-    planes->node[planes->count++] = node;
+    if (node.way == plane_contact->way_count) plane_contact->way[plane_contact->way_count++] = way;
+    plane_contact->node[plane_contact->count++] = node;
 }
 
-static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
-                      const lar_condition_share *share, int plane, uint8_t *held) {
+static void add_plane(lar_plane_contact *plane_contact, const lar_model *model,
+                      const int32_t *local, const lar_condition_share *share, int plane,
+                      uint8_t *held) {
     enum { SEEN = 0x80 };
     const lar_contact *contact = &model->contact[plane];
     for (int32_t f = 0; f < contact->face_count; f++)
@@ -45,7 +47,7 @@ static void add_plane(lar_planes *planes, const lar_model *model, const int32_t 
             int32_t face = contact->face[f];
             int32_t node = model->mesh.element[face / 6][lar_face_node[face % 6][a]];
             if (held[node] & SEEN || (share && share->holds[node] != share->thread)) continue;
-            add_node(planes, contact, model->mesh.position[node], 4 * local[node],
+            add_node(plane_contact, contact, model->mesh.position[node], 4 * local[node],
                      held[node] & LAR_AXIS_ALL);
             held[node] |= SEEN;
         }
@@ -58,10 +60,10 @@ static int by_node(const void *a, const void *b) {
     return (x->way > y->way) - (x->way < y->way);
 }
 
-lar_status lar_planes_create(const lar_model *model, const int32_t *local,
-                             const lar_condition_share *share, lar_planes *planes,
-                             lar_error *error) {
-    *planes = (lar_planes){0};
+lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local,
+                                    const lar_condition_share *share,
+                                    lar_plane_contact *plane_contact, lar_error *error) {
+    *plane_contact = (lar_plane_contact){0};
     size_t most = 0, ways = 0;
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE) {
@@ -70,28 +72,29 @@ lar_status lar_planes_create(const lar_model *model, const int32_t *local,
         }
     if (most == 0) return LAR_OK;
     uint8_t *held = lar_calloc((size_t)model->mesh.node_count, sizeof *held);
-    planes->node = lar_calloc(most, sizeof *planes->node);
-    planes->near = lar_calloc(most, sizeof *planes->near);
-    planes->way = lar_calloc(ways, sizeof *planes->way);
-    if (!held || !planes->node || !planes->near || !planes->way) {
+    plane_contact->node = lar_calloc(most, sizeof *plane_contact->node);
+    plane_contact->near = lar_calloc(most, sizeof *plane_contact->near);
+    plane_contact->way = lar_calloc(ways, sizeof *plane_contact->way);
+    if (!held || !plane_contact->node || !plane_contact->near || !plane_contact->way) {
         free(held);
-        lar_planes_destroy(planes);
-        return lar_fail_memory(error, most * sizeof *planes->near, "the nodes before planes");
+        lar_plane_contact_destroy(plane_contact);
+        return lar_fail_memory(error, most * sizeof *plane_contact->near,
+                               "the nodes before planes");
     }
     mark_held(model, held);
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE)
-            add_plane(planes, model, local, share, i, held);
+            add_plane(plane_contact, model, local, share, i, held);
     free(held);
-    qsort(planes->node, (size_t)planes->count, sizeof *planes->node, by_node);
+    qsort(plane_contact->node, (size_t)plane_contact->count, sizeof *plane_contact->node, by_node);
     return LAR_OK;
 }
 
-void lar_planes_destroy(lar_planes *planes) {
-    free(planes->node);
-    free(planes->near);
-    free(planes->way);
-    *planes = (lar_planes){0};
+void lar_plane_contact_destroy(lar_plane_contact *plane_contact) {
+    free(plane_contact->node);
+    free(plane_contact->near);
+    free(plane_contact->way);
+    *plane_contact = (lar_plane_contact){0};
 }
 
 /* ---- the search ---------------------------------------------------------------------------- */
@@ -113,38 +116,39 @@ static double step_travel(const lar_condition_context *context, const lar_state 
 /* Looks so far that at the present speed the next search is some dozens of steps away, and never
  * less far than a falling body gets in a hundred steps: the update kernel sees a resting node fall
  * in every step, before it is stopped. */
-static void search(lar_planes *planes, const lar_condition_context *context, const lar_state *state,
-                   lar_contact_info *seen) {
+static void search(lar_plane_contact *plane_contact, const lar_condition_context *context,
+                   const lar_state *state, lar_contact_info *seen) {
     enum { AHEAD = 64 };
     double dt = context->time_step;
-    planes->reach = AHEAD * step_travel(context, state) + 50000 * dt * dt;
-    planes->travel = 0;
-    planes->near_count = 0;
-    for (int32_t i = 0; i < planes->count; i++) {
-        const lar_plane_node *n = &planes->node[i];
-        double height = n->offset + dot(planes->way[n->way].normal, state->u + n->value);
+    plane_contact->reach = AHEAD * step_travel(context, state) + 50000 * dt * dt;
+    plane_contact->travel = 0;
+    plane_contact->near_count = 0;
+    for (int32_t i = 0; i < plane_contact->count; i++) {
+        const lar_plane_node *n = &plane_contact->node[i];
+        double height = n->offset + dot(plane_contact->way[n->way].normal, state->u + n->value);
         /* A little more, for rounding. Not a number counts as near. */
-        if (height > (1 + 1e-9) * planes->reach) continue;
-        lar_plane_near *near = &planes->near[planes->near_count++];
+        if (height > (1 + 1e-9) * plane_contact->reach) continue;
+        lar_plane_near *near = &plane_contact->near[plane_contact->near_count++];
         *near = (lar_plane_near){.node = *n, .weight = context->weight[n->value / 4]};
         memcpy(near->before, state->v + n->value, sizeof near->before);
     }
-    planes->known = true;
+    plane_contact->known = true;
     seen->searches++;
-    seen->boxed += (uint64_t)planes->near_count;
+    seen->boxed += (uint64_t)plane_contact->near_count;
 }
 
-void lar_planes_observe(lar_planes *planes, const lar_condition_context *context,
-                        const lar_state *state, bool always, lar_contact_info *seen) {
-    if (planes->count == 0) return;
-    double next = planes->travel + 2 * step_travel(context, state);
-    if (always || !planes->known || !(next < planes->reach)) {
-        search(planes, context, state, seen);
+void lar_plane_contact_observe(lar_plane_contact *plane_contact,
+                               const lar_condition_context *context, const lar_state *state,
+                               bool always, lar_contact_info *seen) {
+    if (plane_contact->count == 0) return;
+    double next = plane_contact->travel + 2 * step_travel(context, state);
+    if (always || !plane_contact->known || !(next < plane_contact->reach)) {
+        search(plane_contact, context, state, seen);
         return;
     }
-    for (int32_t i = 0; i < planes->near_count; i++)
-        memcpy(planes->near[i].before, state->v + planes->near[i].node.value,
-               sizeof planes->near[i].before);
+    for (int32_t i = 0; i < plane_contact->near_count; i++)
+        memcpy(plane_contact->near[i].before, state->v + plane_contact->near[i].node.value,
+               sizeof plane_contact->near[i].before);
 }
 
 /* ---- stopping ------------------------------------------------------------------------------ */
@@ -190,18 +194,19 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
     sum->deepest = larger(sum->deepest, -height);
 }
 
-void lar_planes_stop(lar_planes *planes, const lar_condition_context *context, lar_state *state,
-                     bool always, lar_contact_info *seen) {
-    if (planes->count == 0) return;
-    planes->travel += step_travel(context, state);
+void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
+                            lar_state *state, bool always, lar_contact_info *seen) {
+    if (plane_contact->count == 0) return;
+    plane_contact->travel += step_travel(context, state);
     /* Faster within one step than the search allowed for: somebody else may be there now. (What
      * they had before is lost, which costs the energy account a little and the motion nothing.) */
-    if (!(planes->travel < planes->reach) && !always) search(planes, context, state, seen);
+    if (!(plane_contact->travel < plane_contact->reach) && !always)
+        search(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);
     stops sum = {.fastest = state->fastest};
-    for (int32_t i = 0; i < planes->near_count; i++) {
-        const lar_plane_near *near = &planes->near[i];
-        stop_node(near, &planes->way[near->node.way], dt, rate, state->u + near->node.value,
+    for (int32_t i = 0; i < plane_contact->near_count; i++) {
+        const lar_plane_near *near = &plane_contact->near[i];
+        stop_node(near, &plane_contact->way[near->node.way], dt, rate, state->u + near->node.value,
                   state->v + near->node.value, &sum);
     }
     state->fastest = sum.fastest;
@@ -209,20 +214,21 @@ void lar_planes_stop(lar_planes *planes, const lar_condition_context *context, l
     /* The update kernel has counted the free motion. */
     state->damped += damping * sum.damped * (context->mean_step / context->whole_step);
     state->contact -= 0.5 * (1 + 0.5 * damping * context->mean_step) * sum.work;
-    planes->travel += step_travel(context, state) - moved;
+    plane_contact->travel += step_travel(context, state) - moved;
     seen->touching += sum.touching;
     seen->deepest = larger(seen->deepest, sum.deepest);
-    seen->possible += (uint64_t)planes->count;
-    seen->tested += (uint64_t)planes->near_count;
+    seen->possible += (uint64_t)plane_contact->count;
+    seen->tested += (uint64_t)plane_contact->near_count;
 }
 
-int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
-                         const lar_state *state, int32_t entry, double ahead[3]) {
+int32_t lar_plane_contact_ahead(const lar_plane_contact *plane_contact,
+                                const lar_condition_context *context, const lar_state *state,
+                                int32_t entry, double ahead[3]) {
     double dt = context->time_step;
-    int32_t value = planes->node[entry].value;
-    for (; entry < planes->count && planes->node[entry].value == value; entry++) {
-        const lar_plane_way *way = &planes->way[planes->node[entry].way];
-        double height = planes->node[entry].offset + dot(way->normal, state->u + value);
+    int32_t value = plane_contact->node[entry].value;
+    for (; entry < plane_contact->count && plane_contact->node[entry].value == value; entry++) {
+        const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
+        double height = plane_contact->node[entry].offset + dot(way->normal, state->u + value);
         double speed = dot(way->normal, ahead);
         double least = least_velocity(height, 1 / dt);
         for (int i = 0; i < 3 && speed < least; i++) ahead[i] += way->slide[i] * (least - speed);

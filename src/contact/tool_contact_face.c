@@ -1,4 +1,4 @@
-#include "contact/touch_face.h"
+#include "contact/tool_contact_face.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,24 +8,25 @@
 
 /* ---- points -------------------------------------------------------------------------------- */
 
-int lar_touch_points(const lar_touch_face *face, double radius) {
+int lar_tool_contact_points(const lar_tool_contact_face *face, double radius) {
     double wanted = ceil(2 * face->edge / radius);
     return wanted < 2 ? 2 : wanted > LAR_POINTS_ALONG_EDGE ? LAR_POINTS_ALONG_EDGE : (int)wanted;
 }
 
-void lar_touch_weights(int point, int n, double weight[4]) {
+void lar_tool_contact_weights(int point, int n, double weight[4]) {
     lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
 }
 
-double lar_touch_point_mass(const lar_touch_face *face, const double *mass, int n) {
+double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double least = INFINITY;
     for (int a = 0; a < 4; a++) least = fmin(least, mass[face->value[a] / 4] * face->share[a]);
     return 4 * least / (n * n);
 }
 
-double lar_hold_most(const lar_touch_face *face, double radius, const lar_contact_law *law,
+double lar_hold_most(const lar_tool_contact_face *face, double radius, const lar_contact_law *law,
                      const double *mass) {
-    return 0.5 * law->stiffness * lar_touch_point_mass(face, mass, lar_touch_points(face, radius));
+    return 0.5 * law->stiffness *
+           lar_tool_contact_point_mass(face, mass, lar_tool_contact_points(face, radius));
 }
 
 /* Where the wall begins, in radii of the tool. */
@@ -34,7 +35,7 @@ static const double WALL = 0.2;
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. */
-static double facing(const lar_touched_face *patch, const double normal[3]) {
+static double facing(const lar_tool_contact_patch *patch, const double normal[3]) {
     double against =
         -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
@@ -51,8 +52,9 @@ static double not_thrown(double rate) {
 }
 
 /* A point of the face is pushed along the normal of segment s. */
-static void push_point(lar_touched_face *patch, const lar_contact_law *law, int32_t s, double along,
-                       const double weight[4], const double normal[3], double mass, double depth) {
+static void push_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
+                       double along, const double weight[4], const double normal[3], double mass,
+                       double depth) {
     const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
     double v[3], rate = 0;
     lar_face_mean((const double(*)[3])patch->v, weight, v);
@@ -72,7 +74,7 @@ static void push_point(lar_touched_face *patch, const lar_contact_law *law, int3
 }
 
 /* A point of the grid against the tool's segments. */
-static void touch_point(lar_touched_face *patch, const lar_contact_law *law,
+static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law,
                         const lar_segment_axis *axis, const double weight[4]) {
     /* More than what rounding could bring in; whether a point is in the tool its depth says. */
     const double within = patch->radius * patch->radius * (1 + 1e-9);
@@ -97,7 +99,8 @@ static void touch_point(lar_touched_face *patch, const lar_contact_law *law,
 
 /* What a point with these weights may count as, so that the stiffness at each corner stays within
  * its mass: the row sums of theory.md, with one point instead of many. */
-static double wall_mass(const lar_touch_face *face, const double *mass, const double weight[4]) {
+static double wall_mass(const lar_tool_contact_face *face, const double *mass,
+                        const double weight[4]) {
     double most = INFINITY;
     for (int a = 0; a < 4; a++)
         if (weight[a] > 0) most = fmin(most, mass[face->value[a] / 4] * face->share[a] / weight[a]);
@@ -105,8 +108,8 @@ static double wall_mass(const lar_touch_face *face, const double *mass, const do
 }
 
 /* The wall of one segment. Returns how far the face is from where it begins. */
-static double touch_wall(lar_touched_face *patch, const lar_contact_law *law, const double *mass,
-                         int32_t s, double free_share) {
+static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                         const double *mass, int32_t s, double free_share) {
     lar_face_segment at;
     lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
     double depth = patch->radius - at.distance;
@@ -124,7 +127,7 @@ static double touch_wall(lar_touched_face *patch, const lar_contact_law *law, co
 
 /* How far a point of the face can be from the closest point of the grid: half of the diagonal
  * between two of these. */
-static double spacing(const lar_touched_face *patch, int n) {
+static double spacing(const lar_tool_contact_patch *patch, int n) {
     double longest = 0;
     for (int a = 0; a < 4; a++) {
         double edge[3];
@@ -138,8 +141,8 @@ static double spacing(const lar_touched_face *patch, int n) {
  * so few may. What the others could bear belongs to the closest point of the face, when that is
  * deep in the tool: as much as its corners bear, at whatever size of tool and face. Returns how far
  * the face is at least from where the wall begins. */
-static double touch_walls(lar_touched_face *patch, const lar_contact_law *law, const double *mass,
-                          int n) {
+static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                          const double *mass, int n) {
     double free_share = 1 - patch->covered / (n * n), between = spacing(patch, n), gap = INFINITY;
     for (int32_t s = 0; s < patch->body->count; s++) {
         double distance = sqrt(patch->least[s]) - patch->radius;
@@ -153,13 +156,14 @@ static double touch_walls(lar_touched_face *patch, const lar_contact_law *law, c
 
 /* ---- the face ------------------------------------------------------------------------------ */
 
-void lar_touch_push_face(lar_touched_face *patch, const lar_contact_law *law, const double *v,
-                         const double *mass, const lar_point_weights *weights) {
-    const lar_touch_face *face = patch->face;
+void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                                const double *v, const double *mass,
+                                const lar_point_weights *weights) {
+    const lar_tool_contact_face *face = patch->face;
     const lar_tool_body *body = patch->body;
-    int n = lar_touch_points(face, patch->radius);
+    int n = lar_tool_contact_points(face, patch->radius);
     lar_segment_axis axis[2];
-    patch->mass = lar_touch_point_mass(face, mass, n);
+    patch->mass = lar_tool_contact_point_mass(face, mass, n);
     for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);

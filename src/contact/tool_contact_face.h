@@ -9,13 +9,13 @@
  *
  * See docs/theory.md, contact with tools.
  */
-#ifndef LAR_CONTACT_TOUCH_FACE_H
-#define LAR_CONTACT_TOUCH_FACE_H
+#ifndef LAR_CONTACT_TOOL_CONTACT_FACE_H
+#define LAR_CONTACT_TOOL_CONTACT_FACE_H
 
-#include "contact/touch.h"
+#include "contact/tool_contact.h"
 
-typedef struct lar_touched_face { /* one face before one tool */
-    const lar_touch_face *face;
+typedef struct lar_tool_contact_patch { /* one face before one tool */
+    const lar_tool_contact_face *face;
     const lar_tool_body *body;
     double radius, mass, rate_of; /* of a point; 1 / time step */
     double x[4][3], v[4][3], out[3];
@@ -27,19 +27,20 @@ typedef struct lar_touched_face { /* one face before one tool */
     double squeeze;  /* of the jaws, as a force at their ends [N] */
     double jaw[2];   /* on each jaw, outwards [N] */
     int32_t touching;
-} lar_touched_face;
+} lar_tool_contact_patch;
 
 /* The mass behind each of n x n points [kg]: with weights w_a of all points their sum over a node's
  * faces is at most the node's mass (mechanics/contact.h, row sums). `mass`: by local node. */
-double lar_touch_point_mass(const lar_touch_face *face, const double *mass, int n);
+double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n);
 
 /* The stiffness of a hold of a point of the face that the step bears [N/m]. */
-double lar_hold_most(const lar_touch_face *face, double radius, const lar_contact_law *law,
+double lar_hold_most(const lar_tool_contact_face *face, double radius, const lar_contact_law *law,
                      const double *mass);
 
 /* Fills in the forces on the corners of a face [N] whose places `x` are known, and what the tool
- * has of them. `weights`: of the points (lar_touch.weights). */
-void lar_touch_push_face(lar_touched_face *patch, const lar_contact_law *law, const double *v,
-                         const double *mass, const lar_point_weights *weights);
+ * has of them. `weights`: of the points (lar_tool_contact.weights). */
+void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                                const double *v, const double *mass,
+                                const lar_point_weights *weights);
 
 #endif

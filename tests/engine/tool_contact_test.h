@@ -1,8 +1,8 @@
 /* What the tests of planes, tools and holds share: bodies with planes and tools, energies, and what
  * is inside a body.
  * Include engine_test.h first. */
-#ifndef LAR_TESTS_TOUCH_TEST_H
-#define LAR_TESTS_TOUCH_TEST_H
+#ifndef LAR_TESTS_TOOL_CONTACT_TEST_H
+#define LAR_TESTS_TOOL_CONTACT_TEST_H
 
 /* All outer faces of the model against the half-space behind a plane. */
 TEST_UNUSED static void add_plane(lar_model *model, const double through[3],

@@ -1,6 +1,6 @@
 /* Round bodies that fall on each other stay outside each other, with every step. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 #include "mechanics/face_contact.h"
 
 static const brick ball = {{6, 6, 6}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};

@@ -1,6 +1,6 @@
 /* Bodies that lie on each other: they come to rest, where there is a place to rest. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 
 static const brick lower_brick = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
 static const brick upper_brick = {{3, 3, 3}, 0.008, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};

@@ -1,4 +1,4 @@
-#include "contact/collide.h"
+#include "contact/body_contact.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,42 +20,42 @@ typedef struct touching {
     double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
 } touching;
 
-static inline void place_of_node(const lar_collide *collide, const lar_state *state, int32_t node,
-                                 double x[3], double v[3]) {
-    const lar_contact_view *view = &collide->view;
+static inline void place_of_node(const lar_body_contact *contact, const lar_state *state,
+                                 int32_t node, double x[3], double v[3]) {
+    const lar_contact_view *view = &contact->view;
     if (view->place) {
         const double *place = view->place[view->slot[node]];
         memcpy(x, place, 3 * sizeof *x);
         if (v) memcpy(v, place + 3, 3 * sizeof *v);
         return;
     }
-    const double *rest = collide->surface->rest[node];
+    const double *rest = contact->surface->rest[node];
     const double *u = state->u + view->value[node];
     for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
     if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
 }
 
 /* Of a node or a point of an edge; v may be NULL. */
-static void place_of(const lar_collide *collide, const lar_state *state, int32_t node, double x[3],
-                     double v[3]) {
+static void place_of(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                     double x[3], double v[3]) {
     int32_t parent[2];
     double weight[2], end[2][3], speed[2][3];
-    if (lar_contact_parents(collide->surface, node, parent, weight) == 1) {
-        place_of_node(collide, state, node, x, v);
+    if (lar_contact_parents(contact->surface, node, parent, weight) == 1) {
+        place_of_node(contact, state, node, x, v);
         return;
     }
     for (int k = 0; k < 2; k++)
-        place_of_node(collide, state, parent[k], end[k], v ? speed[k] : NULL);
+        place_of_node(contact, state, parent[k], end[k], v ? speed[k] : NULL);
     for (int i = 0; i < 3; i++) {
         x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
         if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
     }
 }
 
-static void corners_of(const lar_collide *collide, const lar_state *state, int32_t face,
+static void corners_of(const lar_body_contact *contact, const lar_state *state, int32_t face,
                        double x[4][3], double v[4][3]) {
     for (int a = 0; a < 4; a++)
-        place_of_node(collide, state, collide->surface->face[face].corner[a], x[a],
+        place_of_node(contact, state, contact->surface->face[face].corner[a], x[a],
                       v ? v[a] : NULL);
 }
 
@@ -88,26 +88,26 @@ typedef struct survey {
     double next; /* travel at which the first of the others may matter [m] */
 } survey;
 
-static double tie_of(const lar_collide *collide, int32_t face) {
-    return LAR_FACE_TIE * collide->surface->face[face].size;
+static double tie_of(const lar_body_contact *contact, int32_t face) {
+    return LAR_FACE_TIE * contact->surface->face[face].size;
 }
 
 /* Of the contact distance, that part; 0 within a body. */
-static double fade_of(const lar_collide *collide, int32_t node, int32_t face) {
+static double fade_of(const lar_body_contact *contact, int32_t node, int32_t face) {
     static const double FADE = 0.25;
-    const lar_contact_surface *surface = collide->surface;
+    const lar_contact_surface *surface = contact->surface;
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
 /* Looks at face f, entry i. Returns its distance, or at least so much. */
-static double survey_face(lar_collide *collide, const lar_state *state, const double x[3],
+static double survey_face(lar_body_contact *contact, const lar_state *state, const double x[3],
                           int32_t f, int32_t i, survey *s) {
-    double corner[4][3], tie = tie_of(collide, f);
-    corners_of(collide, state, f, corner, NULL);
+    double corner[4][3], tie = tie_of(contact, f);
+    corners_of(contact, state, f, corner, NULL);
     double distance = nearest_possible(x, (const double(*)[3])corner);
     if (distance <= s->least + s->fade + tie && distance <= s->reach + tie) {
         lar_face_point point;
-        collide->info.tested++;
+        contact->info.tested++;
         lar_face_closest(x, (const double(*)[3])corner, tie, &point);
         distance = point.distance;
         if (distance <= s->reach && distance < s->least) {
@@ -129,45 +129,45 @@ static double away_until(double travel, double distance, double tie, const surve
 }
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
-static void survey_group(lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
-                         survey *s) {
-    const lar_contact_group *group = &collide->list.group[g];
-    const int32_t *face = collide->list.face + group->first;
-    double *away = collide->away + group->first;
-    int32_t first = collide->last[g];
-    s->reach = lar_contact_reach(collide->surface, &collide->surface->node[group->node],
-                                 &collide->surface->face[face[0]]);
-    s->fade = fade_of(collide, group->node, face[0]);
+static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
+                         const double x[3], survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *face = contact->list.face + group->first;
+    double *away = contact->away + group->first;
+    int32_t first = contact->last[g];
+    s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
+                                 &contact->surface->face[face[0]]);
+    s->fade = fade_of(contact, group->node, face[0]);
     s->least = s->gap = s->next = INFINITY;
     s->count = 0;
-    double distance_of_first = survey_face(collide, state, x, face[first], first, s);
+    double distance_of_first = survey_face(contact, state, x, face[first], first, s);
     for (int32_t i = 0; i < group->count; i++) {
-        if (i != first && collide->travel < away[i]) {
+        if (i != first && contact->travel < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
         }
         s->entry[s->count] = i;
         s->distance[s->count++] =
-            i == first ? distance_of_first : survey_face(collide, state, x, face[i], i, s);
+            i == first ? distance_of_first : survey_face(contact, state, x, face[i], i, s);
     }
     for (int32_t k = 0; k < s->count; k++) {
         int32_t i = s->entry[k];
-        away[i] = away_until(collide->travel, s->distance[k], tie_of(collide, face[i]), s);
+        away[i] = away_until(contact->travel, s->distance[k], tie_of(contact, face[i]), s);
     }
 }
 
 /* The closest face of a group, an entry of it. */
-static int32_t choose_face(const lar_collide *collide, const lar_state *state, int32_t g,
+static int32_t choose_face(const lar_body_contact *contact, const lar_state *state, int32_t g,
                            const double x[3], const survey *s, lar_face_point *point) {
-    const lar_contact_group *group = &collide->list.group[g];
+    const lar_contact_group *group = &contact->list.group[g];
     int32_t chosen = -1;
     for (int32_t k = 0; k < s->count; k++) {
-        int32_t i = s->entry[k], f = collide->list.face[group->first + i];
-        double corner[4][3], tie = tie_of(collide, f);
+        int32_t i = s->entry[k], f = contact->list.face[group->first + i];
+        double corner[4][3], tie = tie_of(contact, f);
         lar_face_point other = s->point;
         if (!(s->distance[k] <= s->least + tie) || s->distance[k] > s->reach + tie) continue;
         if (i != s->at) {
-            corners_of(collide, state, f, corner, NULL);
+            corners_of(contact, state, f, corner, NULL);
             lar_face_closest(x, (const double(*)[3])corner, tie, &other);
         }
         if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
@@ -179,53 +179,55 @@ static int32_t choose_face(const lar_collide *collide, const lar_state *state, i
 
 /* ---- levels ---------------------------------------------------------------------------------- */
 
-static bool same_body(const lar_collide *collide, int32_t node, int32_t face) {
-    return collide->surface->node[node].body == collide->surface->face[face].body;
+static bool same_body(const lar_body_contact *contact, int32_t node, int32_t face) {
+    return contact->surface->node[node].body == contact->surface->face[face].body;
 }
 
-static double level_of(const lar_collide *collide, const lar_state *state, int32_t node) {
-    const lar_contact_view *view = &collide->view;
+static double level_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
+    const lar_contact_view *view = &contact->view;
     return view->place ? view->place[view->slot[node]][6] : state->u[view->value[node] + 3];
 }
 
 /* Notes the level that the node will have when it moves. */
-static void set_level(lar_collide *collide, const lar_state *state, int32_t node, double level) {
-    if (level == level_of(collide, state, node) || (collide->keeps && !collide->keeps[node]))
+static void set_level(lar_body_contact *contact, const lar_state *state, int32_t node,
+                      double level) {
+    if (level == level_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
         return;
-    collide->level[collide->level_count++] =
-        (lar_collide_level){collide->view.value[node] + 3, level};
+    contact->level[contact->level_count++] =
+        (lar_body_contact_level){contact->view.value[node] + 3, level};
 }
 
 /* Who is so deep when it appears behind a face belongs inside. */
-static double deep_of(const lar_collide *collide, int32_t node, int32_t face) {
-    const lar_contact_surface *s = collide->surface;
+static double deep_of(const lar_body_contact *contact, int32_t node, int32_t face) {
+    const lar_contact_surface *s = contact->surface;
     return 0.25 * lar_contact_reach(s, &s->node[node], &s->face[face]);
 }
 
 /* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
  * `rate`. Who was before the face a step ago has come through it. */
-static double follow_level(lar_collide *collide, const lar_state *state, int32_t node, int32_t face,
-                           double depth, double rate) {
-    double before = level_of(collide, state, node), level = depth;
-    double deep = deep_of(collide, node, face);
+static double follow_level(lar_body_contact *contact, const lar_state *state, int32_t node,
+                           int32_t face, double depth, double rate) {
+    double before = level_of(contact, state, node), level = depth;
+    double deep = deep_of(contact, node, face);
     bool home = before == LAR_LEVEL_OUT || before == LAR_LEVEL_HOME;
     if (home)
         level = LAR_LEVEL_HOME;
-    else if (depth <= collide->time_step * rate)
+    else if (depth <= contact->time_step * rate)
         level = LAR_LEVEL_FRONT;
     else if (before > 0 && (before < depth || before >= deep))
         level = before;
-    set_level(collide, state, node, level);
+    set_level(contact, state, node, level);
     return home ? depth : level;
 }
 
 /* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
  * has come out through the back. */
-static void leave_level(lar_collide *collide, const lar_state *state, int32_t node, int32_t face) {
-    double before = level_of(collide, state, node), level = 0;
-    bool inside = before == LAR_LEVEL_HOME || (face >= 0 && before >= deep_of(collide, node, face));
+static void leave_level(lar_body_contact *contact, const lar_state *state, int32_t node,
+                        int32_t face) {
+    double before = level_of(contact, state, node), level = 0;
+    bool inside = before == LAR_LEVEL_HOME || (face >= 0 && before >= deep_of(contact, node, face));
     if (before == LAR_LEVEL_OUT || (face >= 0 && inside)) level = LAR_LEVEL_OUT;
-    set_level(collide, state, node, level);
+    set_level(contact, state, node, level);
 }
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -237,14 +239,14 @@ typedef struct contact_point {
 } contact_point;
 
 /* The point of t->count faces with the weights of t. */
-static void point_of(const lar_collide *collide, const lar_state *state, const touching *t,
+static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
                      contact_point *point) {
     double compliance = 0;
     *point = (contact_point){0};
     for (int32_t f = 0; f < t->count; f++) {
-        const int32_t *corner = collide->surface->face[t->face[f]].corner;
+        const int32_t *corner = contact->surface->face[t->face[f]].corner;
         double x[4][3], v[4][3], at[3], velocity[3];
-        corners_of(collide, state, t->face[f], x, v);
+        corners_of(contact, state, t->face[f], x, v);
         lar_face_mean((const double(*)[3])x, t->weight[f], at);
         lar_face_mean((const double(*)[3])v, t->weight[f], velocity);
         for (int i = 0; i < 3; i++) {
@@ -252,29 +254,29 @@ static void point_of(const lar_collide *collide, const lar_state *state, const t
             point->velocity[i] += velocity[i];
         }
         for (int a = 0; a < 4; a++)
-            compliance += t->weight[f][a] / collide->surface->node[corner[a]].mass;
+            compliance += t->weight[f][a] / contact->surface->node[corner[a]].mass;
     }
     point->mass = 1 / compliance;
 }
 
 /* Above a hollow the closest point jumps from face to face, and so would the direction of the
  * force: there the faces that are about as close as the closest one push together. */
-static void blend(const lar_collide *collide, const lar_state *state, int32_t g, const double x[3],
-                  const lar_face_point *closest, const survey *s, touching *t) {
-    const lar_contact_group *group = &collide->list.group[g];
-    const lar_contact_surface *surface = collide->surface;
+static void blend(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                  const double x[3], const lar_face_point *closest, const survey *s, touching *t) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const lar_contact_surface *surface = contact->surface;
     /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
      * smoothly. */
     double upright = 1 - 50 * (1 - closest->height / closest->distance);
     double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
     touching blended = {.fading = -1};
     for (int32_t k = 0; k < s->count && fade > 0; k++) {
-        int32_t f = collide->list.face[group->first + s->entry[k]];
+        int32_t f = contact->list.face[group->first + s->entry[k]];
         double corner[4][3], sum[4] = {0};
         if (!(s->distance[k] < s->least + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
-        corners_of(collide, state, f, corner, NULL);
+        corners_of(contact, state, f, corner, NULL);
         double counts = lar_face_blend(x, (const double(*)[3])corner, s->least, fade, sum);
         if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
         all += counts;
@@ -308,16 +310,16 @@ static double outward(const double x[3], const contact_point *point, double sign
 
 /* What part of its stiffness a spring has: it must not hurl a light node away with what it stores
  * while it keeps the contact distance. */
-static double softness(const lar_collide *collide, double standoff) {
+static double softness(const lar_body_contact *contact, double standoff) {
     static const double SPEED = 3; /* [m/s] */
     double most = SPEED / standoff;
-    return most * most < collide->law.stiffness ? most * most / collide->law.stiffness : 1;
+    return most * most < contact->law.stiffness ? most * most / contact->law.stiffness : 1;
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
-static double full_of(const lar_collide *collide, int32_t node, int32_t face) {
+static double full_of(const lar_body_contact *contact, int32_t node, int32_t face) {
     static const double LEAST = 0.25; /* of the reach */
-    const lar_contact_surface *s = collide->surface;
+    const lar_contact_surface *s = contact->surface;
     double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
     return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), LEAST * reach);
 }
@@ -350,18 +352,18 @@ static double within_force(double most, const double force[5][3]) {
 
 /* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
  * is how far the spring is pressed in. */
-static double fade(const lar_collide *collide, const lar_state *state, const double x[3],
+static double fade(const lar_body_contact *contact, const lar_state *state, const double x[3],
                    int32_t face, const lar_face_point *closest, double full, double mass,
                    double depth, double rate, touching *t) {
-    const lar_contact_face *f = &collide->surface->face[face];
+    const lar_contact_face *f = &contact->surface->face[face];
     double corner[4][3], value[5], slope[5][3], stored;
-    corners_of(collide, state, face, corner, NULL);
-    for (int a = 0; a < 4; a++) value[a] = collide->surface->node[f->corner[a]].blunt;
+    corners_of(contact, state, face, corner, NULL);
+    for (int a = 0; a < 4; a++) value[a] = contact->surface->node[f->corner[a]].blunt;
     value[4] = 1;
     double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
     part = part * part * (3 - 2 * part);
-    double all = lar_contact_force(&collide->law, mass, depth, rate);
-    double late = late_force(&collide->law, mass, full, depth, rate, &stored);
+    double all = lar_contact_force(&contact->law, mass, depth, rate);
+    double late = late_force(&contact->law, mass, full, depth, rate, &stored);
     double more = (0.5 * all * depth - stored) * steep;
     lar_face_slope(x, (const double(*)[3])corner, closest, value, slope);
     for (int a = 0; a < 5; a++)
@@ -375,84 +377,84 @@ static double fade(const lar_collide *collide, const lar_state *state, const dou
 
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
-static bool push(lar_collide *collide, const lar_state *state, int32_t g, int32_t face,
+static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
                  const lar_face_point *closest, const survey *s, touching *t) {
-    const lar_contact_surface *surface = collide->surface;
+    const lar_contact_surface *surface = contact->surface;
     const lar_contact_face *f = &surface->face[face];
-    int32_t node = collide->list.group[g].node;
+    int32_t node = contact->list.group[g].node;
     double x[3], v[3], corner[4][3], way[3], rate = 0;
     contact_point point;
-    place_of(collide, state, node, x, v);
-    corners_of(collide, state, face, corner, NULL);
+    place_of(contact, state, node, x, v);
+    corners_of(contact, state, face, corner, NULL);
     *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
     if (before && lar_contact_active(&surface->node[node], f))
-        blend(collide, state, g, x, closest, s, t);
-    point_of(collide, state, t, &point);
+        blend(contact, state, g, x, closest, s, t);
+    point_of(contact, state, t, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])corner, way);
     /* Without a length there is no direction. */
     if (isnan(depth)) return false;
     for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
     double level =
-        same_body(collide, node, face) ? follow_level(collide, state, node, face, depth, rate) : 0;
+        same_body(contact, node, face) ? follow_level(contact, state, node, face, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - level;
-    moved *= softness(collide, standoff);
-    double force = f->fades && !same_body(collide, node, face)
-                       ? fade(collide, state, x, face, closest, full_of(collide, node, face), moved,
+    moved *= softness(contact, standoff);
+    double force = f->fades && !same_body(contact, node, face)
+                       ? fade(contact, state, x, face, closest, full_of(contact, node, face), moved,
                               depth + from, rate, t)
-                       : lar_contact_force(&collide->law, moved, depth + from, rate);
+                       : lar_contact_force(&contact->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
     return true;
 }
 
 /* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
-static int32_t closest(lar_collide *collide, const lar_state *state, int32_t g, survey *s,
+static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s,
                        lar_face_point *point) {
-    const lar_contact_group *group = &collide->list.group[g];
+    const lar_contact_group *group = &contact->list.group[g];
     double x[3];
-    place_of(collide, state, group->node, x, NULL);
-    survey_group(collide, state, g, x, s);
+    place_of(contact, state, group->node, x, NULL);
+    survey_group(contact, state, g, x, s);
     /* A little earlier, for rounding. */
-    collide->due[g] = s->gap > 0 ? fmin(collide->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
+    contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
     if (!(s->least < INFINITY)) return -1;
-    int32_t chosen = choose_face(collide, state, g, x, s, point);
+    int32_t chosen = choose_face(contact, state, g, x, s, point);
     if (chosen < 0) return -1;
-    collide->last[g] = chosen;
-    return collide->list.face[group->first + chosen];
+    contact->last[g] = chosen;
+    return contact->list.face[group->first + chosen];
 }
 
-static bool touches(const lar_collide *collide, int32_t node, int32_t face,
+static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
                     const lar_face_point *point) {
-    const lar_contact_surface *surface = collide->surface;
+    const lar_contact_surface *surface = contact->surface;
     return point->height < 0 ||
            point->distance <
                lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
 /* Contact of group g. */
-static bool contact(lar_collide *collide, const lar_state *state, int32_t g, touching *t) {
-    const lar_contact_group *group = &collide->list.group[g];
+static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_t g, touching *t) {
+    const lar_contact_group *group = &contact->list.group[g];
     lar_face_point point;
     survey s;
-    int32_t face = closest(collide, state, g, &s, &point);
-    if (face >= 0 && touches(collide, group->node, face, &point))
-        return push(collide, state, g, face, &point, &s, t);
-    if (same_body(collide, group->node, collide->list.face[group->first]))
-        leave_level(collide, state, group->node, face);
+    int32_t face = closest(contact, state, g, &s, &point);
+    if (face >= 0 && touches(contact, group->node, face, &point))
+        return push(contact, state, g, face, &point, &s, t);
+    if (same_body(contact, group->node, contact->list.face[group->first]))
+        leave_level(contact, state, group->node, face);
     return false;
 }
 
 /* ---- forces --------------------------------------------------------------------------------- */
 
 /* Adds a force, and notes it for its work. */
-static void add_part(lar_collide_part *part, lar_state *state, int32_t value, const int64_t sum[3],
-                     double scale) {
+static void add_part(lar_body_contact_part *part, lar_state *state, int32_t value,
+                     const int64_t sum[3], double scale) {
     part->value[part->count] = value;
     for (int i = 0; i < 3; i++) {
         state->force[value + i] += sum[i];
@@ -462,37 +464,37 @@ static void add_part(lar_collide_part *part, lar_state *state, int32_t value, co
 }
 
 /* To the node, or to both ends of the edge that the point is on. */
-static void add_to_node(lar_collide *collide, const lar_condition_context *context,
+static void add_to_node(lar_body_contact *contact, const lar_condition_context *context,
                         lar_state *state, int32_t node, const int64_t sum[3],
-                        lar_collide_part *part) {
+                        lar_body_contact_part *part) {
     int32_t parent[2];
     double weight[2];
     int64_t share[2][3] = {{0}};
-    int count = lar_contact_parents(collide->surface, node, parent, weight);
+    int count = lar_contact_parents(contact->surface, node, parent, weight);
     for (int i = 0; i < 3; i++) {
         if (count == 2) share[1][i] = llrint(weight[1] * (double)sum[i]);
         share[0][i] = sum[i] - share[1][i];
     }
     for (int k = 0; k < count; k++)
-        if (!collide->adds_node || collide->adds_node[parent[k]])
-            add_part(part, state, collide->view.value[parent[k]], share[k], context->scale);
+        if (!contact->adds_node || contact->adds_node[parent[k]])
+            add_part(part, state, contact->view.value[parent[k]], share[k], context->scale);
 }
 
-static void add_to_face(lar_collide *collide, const lar_condition_context *context,
+static void add_to_face(lar_body_contact *contact, const lar_condition_context *context,
                         lar_state *state, int32_t face, int64_t (*force)[3],
-                        lar_collide_part *part) {
-    if (collide->adds_corner && !collide->adds_corner[face]) return;
+                        lar_body_contact_part *part) {
+    if (contact->adds_corner && !contact->adds_corner[face]) return;
     for (int a = 0; a < 4; a++)
-        add_part(part, state, collide->view.value[collide->surface->face[face].corner[a]], force[a],
+        add_part(part, state, contact->view.value[contact->surface->face[face].corner[a]], force[a],
                  context->scale);
 }
 
 /* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
  * numbers as who adds the others. */
-static void add_forces(lar_collide *collide, const lar_condition_context *context, lar_state *state,
-                       int32_t node, const touching *t) {
+static void add_forces(lar_body_contact *contact, const lar_condition_context *context,
+                       lar_state *state, int32_t node, const touching *t) {
     static const double MOST = 0x1p58; /* of a force in force units */
-    lar_collide_part *part = &collide->part[collide->part_count];
+    lar_body_contact_part *part = &contact->part[contact->part_count];
     int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
@@ -510,46 +512,47 @@ static void add_forces(lar_collide *collide, const lar_condition_context *contex
         }
     }
     part->count = 0;
-    add_to_node(collide, context, state, node, sum, part);
+    add_to_node(contact, context, state, node, sum, part);
     for (int32_t f = 0; f < t->count; f++)
-        add_to_face(collide, context, state, t->face[f], &corner[4 * f], part);
-    if (t->fading >= 0) add_to_face(collide, context, state, t->fading, slope, part);
-    if (part->count) collide->part_count++;
+        add_to_face(contact, context, state, t->face[f], &corner[4 * f], part);
+    if (t->fading >= 0) add_to_face(contact, context, state, t->fading, slope, part);
+    if (part->count) contact->part_count++;
 }
 
 /* The groups that are due within the next part of the way that the list is good for. */
-static void look_ahead(lar_collide *collide) {
+static void look_ahead(lar_body_contact *contact) {
     enum { PARTS = 16 };
-    collide->horizon = collide->travel + 0.5 * collide->list.skin / PARTS;
-    collide->near_count = 0;
-    for (int32_t g = 0; g < collide->list.group_count; g++)
-        if (!(collide->due[g] > collide->horizon)) collide->near[collide->near_count++] = g;
+    contact->horizon = contact->travel + 0.5 * contact->list.skin / PARTS;
+    contact->near_count = 0;
+    for (int32_t g = 0; g < contact->list.group_count; g++)
+        if (!(contact->due[g] > contact->horizon)) contact->near[contact->near_count++] = g;
 }
 
-void lar_collide_add(lar_collide *collide, const lar_condition_context *context, lar_state *state) {
-    collide->time_step = context->time_step; /* of a part, where steps are divided */
-    collide->part_count = collide->level_count = 0;
-    collide->info.touching = 0;
-    collide->info.deepest = 0;
-    if (!(collide->travel < collide->horizon)) look_ahead(collide);
-    for (int32_t i = 0; i < collide->near_count; i++) {
-        int32_t g = collide->near[i], node = collide->list.group[g].node;
+void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
+                          lar_state *state) {
+    contact->time_step = context->time_step; /* of a part, where steps are divided */
+    contact->part_count = contact->level_count = 0;
+    contact->info.touching = 0;
+    contact->info.deepest = 0;
+    if (!(contact->travel < contact->horizon)) look_ahead(contact);
+    for (int32_t i = 0; i < contact->near_count; i++) {
+        int32_t g = contact->near[i], node = contact->list.group[g].node;
         touching t;
-        if (collide->travel < collide->due[g] || !contact(collide, state, g, &t)) continue;
-        add_forces(collide, context, state, node, &t);
+        if (contact->travel < contact->due[g] || !in_contact(contact, state, g, &t)) continue;
+        add_forces(contact, context, state, node, &t);
         /* Each node is counted once, by who adds its force. */
-        if (node >= collide->surface->node_count) continue;
-        bool own = !collide->adds_node || collide->adds_node[node];
-        collide->info.touching += own;
-        if (own) collide->info.deepest = fmax(collide->info.deepest, t.depth);
+        if (node >= contact->surface->node_count) continue;
+        bool own = !contact->adds_node || contact->adds_node[node];
+        contact->info.touching += own;
+        if (own) contact->info.deepest = fmax(contact->info.deepest, t.depth);
     }
 }
 
-void lar_collide_half_work(const lar_collide *collide, const lar_condition_context *context,
-                           lar_state *state) {
+void lar_body_contact_half_work(const lar_body_contact *contact,
+                                const lar_condition_context *context, lar_state *state) {
     double power = 0;
-    for (int32_t p = 0; p < collide->part_count; p++) {
-        const lar_collide_part *part = &collide->part[p];
+    for (int32_t p = 0; p < contact->part_count; p++) {
+        const lar_body_contact_part *part = &contact->part[p];
         for (int k = 0; k < part->count; k++) {
             const double *v = state->v + part->value[k];
             for (int i = 0; i < 3; i++) power += part->force[k][i] * v[i];
@@ -558,15 +561,15 @@ void lar_collide_half_work(const lar_collide *collide, const lar_condition_conte
     state->contact -= 0.5 * context->mean_step * power;
 }
 
-void lar_collide_restart(lar_collide *collide) {
-    collide->travel = collide->horizon = 0;
-    for (int32_t g = 0; g < collide->list.group_count; g++) {
+void lar_body_contact_restart(lar_body_contact *contact) {
+    contact->travel = contact->horizon = 0;
+    for (int32_t g = 0; g < contact->list.group_count; g++) {
         /* Along one axis, by both. */
-        double due = 0.5 * (double)collide->list.group[g].gap;
-        collide->due[g] = fmax(due, 0);
-        collide->last[g] = 0;
+        double due = 0.5 * (double)contact->list.group[g].gap;
+        contact->due[g] = fmax(due, 0);
+        contact->last[g] = 0;
     }
-    for (int32_t i = 0; i < collide->list.face_count; i++) {
-        collide->away[i] = 0;
+    for (int32_t i = 0; i < contact->list.face_count; i++) {
+        contact->away[i] = 0;
     }
 }

@@ -1,6 +1,6 @@
 /* Contact of bodies has the same bits on every grid, with any number of threads, by every scheme,
  * by every instruction set, with random delays, and whenever the search is made. */
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 
 #include "base/hash.h"
 #include "parallel/computer.h"

@@ -1,6 +1,6 @@
 /* Tools and fixed planes against a body: energy, balance, rest, and the same bits everywhere. */
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 /* Nearly incompressible and firm: pressure waves of 45 m/s, shear waves above the 5 m/s at which it
  * is dropped. */
@@ -38,7 +38,7 @@ static void drop(const brick *b, double speed, bool tilted, double share_of_stab
         highest = fmax(highest, now / start);
         lowest = fmin(lowest, now / start);
         error = fmax(error, fabs(now + e.damping + e.contact - e.external - start) / start);
-        info = simulation->domain.acting.touch.seen;
+        info = simulation->domain.acting.tool_contact.seen;
         if (info.touching > touching) touching = info.touching;
         deepest = fmax(deepest, info.deepest);
     }
@@ -133,10 +133,10 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
     place(simulation, 2, (double[]){0.004, 0.01, 0.031}, upright, 1, 200);
     advance(simulation, 200);
     lar_condition_context context = lar_domain_context(domain);
-    lar_touch *touch = &domain->acting.touch;
-    for (int tool = 0; tool < 3; tool++) memset(&touch->sum[tool], 0, sizeof touch->sum[tool]);
+    lar_tool_contact *contact = &domain->acting.tool_contact;
+    for (int tool = 0; tool < 3; tool++) memset(&contact->sum[tool], 0, sizeof contact->sum[tool]);
     memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
-    lar_touch_apply(touch, &context, &simulation->state);
+    lar_tool_contact_apply(contact, &context, &simulation->state);
     int64_t sum[3] = {0};
     double moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
@@ -150,7 +150,7 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
         }
     }
     for (int tool = 0; tool < 3; tool++) {
-        const lar_tool_sum *felt = &touch->sum[tool];
+        const lar_tool_sum *felt = &contact->sum[tool];
         lar_tool_pose pose;
         lar_error error;
         assert_int_equal(lar_simulation_tool_pose(simulation, tool, &pose, &error), LAR_OK);

@@ -1,11 +1,11 @@
-#include "contact/touch.h"
+#include "contact/tool_contact.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
-#include "contact/touch_face.h"
+#include "contact/tool_contact_face.h"
 
 /* ---- set-up -------------------------------------------------------------------------------- */
 
@@ -14,9 +14,9 @@ static bool mine(const lar_model *model, const lar_condition_share *share, int32
 }
 
 static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
-                     int32_t face, lar_touch *touch) {
-    lar_touch_face *f = &touch->face[touch->face_count++];
-    *f = (lar_touch_face){.of = face, .acting = -1};
+                     int32_t face, lar_tool_contact *contact) {
+    lar_tool_contact_face *f = &contact->face[contact->face_count++];
+    *f = (lar_tool_contact_face){.of = face, .loaded = -1};
     for (int a = 0; a < 4; a++) {
         int32_t node = model->surface.corner[face][a];
         f->value[a] = 4 * local[node];
@@ -35,100 +35,106 @@ static void add_face(const lar_model *model, const int32_t *local, const uint8_t
 
 /* Corners of own faces that other threads move. */
 static void list_foreign(const lar_model *model, const int32_t *local,
-                         const lar_condition_share *share, uint8_t *marked, lar_touch *touch) {
+                         const lar_condition_share *share, uint8_t *marked,
+                         lar_tool_contact *contact) {
     memset(marked, 0, (size_t)model->mesh.node_count);
-    for (int32_t f = 0; f < touch->face_count; f++)
+    for (int32_t f = 0; f < contact->face_count; f++)
         for (int a = 0; a < 4; a++) {
-            int32_t node = model->surface.corner[touch->face[f].of][a];
+            int32_t node = model->surface.corner[contact->face[f].of][a];
             if (share->holds[node] == share->thread || marked[node]) continue;
             marked[node] = 1;
-            touch->foreign[touch->foreign_count++] = 4 * local[node];
+            contact->foreign[contact->foreign_count++] = 4 * local[node];
         }
 }
 
-static lar_status allocate(const lar_model *model, int32_t faces, int tools, lar_touch *touch,
-                           lar_error *error) {
+static lar_status allocate(const lar_model *model, int32_t faces, int tools,
+                           lar_tool_contact *contact, lar_error *error) {
     size_t count = (size_t)faces, nodes = (size_t)model->surface.node_count;
-    touch->face = lar_calloc(count, sizeof *touch->face);
-    touch->acting = lar_calloc(count, sizeof *touch->acting);
-    touch->foreign = lar_calloc(nodes, sizeof *touch->foreign);
-    touch->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *touch->face_of);
-    touch->weights = lar_calloc(1, sizeof *touch->weights);
-    bool fits = touch->face && touch->acting && touch->foreign && touch->face_of && touch->weights;
+    contact->face = lar_calloc(count, sizeof *contact->face);
+    contact->loaded = lar_calloc(count, sizeof *contact->loaded);
+    contact->foreign = lar_calloc(nodes, sizeof *contact->foreign);
+    contact->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *contact->face_of);
+    contact->weights = lar_calloc(1, sizeof *contact->weights);
+    bool fits = contact->face && contact->loaded && contact->foreign && contact->face_of &&
+                contact->weights;
     for (int t = 0; t < tools && fits; t++) {
-        lar_tool_watch *watch = &touch->watch[t];
+        lar_tool_watch *watch = &contact->watch[t];
         watch->near = lar_calloc(count, sizeof *watch->near);
         watch->look = lar_calloc(count, sizeof *watch->look);
         fits = watch->near && watch->look;
     }
     return fits ? LAR_OK
-                : lar_fail_memory(error, count * sizeof *touch->face, "the faces before tools");
+                : lar_fail_memory(error, count * sizeof *contact->face, "the faces before tools");
 }
 
 static lar_status create_faces(const lar_model *model, const int32_t *local,
-                               const lar_condition_share *share, lar_touch *touch,
+                               const lar_condition_share *share, lar_tool_contact *contact,
                                lar_error *error) {
     const lar_surface *surface = &model->surface;
     int32_t faces = 0;
     for (int32_t f = 0; f < surface->face_count; f++) faces += mine(model, share, f);
     uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
     if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
-    lar_status status = allocate(model, faces, touch->list->count, touch, error);
+    lar_status status = allocate(model, faces, contact->list->count, contact, error);
     if (!status) {
         for (int32_t f = 0; f < surface->face_count; f++)
             for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
         for (int32_t f = 0; f < surface->face_count; f++)
-            if (mine(model, share, f)) add_face(model, local, marked, f, touch);
+            if (mine(model, share, f)) add_face(model, local, marked, f, contact);
         for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-            for (int i = 0; i < n * n; i++) lar_touch_weights(i, n, touch->weights->of[n][i]);
-        status = lar_touch_group_faces(touch, error);
+            for (int i = 0; i < n * n; i++)
+                lar_tool_contact_weights(i, n, contact->weights->of[n][i]);
+        status = lar_tool_contact_group_faces(contact, error);
     }
     if (!status) {
-        for (int32_t f = 0; f < surface->face_count; f++) touch->face_of[f] = -1;
-        for (int32_t f = 0; f < faces; f++) touch->face_of[touch->face[f].of] = f;
-        if (share) list_foreign(model, local, share, marked, touch);
+        for (int32_t f = 0; f < surface->face_count; f++) contact->face_of[f] = -1;
+        for (int32_t f = 0; f < faces; f++) contact->face_of[contact->face[f].of] = f;
+        if (share) list_foreign(model, local, share, marked, contact);
     }
     free(marked);
     return status;
 }
 
-lar_status lar_touch_create(const lar_model *model, const int32_t *local,
-                            const lar_condition_share *share, const lar_tool_list *list,
-                            const lar_tools *tools, lar_touch *touch, lar_error *error) {
-    *touch = (lar_touch){.list = list, .tools = tools};
-    lar_status status = lar_planes_create(model, local, share, &touch->planes, error);
+lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
+                                   const lar_condition_share *share, const lar_tool_list *list,
+                                   const lar_tools *tools, lar_tool_contact *contact,
+                                   lar_error *error) {
+    *contact = (lar_tool_contact){.list = list, .tools = tools};
+    lar_status status =
+        lar_plane_contact_create(model, local, share, &contact->plane_contact, error);
     if (!status && list && list->count > 0)
-        status = create_faces(model, local, share, touch, error);
-    if (status) lar_touch_destroy(touch);
+        status = create_faces(model, local, share, contact, error);
+    if (status) lar_tool_contact_destroy(contact);
     return status;
 }
 
-void lar_touch_destroy(lar_touch *touch) {
-    lar_planes_destroy(&touch->planes);
+void lar_tool_contact_destroy(lar_tool_contact *contact) {
+    lar_plane_contact_destroy(&contact->plane_contact);
     for (int t = 0; t < LAR_TOOLS_MOST; t++) {
-        free(touch->watch[t].near);
-        free(touch->watch[t].look);
+        free(contact->watch[t].near);
+        free(contact->watch[t].look);
     }
-    free(touch->face);
-    free(touch->group);
-    free(touch->acting);
-    free(touch->foreign);
-    free(touch->face_of);
-    free(touch->weights);
-    *touch = (lar_touch){0};
+    free(contact->face);
+    free(contact->group);
+    free(contact->loaded);
+    free(contact->foreign);
+    free(contact->face_of);
+    free(contact->weights);
+    *contact = (lar_tool_contact){0};
 }
 
 /* The balls of groups are measured anew when somebody asks. */
-static void forget_groups(lar_touch *touch) {
-    for (int32_t g = 0; g < touch->group_count; g++) touch->group[g].travel = -INFINITY;
-    touch->travel = 0;
+static void forget_groups(lar_tool_contact *contact) {
+    for (int32_t g = 0; g < contact->group_count; g++) contact->group[g].travel = -INFINITY;
+    contact->travel = 0;
 }
 
-void lar_touch_forget(lar_touch *touch) {
-    touch->planes.known = false;
-    touch->moved = UINT64_MAX;
-    forget_groups(touch);
-    for (int t = 0; t < LAR_TOOLS_MOST; t++) touch->watch[t].known = touch->watch[t].rests = false;
+void lar_tool_contact_forget(lar_tool_contact *contact) {
+    contact->plane_contact.known = false;
+    contact->moved = UINT64_MAX;
+    forget_groups(contact);
+    for (int t = 0; t < LAR_TOOLS_MOST; t++)
+        contact->watch[t].known = contact->watch[t].rests = false;
 }
 
 /* ---- where tools are ----------------------------------------------------------------------- */
@@ -207,23 +213,24 @@ static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool
 
 /* Gives the corners their forces in whole units, and the tool exactly the opposite: nothing is lost
  * between them. */
-static void give(lar_touch *touch, const lar_condition_context *context, int32_t f, int32_t tool,
-                 const double tip[3], const double x[4][3], const double force[4][3]) {
-    lar_touch_face *face = &touch->face[f];
-    lar_tool_sum *sum = &touch->sum[tool];
+static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
+                 int32_t tool, const double tip[3], const double x[4][3],
+                 const double force[4][3]) {
+    lar_tool_contact_face *face = &contact->face[f];
+    lar_tool_sum *sum = &contact->sum[tool];
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
             if (!(fabs(force[a][i] * context->scale) < 0x1p56)) return;
-    if (face->acting < 0) {
-        face->acting = touch->acting_count++;
-        touch->acting[face->acting] = (lar_touch_force){.face = f};
+    if (face->loaded < 0) {
+        face->loaded = contact->loaded_count++;
+        contact->loaded[face->loaded] = (lar_tool_contact_force){.face = f};
     }
-    lar_touch_force *acting = &touch->acting[face->acting];
+    lar_tool_contact_force *loaded = &contact->loaded[face->loaded];
     for (int a = 0; a < 4; a++) {
         double units[3], arm[3];
         for (int i = 0; i < 3; i++) {
             int64_t whole = llrint(force[a][i] * context->scale);
-            acting->force[a][i] += whole;
+            loaded->force[a][i] += whole;
             sum->force[i] -= context->shares * whole;
             units[i] = (double)whole;
             arm[i] = x[a][i] - tip[i];
@@ -243,33 +250,33 @@ static int64_t whole_units(double units) {
     return fabs(units) < 0x1p56 ? llrint(units) : 0;
 }
 
-static void touch_near(lar_touch *touch, const lar_condition_context *context,
+static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, int32_t tool, const lar_contact_law *law) {
-    lar_tool_watch *watch = &touch->watch[tool];
+    lar_tool_watch *watch = &contact->watch[tool];
     for (int32_t i = 0; i < watch->near_count; i++) {
-        if (watch->path < watch->look[i] && !touch->always) continue;
-        lar_touched_face patch = {.face = &touch->face[watch->near[i]],
-                                  .body = &watch->body,
-                                  .radius = touch->list->tool[tool].radius,
-                                  .rate_of = 1 / context->time_step,
-                                  .closest = INFINITY};
+        if (watch->path < watch->look[i] && !contact->always) continue;
+        lar_tool_contact_patch patch = {.face = &contact->face[watch->near[i]],
+                                        .body = &watch->body,
+                                        .radius = contact->list->tool[tool].radius,
+                                        .rate_of = 1 / context->time_step,
+                                        .closest = INFINITY};
         double center[3];
-        lar_touch_corners(patch.face, state->u, patch.x);
-        double size = lar_touch_ball((const double(*)[3])patch.x, center);
-        double gap = lar_touch_distance(&watch->body, patch.radius, center) - size;
-        touch->seen.tested++;
-        watch->look[i] = watch->path + lar_touch_clear(gap, patch.radius);
+        lar_tool_contact_corners(patch.face, state->u, patch.x);
+        double size = lar_tool_contact_ball((const double(*)[3])patch.x, center);
+        double gap = lar_tool_contact_distance(&watch->body, patch.radius, center) - size;
+        contact->seen.tested++;
+        watch->look[i] = watch->path + lar_tool_contact_clear(gap, patch.radius);
         if (gap > 0) continue;
-        lar_touch_push_face(&patch, law, state->v, context->mass, touch->weights);
-        watch->look[i] = watch->path + lar_touch_clear(patch.closest, patch.radius);
+        lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->weights);
+        watch->look[i] = watch->path + lar_tool_contact_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
-        lar_tool_sum *sum = &touch->sum[tool];
+        lar_tool_sum *sum = &contact->sum[tool];
         sum->touching += patch.touching;
         sum->depth = fmax(sum->depth, patch.depth);
         sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
         for (int s = 0; s < 2; s++)
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
-        give(touch, context, watch->near[i], tool, watch->body.now[0].end[0],
+        give(contact, context, watch->near[i], tool, watch->body.now[0].end[0],
              (const double(*)[3])patch.x, (const double(*)[3])patch.force);
     }
 }
@@ -289,16 +296,16 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
 
 /* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
  * radius, so that what is torn away from a tool slips instead of being torn apart. */
-static void hold_point(lar_touch *touch, const lar_condition_context *context,
+static void hold_point(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, const lar_hold *hold, const lar_hold_motion *motion,
                        const lar_contact_law *law) {
-    const lar_touch_face *face = &touch->face[touch->face_of[hold->face]];
-    const lar_tool *tool = &touch->list->tool[hold->tool];
+    const lar_tool_contact_face *face = &contact->face[contact->face_of[hold->face]];
+    const lar_tool *tool = &contact->list->tool[hold->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
     double pull[3], force[4][3], length = 0;
     place_anchor(&motion->now, hold->anchor, now);
     place_anchor(&motion->next, hold->anchor, next);
-    lar_touch_corners(face, state->u, x);
+    lar_tool_contact_corners(face, state->u, x);
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
     lar_face_mean((const double(*)[3])x, hold->weight, point);
     lar_face_mean((const double(*)[3])v, hold->weight, speed);
@@ -312,128 +319,133 @@ static void hold_point(lar_touch *touch, const lar_condition_context *context,
     double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) force[a][i] = hold->weight[a] * share * pull[i];
-    give(touch, context, touch->face_of[hold->face], hold->tool, motion->now.position,
+    give(contact, context, contact->face_of[hold->face], hold->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
-    touch->sum[hold->tool].held++;
+    contact->sum[hold->tool].held++;
 }
 
-static void apply_holds(lar_touch *touch, const lar_condition_context *context,
+static void apply_holds(lar_tool_contact *contact, const lar_condition_context *context,
                         const lar_state *state, const lar_contact_law *law) {
     lar_hold_motion motion[LAR_TOOLS_MOST];
     for (int t = 0; t < LAR_TOOLS_MOST; t++) motion[t].known = false;
-    for (int32_t i = 0; i < touch->tools->hold_count; i++) {
-        const lar_hold *hold = &touch->tools->hold[i];
-        if (touch->face_of[hold->face] < 0) continue;
+    for (int32_t i = 0; i < contact->tools->hold_count; i++) {
+        const lar_hold *hold = &contact->tools->hold[i];
+        if (contact->face_of[hold->face] < 0) continue;
         lar_hold_motion *of = &motion[hold->tool];
-        const lar_tool_motion *tool = &touch->tools->motion[hold->tool];
+        const lar_tool_motion *tool = &contact->tools->motion[hold->tool];
         if (!of->known) {
             pose_now(tool, state, 0, context->whole_step, &of->now);
             pose_now(tool, state, 1, context->whole_step, &of->next);
             of->known = true;
         }
-        hold_point(touch, context, state, hold, of, law);
+        hold_point(contact, context, state, hold, of, law);
     }
 }
 
 /* ---- the step ------------------------------------------------------------------------------ */
 
 /* How far any corner can have gone since the last step; infinitely far when that is not known. */
-static double step_travel(const lar_touch *touch, const lar_condition_context *context,
+static double step_travel(const lar_tool_contact *contact, const lar_condition_context *context,
                           const lar_state *state) {
-    if (touch->moved != state->round) return INFINITY;
+    if (contact->moved != state->round) return INFINITY;
     double fastest = state->fastest;
-    for (int32_t i = 0; i < touch->foreign_count; i++)
-        for (int k = 0; k < 3; k++) fastest = fmax(fastest, fabs(state->v[touch->foreign[i] + k]));
+    for (int32_t i = 0; i < contact->foreign_count; i++)
+        for (int k = 0; k < 3; k++)
+            fastest = fmax(fastest, fabs(state->v[contact->foreign[i] + k]));
     return 1.7320508075688774 * context->whole_step * fastest;
 }
 
-static void apply_tool(lar_touch *touch, const lar_condition_context *context,
+static void apply_tool(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, int32_t t, double travel,
                        const lar_contact_law *law) {
-    const lar_tool *tool = &touch->list->tool[t];
-    lar_tool_watch *watch = &touch->watch[t];
-    int32_t serial = lar_spare_serial(touch->list, touch->tools, t);
+    const lar_tool *tool = &contact->list->tool[t];
+    lar_tool_watch *watch = &contact->watch[t];
+    int32_t serial = lar_spare_serial(contact->list, contact->tools, t);
     if (watch->serial != serial) watch->known = watch->rests = false;
     watch->serial = serial;
-    double came = follow(watch, tool, &touch->tools->motion[t], state, context->whole_step);
+    double came = follow(watch, tool, &contact->tools->motion[t], state, context->whole_step);
     watch->path += travel + came;
-    if (touch->always || !watch->known || !(watch->path < watch->limit))
-        lar_touch_search(touch, t, state,
-                         travel +
-                             lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
-    touch_near(touch, context, state, t, law);
-    touch->seen.possible += (uint64_t)touch->face_count;
+    if (contact->always || !watch->known || !(watch->path < watch->limit))
+        lar_tool_contact_search(
+            contact, t, state,
+            travel + lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
+    touch_near(contact, context, state, t, law);
+    contact->seen.possible += (uint64_t)contact->face_count;
 }
 
-static void clear_acting(lar_touch *touch) {
-    for (int32_t i = 0; i < touch->acting_count; i++)
-        touch->face[touch->acting[i].face].acting = -1;
-    touch->acting_count = 0;
-    touch->seen.touching = 0;
-    touch->seen.deepest = 0;
+static void clear_loaded(lar_tool_contact *contact) {
+    for (int32_t i = 0; i < contact->loaded_count; i++)
+        contact->face[contact->loaded[i].face].loaded = -1;
+    contact->loaded_count = 0;
+    contact->seen.touching = 0;
+    contact->seen.deepest = 0;
 }
 
-static void add_forces(const lar_touch *touch, int64_t *force) {
-    for (int32_t i = 0; i < touch->acting_count; i++) {
-        const lar_touch_force *acting = &touch->acting[i];
+static void add_forces(const lar_tool_contact *contact, int64_t *force) {
+    for (int32_t i = 0; i < contact->loaded_count; i++) {
+        const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
-                force[touch->face[acting->face].value[a] + k] -= acting->force[a][k];
+                force[contact->face[loaded->face].value[a] + k] -= loaded->force[a][k];
     }
 }
 
-void lar_touch_apply(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
-    clear_acting(touch);
-    if (touch->face_count == 0) return;
+void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_context *context,
+                            lar_state *state) {
+    clear_loaded(contact);
+    if (contact->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
     lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
     tool_law.stiffness *= context->hardness;
     tool_law.lead *= context->time_step / context->whole_step;
-    double travel = step_travel(touch, context, state);
+    double travel = step_travel(contact, context, state);
     bool known = isfinite(travel);
-    if (!known) lar_touch_forget(touch);
-    if (known) touch->travel += travel;
-    if (touch->travel > 1) forget_groups(touch); /* short sums keep the smallest steps */
-    for (int32_t t = 0; t < touch->list->count; t++) {
-        touch->sum[t].touching = touch->sum[t].held = 0;
-        if (lar_tool_touches(&touch->list->tool[t]))
-            apply_tool(touch, context, state, t, known ? travel : 0, &tool_law);
+    if (!known) lar_tool_contact_forget(contact);
+    if (known) contact->travel += travel;
+    if (contact->travel > 1) forget_groups(contact); /* short sums keep the smallest steps */
+    for (int32_t t = 0; t < contact->list->count; t++) {
+        contact->sum[t].touching = contact->sum[t].held = 0;
+        if (lar_tool_touches(&contact->list->tool[t]))
+            apply_tool(contact, context, state, t, known ? travel : 0, &tool_law);
     }
-    apply_holds(touch, context, state, &law);
-    add_forces(touch, state->force);
+    apply_holds(contact, context, state, &law);
+    add_forces(contact, state->force);
 }
 
-void lar_touch_half_work(const lar_touch *touch, const lar_condition_context *context,
-                         lar_state *state) {
+void lar_tool_contact_half_work(const lar_tool_contact *contact,
+                                const lar_condition_context *context, lar_state *state) {
     double work = 0;
-    for (int32_t i = 0; i < touch->acting_count; i++) {
-        const lar_touch_force *acting = &touch->acting[i];
+    for (int32_t i = 0; i < contact->loaded_count; i++) {
+        const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
-                work +=
-                    (double)acting->force[a][k] * state->v[touch->face[acting->face].value[a] + k];
+                work += (double)loaded->force[a][k] *
+                        state->v[contact->face[loaded->face].value[a] + k];
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
 }
 
-void lar_touch_observe(lar_touch *touch, const lar_condition_context *context,
-                       const lar_state *state) {
-    lar_planes_observe(&touch->planes, context, state, touch->always, &touch->seen);
+void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_context *context,
+                              const lar_state *state) {
+    lar_plane_contact_observe(&contact->plane_contact, context, state, contact->always,
+                              &contact->seen);
 }
 
-void lar_touch_stop(lar_touch *touch, const lar_condition_context *context, lar_state *state) {
-    lar_planes_stop(&touch->planes, context, state, touch->always, &touch->seen);
-    touch->moved = state->round + 1;
-    bool tools = touch->face_count > 0 && lar_spares_any(touch->list, touch->tools);
-    if (touch->planes.count > 0 || tools) touch->seen.steps++;
+void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_context *context,
+                           lar_state *state) {
+    lar_plane_contact_stop(&contact->plane_contact, context, state, contact->always,
+                           &contact->seen);
+    contact->moved = state->round + 1;
+    bool tools = contact->face_count > 0 && lar_spares_any(contact->list, contact->tools);
+    if (contact->plane_contact.count > 0 || tools) contact->seen.steps++;
 }
 
-void lar_touch_remember(const lar_touch *touch, lar_touch_note *note) {
-    memcpy(note->sum, touch->sum, sizeof note->sum);
-    note->seen = touch->seen;
+void lar_tool_contact_remember(const lar_tool_contact *contact, lar_tool_contact_saved *note) {
+    memcpy(note->sum, contact->sum, sizeof note->sum);
+    note->seen = contact->seen;
 }
 
-void lar_touch_restore(lar_touch *touch, const lar_touch_note *note) {
-    memcpy(touch->sum, note->sum, sizeof note->sum);
-    touch->seen = note->seen;
+void lar_tool_contact_restore(lar_tool_contact *contact, const lar_tool_contact_saved *note) {
+    memcpy(contact->sum, note->sum, sizeof note->sum);
+    contact->seen = note->seen;
 }

@@ -1,9 +1,9 @@
 /* A body whose concave crease folds shut: nodes that come into its layer without having come
  * through a face are not pushed out with energy from nowhere, and the run goes on to rest. */
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 #include "parallel/computer.h"
 #include "engine/fleet_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 #include "mechanics/face_contact.h"
 
@@ -126,7 +126,7 @@ static double deepest_inside(const lar_simulation *s, int *count) {
 static double put(lar_simulation *s, int32_t node, int32_t face, double depth, double sinks) {
     lar_domain *domain = &s->domain;
     const lar_model *model = domain->model;
-    const lar_collide *collide = &domain->acting.collide;
+    const lar_body_contact *contact = &domain->acting.body_contact;
     static const double even[4] = {0.25, 0.25, 0.25, 0.25};
     double corner[4][3], middle[3], normal[3], length = 0, force = 0;
     int32_t value = 4 * domain->layout.local[node];
@@ -140,12 +140,12 @@ static double put(lar_simulation *s, int32_t node, int32_t face, double depth, d
         s->state.v[value + i] = -sinks * way / domain->time_step;
     }
     lar_condition_context context = lar_domain_context(domain);
-    lar_collide_forget(&domain->acting.collide);
-    lar_collide_apply(&domain->acting.collide, &context, &s->state);
-    for (int32_t p = 0; p < collide->part_count; p++)
-        for (int i = 0; i < 3 && collide->part[p].value[0] == value; i++)
-            force += collide->part[p].force[0][i] * normal[i] / sqrt(length);
-    lar_collide_moved(&domain->acting.collide, &s->state, 0);
+    lar_body_contact_forget(&domain->acting.body_contact);
+    lar_body_contact_apply(&domain->acting.body_contact, &context, &s->state);
+    for (int32_t p = 0; p < contact->part_count; p++)
+        for (int i = 0; i < 3 && contact->part[p].value[0] == value; i++)
+            force += contact->part[p].force[0][i] * normal[i] / sqrt(length);
+    lar_body_contact_moved(&domain->acting.body_contact, &s->state, 0);
     memset(s->state.force, 0, 4 * (size_t)s->state.node_count * sizeof *s->state.force);
     return force;
 }
@@ -226,7 +226,7 @@ static void a_node_from_inside_may_go_home(void **unused) {
 
 /* ---- to rest -------------------------------------------------------------------------------- */
 
-/* Kinetic energy half a step back, as in test_collide_rest.c. */
+/* Kinetic energy half a step back, as in test_body_contact_rest.c. */
 static double kinetic(const lar_simulation *s) {
     double energy = 0;
     for (int32_t n = 0; n < s->domain.model->mesh.node_count; n++)

@@ -1,6 +1,6 @@
 /* Bodies that meet: several bricks in one mesh, and who touches whom. */
-#ifndef LAR_TESTS_COLLIDE_TEST_H
-#define LAR_TESTS_COLLIDE_TEST_H
+#ifndef LAR_TESTS_BODY_CONTACT_TEST_H
+#define LAR_TESTS_BODY_CONTACT_TEST_H
 
 #include "engine/engine_test.h"
 
