@@ -193,7 +193,8 @@ static lar_status move(lar_worker *worker, lar_error *error) {
     if (p->check)
         return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
                                         worker->context.end, &worker->state, error);
-    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->fault);
+    lar_step_move(&p->domain, &worker->interactions, &worker->context, &worker->state,
+                  &worker->fault);
     return LAR_OK;
 }
 
@@ -225,11 +226,11 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_processor *p = worker->processor;
     uint64_t round = worker->round + 1; /* comm and marks count from 1 */
     lar_status status = LAR_OK;
-    lar_step_enter(&p->domain, &worker->acting, &worker->context, &worker->state);
+    lar_step_enter(&p->domain, &worker->interactions, &worker->context, &worker->state);
     fetch_foreign(worker);
     if (p->board) status = lar_contact_send(worker, round, error);
     if (!p->check && !status)
-        lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
+        lar_step_begin(&p->domain, &worker->interactions, &worker->context, &worker->state,
                        &worker->fault);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, round, error);
@@ -246,6 +247,7 @@ lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     if (p->check)
         worker->state.step++;
     else
-        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->fault);
+        lar_step_end(&p->domain, &worker->interactions, &worker->context, &worker->state,
+                     &worker->fault);
     return LAR_OK;
 }

@@ -303,7 +303,7 @@ static void report_here(const lar_computer *computer, lar_report *report) {
     *report = (lar_report){0};
     for (int32_t i = 0; i < seats(computer); i++) {
         const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
-        lar_report_add(report, &worker->acting, &worker->state);
+        lar_report_add(report, &worker->interactions, &worker->state);
     }
 }
 
@@ -331,9 +331,10 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
     computer->until = until;
     take_settings(computer);
     for (int32_t i = 0; i < seats(computer); i++) {
-        lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
-        if (first) lar_report_begin(acting);
-        lar_tool_contact_forget_depths(&acting->tool_contact);
+        lar_interactions *interactions =
+            &processor_of(computer, i)->worker[i % computer->threads].interactions;
+        if (first) lar_report_begin(interactions);
+        lar_tool_contact_forget_depths(&interactions->tool_contact);
         processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);

@@ -27,7 +27,7 @@ static void list_elements(const lar_computer *computer, int32_t *elements, size_
 
 lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    const lar_body_contact *whole = &computer->whole->acting.body_contact;
+    const lar_body_contact *whole = &computer->whole->interactions.body_contact;
     if (!whole->surface || computer->checking) return LAR_OK;
     const lar_model *model = computer->whole->model;
     size_t nodes = (size_t)whole->surface->node_count;
@@ -117,7 +117,8 @@ static double reserve(const lar_computer *computer, double way) {
 static void take_list(lar_processor *p, const lar_contact_map *map, const lar_contact_list *list,
                       double moved) {
     if (list) lar_contact_compile(p, map, list);
-    for (int32_t t = 0; t < p->thread_count; t++) p->worker[t].acting.body_contact.moved = moved;
+    for (int32_t t = 0; t < p->thread_count; t++)
+        p->worker[t].interactions.body_contact.moved = moved;
 }
 
 static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double moved,

@@ -159,7 +159,7 @@ static void plan_peer(lar_contact_board *board, const lar_contact_list *list, in
 
 /* The groups in which a thread adds something, or whose node's level it keeps. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
-    lar_body_contact *contact = &worker->acting.body_contact;
+    lar_body_contact *contact = &worker->interactions.body_contact;
     lar_contact_list *own = &contact->list;
     own->group_count = own->face_count = 0;
     own->skin = list->skin;
@@ -205,7 +205,7 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
                                  lar_error *error) {
     const lar_contact_surface *surface = whole->surface;
     const lar_contact_board *board = p->board;
-    lar_body_contact *contact = &p->worker[thread].acting.body_contact;
+    lar_body_contact *contact = &p->worker[thread].interactions.body_contact;
     size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
     size_t groups = (size_t)whole->list.group_room, pairs = (size_t)whole->list.face_room;
     uint8_t *adds_node = lar_calloc(nodes, 1), *adds_corner = lar_calloc(faces, 1);
@@ -300,7 +300,7 @@ void lar_contact_board_destroy(lar_processor *p) {
     lar_contact_board *board = p->board;
     if (!board) return;
     for (int32_t t = 0; t < p->thread_count; t++) {
-        lar_body_contact *contact = &p->worker[t].acting.body_contact;
+        lar_body_contact *contact = &p->worker[t].interactions.body_contact;
         free((uint8_t *)contact->adds_node);
         free((uint8_t *)contact->adds_corner);
         free((uint8_t *)contact->keeps);

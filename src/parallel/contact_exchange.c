@@ -103,7 +103,7 @@ static lar_status receive_places(const lar_processor *p, uint64_t round, lar_err
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error) {
     lar_processor *p = worker->processor;
     lar_contact_board *board = p->board;
-    lar_body_contact *contact = &worker->acting.body_contact;
+    lar_body_contact *contact = &worker->interactions.body_contact;
     lar_status status = wait_for_threads(p, round, error);
     if (status) return status;
     if (worker->thread == 0)
@@ -125,7 +125,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
 /* ---- in time --------------------------------------------------------------------------------- */
 
 void lar_contact_watch(lar_worker *worker, uint64_t steps) {
-    const lar_body_contact *contact = &worker->acting.body_contact;
+    const lar_body_contact *contact = &worker->interactions.body_contact;
     double allowed = 0.5 * contact->list.skin;
     double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
     uint64_t done = worker->state.step;

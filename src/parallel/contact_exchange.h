@@ -106,8 +106,9 @@ typedef struct lar_contact_board {
     uint8_t *marked; /* [contact nodes] scratch */
 } lar_contact_board;
 
-/* For a processor whose threads are there: also their worker->acting.body_contact. `whole` is the
- * whole model's; without contacts of bodies nothing is made. Of `share` the thread does not matter.
+/* For a processor whose threads are there: also their worker->interactions.body_contact. `whole` is
+ * the whole model's; without contacts of bodies nothing is made. Of `share` the thread does not
+ * matter.
  */
 lar_status lar_contact_board_create(const lar_body_contact *whole, const lar_condition_share *share,
                                     const int32_t *reporter, int32_t processors,

@@ -196,13 +196,13 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};
     if (!status)
         status = lar_conditions_create(setting->whole->model, layout->local, &share,
-                                       &worker->acting.conditions, error);
-    const lar_tool_contact *contact = &setting->whole->acting.tool_contact;
+                                       &worker->interactions.conditions, error);
+    const lar_tool_contact *contact = &setting->whole->interactions.tool_contact;
     if (!status)
         status =
             lar_tool_contact_create(setting->whole->model, layout->local, &share, contact->list,
-                                    contact->tools, &worker->acting.tool_contact, error);
-    worker->acting.tool_contact.always = contact->always;
+                                    contact->tools, &worker->interactions.tool_contact, error);
+    worker->interactions.tool_contact.always = contact->always;
     return status;
 }
 
@@ -216,7 +216,7 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
         status = create_worker(schedule, setting, a, t, p, error);
     const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
     if (!status && !p->check)
-        status = lar_contact_board_create(&setting->whole->acting.body_contact, &share,
+        status = lar_contact_board_create(&setting->whole->interactions.body_contact, &share,
                                           setting->reporter, schedule->grid.count, p, error);
     return status ? status : lar_parcels_create(schedule, a->thread, p, error);
 }
@@ -255,7 +255,7 @@ void lar_processor_destroy(lar_processor *p) {
     lar_contact_board_destroy(p);
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
-        lar_acting_destroy(&worker->acting);
+        lar_interactions_destroy(&worker->interactions);
         lar_parcels_destroy(worker);
         free(worker->gather);
         if (t == 0)
@@ -292,7 +292,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.listed = false;
         worker->state.external = worker->state.damped = worker->state.contact = 0;
         worker->fault = (lar_fault){0};
-        lar_acting_forget(&worker->acting);
+        lar_interactions_forget(&worker->interactions);
         memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
     }
     p->ahead = (int64_t)(state->step - p->worker[0].round);

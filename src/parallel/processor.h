@@ -58,7 +58,7 @@ typedef struct lar_worker {
     lar_state state; /* u, v: the processor's; force, step and work are its own */
     uint64_t round;  /* steps gone through since the start. Packets and marks are counted by it, so
                         that they go on when the state is set back (docs/parallel.md) */
-    lar_acting acting;
+    lar_interactions interactions;
     lar_condition_context context; /* the nodes that it moves */
     lar_parcel *parcel;            /* [threads] for each of them */
     int32_t joint_count;

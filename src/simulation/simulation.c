@@ -18,7 +18,7 @@ lar_options lar_options_default(void) {
 /* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
  * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
 static void set_initial_displacements(lar_simulation *simulation) {
-    const lar_conditions *conditions = &simulation->domain.acting.conditions;
+    const lar_conditions *conditions = &simulation->domain.interactions.conditions;
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double value = lar_constraint_value(simulation->domain.model, c, 0);
@@ -52,8 +52,8 @@ static void set_initial_velocities(lar_simulation *simulation) {
             state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
         }
     memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
-    for (int32_t i = 0; i < domain->acting.conditions.constraint_count; i++)
-        state->v[domain->acting.conditions.constraint[i].value] = 0;
+    for (int32_t i = 0; i < domain->interactions.conditions.constraint_count; i++)
+        state->v[domain->interactions.conditions.constraint[i].value] = 0;
 }
 
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
@@ -131,10 +131,10 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     simulation->measured = simulation->taken = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
     lar_simulation_settle(simulation);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     set_initial_displacements(simulation);
     set_initial_velocities(simulation);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,
@@ -148,12 +148,12 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     lar_tools_reset(&simulation->list, &simulation->tools);
     domain->interval = lar_interval_length(domain, &simulation->tools);
     status = lar_tool_contact_create(model, domain->layout.local, NULL, &simulation->list,
-                                     &simulation->tools, &domain->acting.tool_contact, error);
-    domain->acting.tool_contact.always = options->search_always != 0;
+                                     &simulation->tools, &domain->interactions.tool_contact, error);
+    domain->interactions.tool_contact.always = options->search_always != 0;
     if (!status)
         status = lar_body_contact_create(
             model, domain->mass, domain->layout.local, domain->time_step, domain->stable_step,
-            options->search_always != 0, &domain->acting.body_contact, error);
+            options->search_always != 0, &domain->interactions.body_contact, error);
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;
@@ -203,7 +203,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
     lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
-    lar_tool_contact_forget_depths(&domain->acting.tool_contact);
+    lar_tool_contact_forget_depths(&domain->interactions.tool_contact);
     state->need = 0;
     while (state->step < end && goes_on) {
         lar_step(domain, state, fault);
@@ -212,7 +212,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
         goes_on = !fault->kind && (!watch || !whole || watch(context, state->step));
     }
     simulation->report = (lar_report){0};
-    lar_report_add(&simulation->report, &domain->acting, state);
+    lar_report_add(&simulation->report, &domain->interactions, state);
     lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
                          &simulation->tools);
     return goes_on;
@@ -223,7 +223,7 @@ static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch 
     const uint64_t *step = &simulation->state.step;
     uint64_t end = *step + steps;
     bool goes_on = true;
-    lar_report_begin(&simulation->domain.acting);
+    lar_report_begin(&simulation->domain.interactions);
     lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
@@ -407,7 +407,7 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
 
 size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
-    const lar_conditions *conditions = &domain->acting.conditions;
+    const lar_conditions *conditions = &domain->interactions.conditions;
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;

@@ -55,7 +55,7 @@ lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *s
     memset(simulation->state.force, 0,
            4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
     simulation->tools = *tools;
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     return lar_simulation_take_up(simulation, error);
 }
 
@@ -87,7 +87,7 @@ lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
         status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
     if (status) return status;
     lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     return lar_simulation_take_up(simulation, error);
 }
 

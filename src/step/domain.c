@@ -384,8 +384,8 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     }
     if (!status)
         status = lar_conditions_create(model, domain->layout.local, NULL,
-                                       &domain->acting.conditions, error);
-    double largest = status ? 0 : lar_conditions_largest(&domain->acting.conditions);
+                                       &domain->interactions.conditions, error);
+    double largest = status ? 0 : lar_conditions_largest(&domain->interactions.conditions);
     if (!status && largest * domain->scale > 0x1p58)
         status = lar_fail(error, LAR_ERROR_MODEL,
                           "%s: a nodal force of %g N is far beyond what this material can bear; "
@@ -442,7 +442,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
 }
 
 void lar_domain_destroy(lar_domain *domain) {
-    lar_acting_destroy(&domain->acting);
+    lar_interactions_destroy(&domain->interactions);
     lar_layout_destroy(&domain->layout);
     free(domain->run);
     free(domain->run_first);

@@ -13,7 +13,7 @@
 #ifndef LAR_STEP_DOMAIN_H
 #define LAR_STEP_DOMAIN_H
 
-#include "contact/acting.h"
+#include "contact/interactions.h"
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
@@ -69,7 +69,7 @@ typedef struct lar_domain {
     lar_hex8_limits limits;
     lar_motion motion; /* without gravity when gravity follows a curve */
 
-    lar_acting acting;
+    lar_interactions interactions;
 } lar_domain;
 
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic

@@ -30,7 +30,7 @@ static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
 }
 
 static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
-    const lar_tool_contact *contact = &domain->acting.tool_contact;
+    const lar_tool_contact *contact = &domain->interactions.tool_contact;
     double nearest = INFINITY;
     for (int32_t i = 0; i < contact->tools->hold_count; i++) {
         const lar_hold *hold = &contact->tools->hold[i];
@@ -44,7 +44,7 @@ static double holding_distance(const lar_domain *domain, int32_t tool, const dou
 }
 
 void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
-    const lar_tool_contact *contact = &domain->acting.tool_contact;
+    const lar_tool_contact *contact = &domain->interactions.tool_contact;
     bool moves = fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST;
     bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     if (fault->attributed || !(moves || of_element)) return;
@@ -81,7 +81,7 @@ void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_tool *tool = &domain->acting.tool_contact.list->tool[fault->tool - 1];
+    const lar_tool *tool = &domain->interactions.tool_contact.list->tool[fault->tool - 1];
     bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
     char motion[80];

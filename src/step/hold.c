@@ -47,7 +47,7 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
                           double most, int32_t every, int32_t tool, lar_tools *tools,
                           double *nearest) {
-    const lar_tool_contact *contact = &whole->acting.tool_contact;
+    const lar_tool_contact *contact = &whole->interactions.tool_contact;
     int32_t count = 0;
     for (int32_t s = 0; s < whole->model->surface.face_count; s++) {
         const lar_tool_contact_face *face = &contact->face[contact->face_of[s]];
@@ -88,7 +88,7 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
     int32_t before = tools->hold_count, room = room_of(list, tools);
     double most = INFINITY, nearest = INFINITY;
     bool hand = reach.tool->shape == LAR_TOOL_HAND;
-    if (whole->acting.tool_contact.face_count == 0 || room <= 0) return;
+    if (whole->interactions.tool_contact.face_count == 0 || room <= 0) return;
     if (hand) {
         most = reach.tool->radius;
     } else {
@@ -147,7 +147,7 @@ int32_t lar_hold_count(const lar_tools *tools, int32_t tool) {
 
 void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
                    lar_tools *tools) {
-    const lar_tool_contact *contact = &whole->acting.tool_contact;
+    const lar_tool_contact *contact = &whole->interactions.tool_contact;
     if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
     lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
     double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));

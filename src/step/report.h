@@ -4,7 +4,7 @@
 #ifndef LAR_STEP_REPORT_H
 #define LAR_STEP_REPORT_H
 
-#include "contact/acting.h"
+#include "contact/interactions.h"
 
 typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MOST];
@@ -25,8 +25,9 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
 }
 
 /* Before an advance: what one thread has felt is forgotten. */
-static inline void lar_report_begin(lar_acting *acting) {
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->tool_contact.sum[i] = (lar_tool_sum){0};
+static inline void lar_report_begin(lar_interactions *interactions) {
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++)
+        interactions->tool_contact.sum[i] = (lar_tool_sum){0};
 }
 
 /* Adds `other` to `sum`. */
@@ -53,14 +54,14 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
-static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
+static inline void lar_report_add(lar_report *sum, const lar_interactions *interactions,
                                   const lar_state *state) {
     lar_report own;
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->tool_contact.sum[i];
-    own.contact = acting->tool_contact.seen;
-    lar_report_contact(&own.contact, &acting->body_contact.info);
-    own.moved = acting->body_contact.moved;
-    own.way = acting->body_contact.way;
+    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = interactions->tool_contact.sum[i];
+    own.contact = interactions->tool_contact.seen;
+    lar_report_contact(&own.contact, &interactions->body_contact.info);
+    own.moved = interactions->body_contact.moved;
+    own.way = interactions->body_contact.way;
     own.need = state->need;
     own.taken = state->contact;
     lar_report_join(sum, &own);

@@ -98,9 +98,10 @@ void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, la
 
 /* ---- how long a step is --------------------------------------------------------------------- */
 
-const lar_step_division *lar_division_of(const lar_acting *acting) {
+const lar_step_division *lar_division_of(const lar_interactions *interactions) {
     static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1, .base = 1};
-    return acting->tool_contact.tools ? &acting->tool_contact.tools->division : &undivided;
+    return interactions->tool_contact.tools ? &interactions->tool_contact.tools->division
+                                            : &undivided;
 }
 
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
@@ -110,18 +111,18 @@ double lar_mean_step(const lar_domain *domain, const lar_step_division *division
     return changes ? 0.5 * (step + domain->time_step / division->before) : step;
 }
 
-const lar_settings *lar_settings_of(const lar_acting *acting) {
-    return acting->tool_contact.tools ? &acting->tool_contact.tools->settings : NULL;
+const lar_settings *lar_settings_of(const lar_interactions *interactions) {
+    return interactions->tool_contact.tools ? &interactions->tool_contact.tools->settings : NULL;
 }
 
 static bool is_set(const lar_settings *settings) {
     return settings && (settings->gravity_set || settings->damping_set);
 }
 
-lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
+lar_motion lar_step_motion(const lar_domain *domain, const lar_interactions *interactions,
                            const lar_state *state) {
-    const lar_step_division *division = lar_division_of(acting);
-    const lar_settings *settings = lar_settings_of(acting);
+    const lar_step_division *division = lar_division_of(interactions);
+    const lar_settings *settings = lar_settings_of(interactions);
     lar_motion motion = domain->motion;
     double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
     motion.dt = whole / division->parts;
@@ -135,13 +136,13 @@ lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
     return motion;
 }
 
-void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+void lar_step_enter(const lar_domain *domain, const lar_interactions *interactions,
                     lar_condition_context *context, lar_state *state) {
-    const lar_step_division *division = lar_division_of(acting);
+    const lar_step_division *division = lar_division_of(interactions);
     if (state->part == 0) state->parts = division->parts;
     context->time_step = domain->time_step / state->parts;
     context->mean_step = lar_mean_step(domain, division, state);
-    context->settings = lar_settings_of(acting);
+    context->settings = lar_settings_of(interactions);
     context->hardness = division->hardness;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
@@ -160,16 +161,17 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     }
 }
 
-static void move_nodes(const lar_domain *domain, const lar_acting *acting,
+static void move_nodes(const lar_domain *domain, const lar_interactions *interactions,
                        const lar_condition_context *context, double time, lar_state *state,
                        lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
-    bool predicts = acting->body_contact.surface || acting->tool_contact.plane_contact.count > 0 ||
-                    acting->tool_contact.face_count > 0;
+    bool predicts = interactions->body_contact.surface ||
+                    interactions->tool_contact.plane_contact.count > 0 ||
+                    interactions->tool_contact.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
-    const lar_settings *settings = lar_settings_of(acting);
-    lar_motion motion = lar_step_motion(domain, acting, state);
+    const lar_settings *settings = lar_settings_of(interactions);
+    lar_motion motion = lar_step_motion(domain, interactions, state);
     double damping = lar_damping_of(model, settings), damped = 0;
     double mean = context->mean_step;
     if (lar_gravity_varies(model, settings)) {
@@ -199,17 +201,18 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
 }
 
 /* Loads, tools and planes; half of their work when the nodes are about to move. */
-static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
-                lar_state *state, lar_fault *fault) {
-    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, fault);
-    lar_tool_contact_apply(&acting->tool_contact, context, state);
+static void act(const lar_domain *domain, lar_interactions *interactions,
+                const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    apply_loads(domain, &interactions->conditions, context, lar_state_time(domain, state), state,
+                fault);
+    lar_tool_contact_apply(&interactions->tool_contact, context, state);
 }
 
-static void add_half_work(const lar_domain *domain, const lar_acting *acting,
+static void add_half_work(const lar_domain *domain, const lar_interactions *interactions,
                           const lar_condition_context *context, lar_state *state) {
-    state->external += lar_conditions_half_work(&acting->conditions, context,
+    state->external += lar_conditions_half_work(&interactions->conditions, context,
                                                 lar_state_time(domain, state), state);
-    lar_tool_contact_half_work(&acting->tool_contact, context, state);
+    lar_tool_contact_half_work(&interactions->tool_contact, context, state);
 }
 
 /* Contact of bodies, by who has all nodes. */
@@ -223,15 +226,15 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
 void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
     lar_tool_contact_saved note;
-    lar_step_enter(domain, &domain->acting, &context, state);
-    lar_tool_contact_remember(&domain->acting.tool_contact, &note);
-    lar_contact_info counted = domain->acting.body_contact.info;
-    act(domain, &domain->acting, &context, state, fault);
-    lar_body_contact_forget(&domain->acting.body_contact);
-    add_body_contact(&domain->acting.body_contact, &context, state, fault);
-    lar_body_contact_forget(&domain->acting.body_contact);
-    domain->acting.body_contact.info = counted;
-    lar_tool_contact_restore(&domain->acting.tool_contact, &note);
+    lar_step_enter(domain, &domain->interactions, &context, state);
+    lar_tool_contact_remember(&domain->interactions.tool_contact, &note);
+    lar_contact_info counted = domain->interactions.body_contact.info;
+    act(domain, &domain->interactions, &context, state, fault);
+    lar_body_contact_forget(&domain->interactions.body_contact);
+    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
+    lar_body_contact_forget(&domain->interactions.body_contact);
+    domain->interactions.body_contact.info = counted;
+    lar_tool_contact_restore(&domain->interactions.tool_contact, &note);
     if (domain->kind != LAR_ELEMENT_HEX8) {
         lar_step_recover(domain, 0, domain->run_count, state, fault);
         return;
@@ -241,28 +244,28 @@ void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_guard_apply_all(domain, state);
 }
 
-void lar_step_begin(const lar_domain *domain, lar_acting *acting,
+void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
                     const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    act(domain, acting, context, state, fault);
-    add_half_work(domain, acting, context, state);
+    act(domain, interactions, context, state, fault);
+    add_half_work(domain, interactions, context, state);
 }
 
-void lar_step_move(const lar_domain *domain, lar_acting *acting,
+void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    lar_conditions *conditions = &acting->conditions;
+    lar_conditions *conditions = &interactions->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
-    lar_tool_contact_observe(&acting->tool_contact, context, state);
-    move_nodes(domain, acting, context, time, state, fault);
+    lar_tool_contact_observe(&interactions->tool_contact, context, state);
+    move_nodes(domain, interactions, context, time, state, fault);
     state->external += lar_conditions_impose(conditions, context, time, state);
-    lar_tool_contact_stop(&acting->tool_contact, context, state);
-    lar_body_contact_moved(&acting->body_contact, state, state->fastest * context->time_step);
+    lar_tool_contact_stop(&interactions->tool_contact, context, state);
+    lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
 }
 
-void lar_step_end(const lar_domain *domain, const lar_acting *acting,
+void lar_step_end(const lar_domain *domain, const lar_interactions *interactions,
                   const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    add_half_work(domain, acting, context, state);
-    lar_body_contact_half_work(&acting->body_contact, context, state);
+    add_half_work(domain, interactions, context, state);
+    lar_body_contact_half_work(&interactions->body_contact, context, state);
     /* The watch over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !fault->kind)
         *fault = (lar_fault){
@@ -276,11 +279,11 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
 
 void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_step_enter(domain, &domain->acting, &context, state);
-    lar_step_begin(domain, &domain->acting, &context, state, fault);
-    add_body_contact(&domain->acting.body_contact, &context, state, fault);
-    lar_body_contact_half_work(&domain->acting.body_contact, &context, state);
+    lar_step_enter(domain, &domain->interactions, &context, state);
+    lar_step_begin(domain, &domain->interactions, &context, state, fault);
+    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
+    lar_body_contact_half_work(&domain->interactions.body_contact, &context, state);
     lar_step_recover(domain, 0, domain->run_count, state, fault);
-    lar_step_move(domain, &domain->acting, &context, state, fault);
-    lar_step_end(domain, &domain->acting, &context, state, fault);
+    lar_step_move(domain, &domain->interactions, &context, state, fault);
+    lar_step_end(domain, &domain->interactions, &context, state, fault);
 }

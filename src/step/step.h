@@ -54,33 +54,33 @@ void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault);
  * thread's; u and v may be shared with the threads that move other nodes. */
 
 /* Before all others: how long the step is, or its part. */
-void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+void lar_step_enter(const lar_domain *domain, const lar_interactions *interactions,
                     lar_condition_context *context, lar_state *state);
 
 /* What has been set in place of what the model says; NULL: nothing can be. */
-const lar_settings *lar_settings_of(const lar_acting *acting);
+const lar_settings *lar_settings_of(const lar_interactions *interactions);
 /* How steps are divided now. */
-const lar_step_division *lar_division_of(const lar_acting *acting);
+const lar_step_division *lar_division_of(const lar_interactions *interactions);
 /* Velocities stand half-way between the displacements before and after: where the length of steps
  * changes they are carried over the mean of two lengths [s]. */
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
                      const lar_state *state);
 /* How nodes move in the step that lies before the state: see lar_step_division. */
-lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
+lar_motion lar_step_motion(const lar_domain *domain, const lar_interactions *interactions,
                            const lar_state *state);
 
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
  * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */
-void lar_step_begin(const lar_domain *domain, lar_acting *acting,
+void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
                     const lar_condition_context *context, lar_state *state, lar_fault *fault);
 /* The elements of runs first .. first + count - 1 of the domain. */
 void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
                       lar_fault *fault);
 /* Moves the context's nodes, whose force sums are complete, and clears the sums. */
-void lar_step_move(const lar_domain *domain, lar_acting *acting,
+void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault);
 /* All nodes have moved: the second half of the work; the step is done. */
-void lar_step_end(const lar_domain *domain, const lar_acting *acting,
+void lar_step_end(const lar_domain *domain, const lar_interactions *interactions,
                   const lar_condition_context *context, lar_state *state, lar_fault *fault);
 
 /* Adds loads and internal forces at the present displacements to state->force (which is zero
@@ -96,7 +96,7 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
 /* What the conditions need of a domain, for the nodes first .. end - 1. */
 static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
                                                           lar_lid end) {
-    const lar_tools *tools = domain->acting.tool_contact.tools;
+    const lar_tools *tools = domain->interactions.tool_contact.tools;
     return (lar_condition_context){.model = domain->model,
                                    .settings = tools ? &tools->settings : NULL,
                                    .scale = domain->scale,
