@@ -211,18 +211,18 @@ LAR_API lar_status lar_model_tool(const lar_model *model, int32_t index, lar_too
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {
-    double force[3];  /* [N], the mean over the steps of the last advance */
-    double torque[3]; /* about the tip [N m], likewise */
-    int32_t touching; /* surface points that it touched in the last step */
-    int32_t held;     /* surface points that it has hold of */
-    double limit;     /* what it bears before it stays behind its hand [N]; 0 for hands: none */
-    double depth;     /* the deepest tissue point in it in the last advance [m]; 0: none */
-    double apart;     /* from its tip to where its hand asks the tip to be, now [m] */
-    int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
-                         back to it; else 0 */
-    double grasp;     /* what both jaws of a grasper press with on the tissue between them [N], the
-                         mean over the last advance: the smaller of what each is pushed outwards
-                         with; 0 when a jaw is not, and for other tools */
+    double force[3];    /* [N], the mean over the steps of the last advance */
+    double torque[3];   /* about the tip [N m], likewise */
+    int32_t touching;   /* surface points that it touched in the last step */
+    int32_t held;       /* surface points that it has hold of */
+    double limit;       /* what it bears before it stays behind its hand [N]; 0 for hands: none */
+    double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
+    double apart;       /* from its tip to where its hand asks the tip to be, now [m] */
+    int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
+                           back to it; else 0 */
+    double grasp_force; /* what both jaws of a grasper press with on the tissue between them [N],
+                     the mean over the last advance: the smaller of what each is pushed outwards
+                     with; 0 when a jaw is not, and for other tools */
 } lar_tool_force;
 
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
@@ -710,10 +710,10 @@ LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t to
 
 /* What a tool had to bear since the session was opened. */
 typedef struct lar_tool_load {
-    double force; /* the largest of all ticks [N] */
-    double limit; /* lar_tool_force.limit [N] */
-    int reached;  /* not 0: it was kept from following its hand (lar_tool_force.limited) */
-    double grasp; /* the largest lar_tool_force.grasp of all ticks [N] */
+    double force;       /* the largest of all ticks [N] */
+    double limit;       /* lar_tool_force.limit [N] */
+    int reached;        /* not 0: it was kept from following its hand (lar_tool_force.limited) */
+    double grasp_force; /* the largest lar_tool_force.grasp_force of all ticks [N] */
 } lar_tool_load;
 
 LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t tool,

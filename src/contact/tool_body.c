@@ -47,8 +47,9 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
                                     .lever = fmax(tool->radius, 0.5 * tool->length),
                                     .travel = 0.5 * tool->spread * tool->length,
                                     .drag = DRAG * scale->stiffness * scale->interval};
-        limits->grasp = GRASP_SHARE * limits->force;
-        limits->pinch = fmin(limits->grasp, PINCH * scale->shear * tool->radius * tool->length);
+        limits->grasp_force = GRASP_SHARE * limits->force;
+        limits->pinch =
+            fmin(limits->grasp_force, PINCH * scale->shear * tool->radius * tool->length);
     }
 }
 
@@ -69,7 +70,7 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 typedef struct mean_load {
     double force[3], torque[3]; /* [N] [N m] */
     double squeeze;             /* [N] */
-    double grasp;               /* how hard jaws may close [N] */
+    double grasp_force;         /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
 } mean_load;
 
@@ -77,13 +78,13 @@ typedef struct mean_load {
  * two jaws tissue gives way to nowhere but out of them. (Steeper in `need` and jaws swing.) */
 static double grasp_limit(const lar_tool_limits *limits, double need) {
     double share = need > SOUND_RATE ? SOUND_RATE / need : 1;
-    return fmax(limits->pinch, limits->grasp * share * share);
+    return fmax(limits->pinch, limits->grasp_force * share * share);
 }
 
 /* `closes`: its jaws are asked to be closer than they can be pushed apart. */
 static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, bool closes,
                          double need, double unit, double *load) {
-    mean_load mean = {.excess = 1, .grasp = grasp_limit(limits, need)};
+    mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
         mean.force[i] = (double)felt->force[i] * share;
@@ -92,7 +93,7 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     mean.squeeze = (double)felt->squeeze * share;
     double force = lar_length(mean.force) / limits->force;
     double turn = lar_length(mean.torque) / (limits->force * limits->lever);
-    double grasp = closes ? mean.squeeze / mean.grasp : 0;
+    double grasp = closes ? mean.squeeze / mean.grasp_force : 0;
     double depth = felt->depth / limits->depth;
     double most = fmax(fmax(force, turn), grasp);
     double other = fmax(depth, most > 0 ? need / BORNE_RATE : 0);
@@ -171,7 +172,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
     pushed[0] = mean->excess * mean->squeeze;
-    if (!go(law, 1, gap, pushed, mean->grasp, way))
+    if (!go(law, 1, gap, pushed, mean->grasp_force, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
 

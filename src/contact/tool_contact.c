@@ -281,13 +281,13 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
     }
 }
 
-/* ---- holds --------------------------------------------------------------------------------- */
+/* ---- grasps -------------------------------------------------------------------------------- */
 
-/* Where the anchors of a tool's holds go in a step. */
-typedef struct lar_hold_motion {
+/* Where the anchors of a tool's grasps go in a step. */
+typedef struct lar_grasp_motion {
     lar_tool_pose now, next;
     bool known;
-} lar_hold_motion;
+} lar_grasp_motion;
 
 static void place_anchor(const lar_tool_pose *pose, const double anchor[3], double out[3]) {
     lar_turn(pose->orientation, anchor, out);
@@ -296,21 +296,21 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
 
 /* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
  * radius, so that what is torn away from a tool slips instead of being torn apart. */
-static void hold_point(lar_tool_contact *contact, const lar_condition_context *context,
-                       const lar_state *state, const lar_hold *hold, const lar_hold_motion *motion,
-                       const lar_contact_law *law) {
-    const lar_tool_contact_face *face = &contact->face[contact->face_of[hold->face]];
-    const lar_tool *tool = &contact->list->tool[hold->tool];
+static void grasp_point(lar_tool_contact *contact, const lar_condition_context *context,
+                        const lar_state *state, const lar_grasp *grasp,
+                        const lar_grasp_motion *motion, const lar_contact_law *law) {
+    const lar_tool_contact_face *face = &contact->face[contact->face_of[grasp->face]];
+    const lar_tool *tool = &contact->list->tool[grasp->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
     double pull[3], force[4][3], length = 0;
-    place_anchor(&motion->now, hold->anchor, now);
-    place_anchor(&motion->next, hold->anchor, next);
+    place_anchor(&motion->now, grasp->anchor, now);
+    place_anchor(&motion->next, grasp->anchor, next);
     lar_tool_contact_corners(face, state->u, x);
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
-    lar_face_mean((const double(*)[3])x, hold->weight, point);
-    lar_face_mean((const double(*)[3])v, hold->weight, speed);
-    double most = lar_hold_most(face, tool->radius, law, context->mass);
-    double stiffness = fmin(hold->stiffness, most), damping = sqrt(stiffness * most) * dt;
+    lar_face_mean((const double(*)[3])x, grasp->weight, point);
+    lar_face_mean((const double(*)[3])v, grasp->weight, speed);
+    double most = lar_grasp_stiffness_limit(face, tool->radius, law, context->mass);
+    double stiffness = fmin(grasp->stiffness, most), damping = sqrt(stiffness * most) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
         length += pull[i] * pull[i];
@@ -318,27 +318,27 @@ static void hold_point(lar_tool_contact *contact, const lar_condition_context *c
     length = sqrt(length);
     double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) force[a][i] = hold->weight[a] * share * pull[i];
-    give(contact, context, contact->face_of[hold->face], hold->tool, motion->now.position,
+        for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
+    give(contact, context, contact->face_of[grasp->face], grasp->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
-    contact->sum[hold->tool].held++;
+    contact->sum[grasp->tool].held++;
 }
 
-static void apply_holds(lar_tool_contact *contact, const lar_condition_context *context,
-                        const lar_state *state, const lar_contact_law *law) {
-    lar_hold_motion motion[LAR_TOOLS_MOST];
+static void apply_grasps(lar_tool_contact *contact, const lar_condition_context *context,
+                         const lar_state *state, const lar_contact_law *law) {
+    lar_grasp_motion motion[LAR_TOOLS_MOST];
     for (int t = 0; t < LAR_TOOLS_MOST; t++) motion[t].known = false;
-    for (int32_t i = 0; i < contact->tools->hold_count; i++) {
-        const lar_hold *hold = &contact->tools->hold[i];
-        if (contact->face_of[hold->face] < 0) continue;
-        lar_hold_motion *of = &motion[hold->tool];
-        const lar_tool_motion *tool = &contact->tools->motion[hold->tool];
+    for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
+        const lar_grasp *grasp = &contact->tools->grasps[i];
+        if (contact->face_of[grasp->face] < 0) continue;
+        lar_grasp_motion *of = &motion[grasp->tool];
+        const lar_tool_motion *tool = &contact->tools->motion[grasp->tool];
         if (!of->known) {
             pose_now(tool, state, 0, context->whole_step, &of->now);
             pose_now(tool, state, 1, context->whole_step, &of->next);
             of->known = true;
         }
-        hold_point(contact, context, state, hold, of, law);
+        grasp_point(contact, context, state, grasp, of, law);
     }
 }
 
@@ -408,7 +408,7 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
         if (lar_tool_touches(&contact->list->tool[t]))
             apply_tool(contact, context, state, t, known ? travel : 0, &tool_law);
     }
-    apply_holds(contact, context, state, &law);
+    apply_grasps(contact, context, state, &law);
     add_forces(contact, state->force);
 }
 

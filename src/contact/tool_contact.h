@@ -147,7 +147,7 @@ typedef struct lar_tool_contact_saved {
 void lar_tool_contact_remember(const lar_tool_contact *contact, lar_tool_contact_saved *note);
 void lar_tool_contact_restore(lar_tool_contact *contact, const lar_tool_contact_saved *note);
 
-/* ---- for tool_contact_face.c, tool_contact_search.c, hold.c and fault_tool.c ----------------- */
+/* ---- for tool_contact_face.c, tool_contact_search.c, grasp.c and fault_tool.c ---------------- */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_tool_contact_group_faces(lar_tool_contact *contact, lar_error *error);

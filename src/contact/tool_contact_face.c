@@ -23,8 +23,8 @@ double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const doub
     return 4 * least / (n * n);
 }
 
-double lar_hold_most(const lar_tool_contact_face *face, double radius, const lar_contact_law *law,
-                     const double *mass) {
+double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
+                                 const lar_contact_law *law, const double *mass) {
     return 0.5 * law->stiffness *
            lar_tool_contact_point_mass(face, mass, lar_tool_contact_points(face, radius));
 }

@@ -34,8 +34,8 @@ typedef struct lar_tool_contact_patch { /* one face before one tool */
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n);
 
 /* The stiffness of a hold of a point of the face that the step bears [N/m]. */
-double lar_hold_most(const lar_tool_contact_face *face, double radius, const lar_contact_law *law,
-                     const double *mass);
+double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
+                                 const lar_contact_law *law, const double *mass);
 
 /* Fills in the forces on the corners of a face [N] whose places `x` are known, and what the tool
  * has of them. `weights`: of the points (lar_tool_contact.weights). */

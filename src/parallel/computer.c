@@ -430,11 +430,12 @@ static lar_status refuse_order(lar_error *error) {
 }
 
 /* Faces and tools are looked up by these. */
-static bool holds_fit(const lar_computer *computer, const lar_tools *tools) {
+static bool grasps_fit(const lar_computer *computer, const lar_tools *tools) {
     int32_t faces = computer->whole->model->surface.face_count;
-    for (int32_t i = 0; i < tools->hold_count; i++) {
-        const lar_hold *hold = &tools->hold[i];
-        if (hold->tool < 0 || hold->tool >= tools->count || hold->face < 0 || hold->face >= faces)
+    for (int32_t i = 0; i < tools->grasp_count; i++) {
+        const lar_grasp *grasp = &tools->grasps[i];
+        if (grasp->tool < 0 || grasp->tool >= tools->count || grasp->face < 0 ||
+            grasp->face >= faces)
             return false;
     }
     return true;
@@ -444,12 +445,12 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                              lar_error *error) {
     if (bytes == 0) return LAR_OK;
     lar_tools *tools = computer->tools;
-    if (bytes < offsetof(lar_tools, hold) || bytes > sizeof *tools) return refuse_order(error);
+    if (bytes < offsetof(lar_tools, grasps) || bytes > sizeof *tools) return refuse_order(error);
     int32_t count = tools->count;
     memcpy(tools, payload, bytes);
-    bool fits = tools->count == count && tools->hold_count >= 0 &&
-                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
-                holds_fit(computer, tools) &&
+    bool fits = tools->count == count && tools->grasp_count >= 0 &&
+                tools->grasp_count <= LAR_GRASPS_MOST && lar_tools_bytes(tools) == bytes &&
+                grasps_fit(computer, tools) &&
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_spares_good(tools->spare, computer->list->spares);
     if (!fits) return refuse_order(error);

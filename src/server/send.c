@@ -277,7 +277,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
         lar_json_number(json, "depth", force->depth);
         lar_json_number(json, "apart", force->apart);
         lar_json_boolean(json, "limited", force->limited != 0);
-        lar_json_number(json, "grasp", force->grasp);
+        lar_json_number(json, "grasp", force->grasp_force);
         lar_json_text(json, "by", lar_hands_by(&server->hands, i, viewer->number, now));
         lar_json_close(json, '}');
     }

@@ -121,9 +121,9 @@ static bool is_hand(const lar_session *session, int32_t tool) {
 /* Hands are open and hold nothing. */
 static void open_hands(const lar_session *session, lar_tools *tools) {
     int32_t count = 0;
-    for (int32_t i = 0; i < tools->hold_count; i++)
-        if (!is_hand(session, tools->hold[i].tool)) tools->hold[count++] = tools->hold[i];
-    tools->hold_count = count;
+    for (int32_t i = 0; i < tools->grasp_count; i++)
+        if (!is_hand(session, tools->grasps[i].tool)) tools->grasps[count++] = tools->grasps[i];
+    tools->grasp_count = count;
     for (int32_t i = 0; i < tools->count; i++) {
         lar_tool_motion *motion = &tools->motion[i];
         if (!is_hand(session, i)) continue;

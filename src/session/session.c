@@ -101,7 +101,7 @@ static lar_status record_from_start(lar_session *session, lar_error *error) {
 }
 
 static void destroy(lar_session *session) {
-    lar_simulation_hold(session->simulation, false);
+    lar_simulation_reserve(session->simulation, false);
     __atomic_store_n(&session->simulation->sessions, 0, __ATOMIC_RELEASE);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_device_close(session->tool[i].device);
@@ -178,12 +178,12 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
-        lar_simulation_hold(session->simulation, true);
+        lar_simulation_reserve(session->simulation, true);
         int cause = lar_thread_start_urgent(&session->thread, session->options.priority,
                                             lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
-            lar_simulation_hold(session->simulation, false);
+            lar_simulation_reserve(session->simulation, false);
             session->status.state = LAR_SESSION_IDLE;
             lar_session_publish(session, true);
             status = refuse_thread(session, cause, error);

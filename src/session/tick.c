@@ -210,7 +210,7 @@ static void wait_for_tick(lar_session *session) {
 void *lar_session_run(void *argument) {
     lar_session *session = argument;
     double fade = FADE;
-    lar_simulation_hold_here(session->simulation);
+    lar_simulation_reserve_here(session->simulation);
     lar_clock_be_prompt();
     if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
     while (!session->ended) {

@@ -138,7 +138,7 @@ static void note_load(lar_session_tool *tool) {
     double force = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     tool->load.limit = tool->force.limit;
     tool->load.force = fmax(tool->load.force, force);
-    tool->load.grasp = fmax(tool->load.grasp, tool->force.grasp);
+    tool->load.grasp_force = fmax(tool->load.grasp_force, tool->force.grasp_force);
     tool->load.reached = tool->load.reached || tool->force.limited;
 }
 
@@ -162,7 +162,7 @@ static void shrink(lar_tool_force *force, double share) {
         force->force[k] *= share;
         force->torque[k] *= share;
     }
-    force->grasp *= share;
+    force->grasp_force *= share;
 }
 
 bool lar_session_idle_tools(lar_session *session, double share) {

@@ -34,7 +34,7 @@ typedef struct file_head {
     uint64_t step;
     double external, damped, contact;
     uint64_t hash; /* of the state, as lar_simulation_hash */
-    int32_t tools, holds;
+    int32_t tools, grasps;
 } file_head;
 
 /* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
@@ -43,14 +43,14 @@ _Static_assert(sizeof(file_head) == 144, "the format");
 _Static_assert(sizeof(lar_step_division) == 56, "the format");
 _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until there");
 _Static_assert(sizeof(lar_settings) == 552, "the format");
-_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
+_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MOST == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
 typedef struct file_shape {
     uint32_t version;
-    int32_t tools, holds;
+    int32_t tools, grasps;
 } file_shape;
 
 typedef double node_vector[3];
@@ -62,10 +62,10 @@ static size_t settings_bytes(uint32_t version) {
 }
 
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
-    size_t tools = (size_t)shape->tools, holds = (size_t)shape->holds;
+    size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-           holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
+           grasps * sizeof(lar_grasp) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
            sizeof(uint64_t);
 }
 
@@ -121,19 +121,19 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     int32_t spares = lar_spares_needed(tools->spare);
     return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
-                        .holds = tools->hold_count};
+                        .grasps = tools->grasp_count};
 }
 
 /* Returns where the nodes begin. */
 static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
                                  const lar_tools *tools) {
-    size_t count = (size_t)shape->tools, holds = (size_t)shape->holds;
+    size_t count = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     at = append(at, &tools->division, sizeof tools->division);
     at = append(at, &tools->settings, sizeof tools->settings);
     if (shape->version == ADDED_TOOLS) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
-    return append(at, tools->hold, holds * sizeof tools->hold[0]);
+    return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
 }
 
 static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
@@ -159,7 +159,7 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .hash = hash_state(state->step, level, (const node_vector *)u,
                                          (const node_vector *)v, nodes),
                       .tools = shape->tools,
-                      .holds = shape->holds};
+                      .grasps = shape->grasps};
     memcpy(head.magic, MAGIC, sizeof MAGIC);
     lar_model_identify(whole, &head.identity);
     memcpy(data, &head, sizeof head);
@@ -448,12 +448,12 @@ static bool good_motion(const lar_tool_motion *motion) {
            motion->padding == 0;
 }
 
-static bool good_hold(const lar_hold *hold, const file_head *head, const lar_model *model) {
-    double sum = hold->weight[0] + hold->weight[1] + hold->weight[2] + hold->weight[3];
-    return hold->tool >= 0 && hold->tool < head->tools && hold->face >= 0 &&
-           hold->face < model->surface.face_count && all_finite(hold->weight, 4) &&
-           fabs(sum - 1) <= 1e-6 && all_finite(hold->anchor, 3) && isfinite(hold->stiffness) &&
-           hold->stiffness >= 0;
+static bool good_grasp(const lar_grasp *grasp, const file_head *head, const lar_model *model) {
+    double sum = grasp->weight[0] + grasp->weight[1] + grasp->weight[2] + grasp->weight[3];
+    return grasp->tool >= 0 && grasp->tool < head->tools && grasp->face >= 0 &&
+           grasp->face < model->surface.face_count && all_finite(grasp->weight, 4) &&
+           fabs(sum - 1) <= 1e-6 && all_finite(grasp->anchor, 3) && isfinite(grasp->stiffness) &&
+           grasp->stiffness >= 0;
 }
 
 static bool power_of_two(int32_t parts) {
@@ -507,8 +507,9 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
 static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
     const lar_tool_list *list = whole->interactions.tool_contact.list;
-    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds, .division = {.base = 1}};
-    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    *tools =
+        (lar_tools){.count = head->tools, .grasp_count = head->grasps, .division = {.base = 1}};
+    size_t count = (size_t)tools->count, grasps = (size_t)tools->grasp_count;
     bool settings = head->version != BEFORE_SETTINGS;
     lar_settings_reset(&tools->settings);
     *at = extract(*at, &tools->division,
@@ -517,7 +518,7 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
     if (head->version == ADDED_TOOLS) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
-    *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
+    *at = extract(*at, tools->grasps, grasps * sizeof tools->grasps[0]);
     bool good = good_division(&tools->division, head) &&
                 lar_settings_good(&tools->settings, whole->time_step) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0);
@@ -526,9 +527,9 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
         good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
                good_follower(&tool, &tools->follower[i]);
     }
-    for (int32_t i = 0; good && i < tools->hold_count; i++)
-        good = good_hold(&tools->hold[i], head, whole->model) &&
-               lar_spare_tool_of(list, tools->spare, tools->hold[i].tool).shape != LAR_TOOL_NONE;
+    for (int32_t i = 0; good && i < tools->grasp_count; i++)
+        good = good_grasp(&tools->grasps[i], head, whole->model) &&
+               lar_spare_tool_of(list, tools->spare, tools->grasps[i].tool).shape != LAR_TOOL_NONE;
     fill_up(list, tools);
     return good;
 }
@@ -542,10 +543,11 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     lar_status status = check_file(path, bytes, &head, error);
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
-    const file_shape shape = {head.version, head.tools, head.holds};
+    const file_shape shape = {head.version, head.tools, head.grasps};
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
     if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MOST : 0) ||
-        head.holds < 0 || head.holds > LAR_HOLDS_MOST || bytes->size != file_bytes(&shape, nodes))
+        head.grasps < 0 || head.grasps > LAR_GRASPS_MOST ||
+        bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,

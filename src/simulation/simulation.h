@@ -38,9 +38,9 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, la
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
 
 /* A session lets its own thread alone change the simulation, or everyone again. */
-void lar_simulation_hold(lar_simulation *simulation, bool held);
+void lar_simulation_reserve(lar_simulation *simulation, bool held);
 /* Called by that thread: it is the one. */
-void lar_simulation_hold_here(const lar_simulation *simulation);
+void lar_simulation_reserve_here(const lar_simulation *simulation);
 
 /* Refuses NULL, processors other than zero, and what a session computes on. `call`: the public
  * name. */

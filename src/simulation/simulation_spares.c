@@ -5,7 +5,7 @@
 #include "base/vector.h"
 #include "model/contact_check.h"
 #include "simulation/simulation.h"
-#include "step/hold.h"
+#include "step/grasp.h"
 
 /* A grasper's jaws, where nobody says how far they open: 60 degrees, as in scenes. */
 static const double SPREAD = LAR_PI / 3;
@@ -182,7 +182,7 @@ lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_t tool, 
                         simulation->list.tool[tool].name);
     if (!simulation->tools.spare[place].placed)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %ld is not there", (long)tool);
-    lar_hold_drop(tool, &simulation->tools);
+    lar_grasp_drop(tool, &simulation->tools);
     lar_spare_clear(place, &simulation->list, &simulation->tools);
     forget_tool(simulation, tool);
     lar_simulation_limit_tools(simulation);

@@ -4,17 +4,17 @@
 
 #include "base/vector.h"
 #include "contact/tool_body.h"
-#include "step/hold.h"
+#include "step/grasp.h"
 #include "simulation/simulation.h"
 
 /* The simulation that this thread computes for a session. */
 static _Thread_local const lar_simulation *held_here;
 
-void lar_simulation_hold(lar_simulation *simulation, bool held) {
+void lar_simulation_reserve(lar_simulation *simulation, bool held) {
     __atomic_store_n(&simulation->held, held, __ATOMIC_RELEASE);
 }
 
-void lar_simulation_hold_here(const lar_simulation *simulation) {
+void lar_simulation_reserve_here(const lar_simulation *simulation) {
     held_here = simulation;
 }
 
@@ -148,18 +148,18 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
                         tool->name, (unsigned long long)steps);
     lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
     status = check_pose(tool, pose, &wanted, error);
-    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0))
+    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_grasp_count(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
-    if (!status && lar_hold_changes(tool, motion, wanted.opening)) {
+    if (!status && lar_grasp_changes(tool, motion, wanted.opening)) {
         /* An empty hand is where it takes hold: its way there means nothing. */
-        if (tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0) now = wanted;
+        if (tool->shape == LAR_TOOL_HAND && lar_grasp_count(tools, index) == 0) now = wanted;
         status = lar_simulation_gather(simulation, error);
         if (!status)
-            status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
-                                     index, &wanted, tools, error);
+            status = lar_grasp_update(&simulation->domain, &simulation->state, &simulation->list,
+                                      index, &wanted, tools, error);
     }
     if (status) return status;
-    lar_hold_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
+    lar_grasp_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
     lar_tool_ask(tools, index,
                  &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
     if (simulation->computer) simulation->computer->tools_sent = false;
@@ -198,12 +198,12 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     lar_minus(hand.position, now.position, apart);
     memset(force, 0, sizeof *force); /* gaps, too */
     force->touching = sum->touching;
-    force->held = lar_hold_count(tools, tool);
+    force->held = lar_grasp_count(tools, tool);
     force->limit = limit_of(&simulation->list, tool);
     force->depth = simulation->report_steps ? interval->depth[tool] : 0;
     force->apart = lar_length(apart);
     force->limited = tools->follower[tool].lagging != 0;
-    force->grasp = grasp_of(sum, unit);
+    force->grasp_force = grasp_of(sum, unit);
     for (int i = 0; i < 3; i++) {
         force->force[i] = (double)sum->force[i] * unit;
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;

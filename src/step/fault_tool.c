@@ -32,11 +32,11 @@ static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
 static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
     const lar_tool_contact *contact = &domain->interactions.tool_contact;
     double nearest = INFINITY;
-    for (int32_t i = 0; i < contact->tools->hold_count; i++) {
-        const lar_hold *hold = &contact->tools->hold[i];
-        if (hold->tool != tool) continue;
+    for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
+        const lar_grasp *grasp = &contact->tools->grasps[i];
+        if (grasp->tool != tool) continue;
         double point[3], square = 0;
-        lar_face_mean(contact->face[contact->face_of[hold->face]].rest, hold->weight, point);
+        lar_face_mean(contact->face[contact->face_of[grasp->face]].rest, grasp->weight, point);
         for (int k = 0; k < 3; k++) square += (point[k] - rest[k]) * (point[k] - rest[k]);
         nearest = fmin(nearest, sqrt(square));
     }

@@ -330,7 +330,7 @@ static void what_hands_feel_is_forgotten(void **unused) {
     lar_model *model = organ();
     lar_simulation *simulation = start_with(model, setting(NULL, 0));
     go(simulation, 6 * MOVE_STEPS, 10);
-    assert_true(simulation->tools.hold_count > 0);
+    assert_true(simulation->tools.grasp_count > 0);
     for (int32_t t = 0; t < simulation->tools.count; t++)
         assert_true(simulation->tools.follower[t].felt.steps <= simulation->domain.interval);
     finish(simulation, model);

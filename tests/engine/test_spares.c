@@ -43,7 +43,7 @@ static void assert_same_force(const lar_tool_force *a, const lar_tool_force *b) 
     assert_int_equal(a->held, b->held);
     assert_int_equal(a->limited, b->limited);
     assert_true(a->limit == b->limit && a->depth == b->depth && a->apart == b->apart &&
-                a->grasp == b->grasp);
+                a->grasp_force == b->grasp_force);
 }
 
 static lar_tool_force force_of(const lar_simulation *simulation, int32_t tool) {

@@ -121,8 +121,8 @@ static void holds_of_others_are_looked_at(void **unused) {
         fleet f;
         start_fleet(&f, model, options, 2, NULL);
         lar_tools tools = f.zero->tools;
-        tools.hold_count = 1;
-        tools.hold[0] = (lar_hold){.tool = wrong[i][0], .face = wrong[i][1]};
+        tools.grasp_count = 1;
+        tools.grasps[0] = (lar_grasp){.tool = wrong[i][0], .face = wrong[i][1]};
         const lar_order order = {LAR_ORDER_ADVANCE, 0};
         assert_int_equal(lar_control_order(f.zero->computer->control, &order, &tools,
                                            lar_tools_bytes(&tools), &error),

@@ -58,10 +58,10 @@ static void repair(lar_bytes *bytes) {
     memcpy(bytes->data + AT_IDENTITY, &identity, sizeof identity);
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
     size_t levels = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
-    if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_HOLDS_MOST &&
+    if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_GRASPS_MOST &&
         last == AT_DIVISION + sizeof(lar_step_division) + sizeof(lar_settings) +
                     3 * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-                    (size_t)counts[1] * sizeof(lar_hold) + levels + values) {
+                    (size_t)counts[1] * sizeof(lar_grasp) + levels + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));
         for (size_t n = 0; n < NODES; n++) {
             uint64_t level = word_at(bytes, last - values - levels + 8 * n);

@@ -74,7 +74,7 @@ static void write_tools(json_writer *json, const lar_simulation *simulation) {
         json_open(json, NULL, '{');
         json_text(json, "tool", info.name);
         json_vector(json, "force", force.force);
-        json_number(json, "grasp", force.grasp);
+        json_number(json, "grasp", force.grasp_force);
         json_integer(json, "touching", force.touching);
         json_integer(json, "held", force.held);
         json_close(json);
@@ -179,7 +179,7 @@ static void print_tools(const lar_simulation *simulation, FILE *out) {
         const double *f = force.force;
         fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
                 sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
-        if (force.grasp > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp);
+        if (force.grasp_force > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp_force);
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
         fputc('\n', out);
     }

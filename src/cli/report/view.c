@@ -33,7 +33,7 @@ static void write_tools(json_writer *json, const view_report *report) {
         json_number(json, "largest_force", load->force);
         json_number(json, "limit", load->limit);
         json_boolean(json, "limit_reached", load->reached != 0);
-        json_number(json, "largest_grasp", load->grasp);
+        json_number(json, "largest_grasp", load->grasp_force);
         json_close(json);
     }
     json_close(json);
@@ -44,7 +44,8 @@ static void print_tools(const view_report *report, FILE *out) {
         const lar_tool_load *load = &report->tool[i].load;
         fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s", "tool", report->tool[i].name,
                 load->force, load->limit, load->reached ? "; the limit was reached" : "");
-        if (load->grasp > 0) fprintf(out, "; jaws grasped with up to %.3g N", load->grasp);
+        if (load->grasp_force > 0)
+            fprintf(out, "; jaws grasped with up to %.3g N", load->grasp_force);
         fputc('\n', out);
     }
 }

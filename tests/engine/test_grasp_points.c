@@ -73,10 +73,10 @@ static void a_hand_beside_the_surface_takes_the_nearest_point(void **unused) {
     hand(simulation, 1, 0.03, 0.02, 0.05, 0, 1);  /* out of reach */
     assert_int_equal(felt(simulation, 0).held, 1);
     assert_int_equal(felt(simulation, 1).held, 0);
-    const lar_hold *hold = &simulation->tools.hold[0];
-    assert_true(fabs(hold->weight[0] + hold->weight[1] + hold->weight[2] + hold->weight[3] - 1) <
-                1e-14);
-    assert_true(hold->anchor[2] < -0.01 && fabs(hold->anchor[0]) < 0.005);
+    const lar_grasp *grasp = &simulation->tools.grasps[0];
+    assert_true(fabs(grasp->weight[0] + grasp->weight[1] + grasp->weight[2] + grasp->weight[3] -
+                     1) < 1e-14);
+    assert_true(grasp->anchor[2] < -0.01 && fabs(grasp->anchor[0]) < 0.005);
     /* Closed upon nothing it takes nothing later either, until it has been opened. */
     hand(simulation, 1, 0.03, 0.02, 0.03, 0, 1000);
     assert_int_equal(felt(simulation, 1).held, 0);
@@ -98,11 +98,11 @@ static void hands_share_the_room_for_holds(void **unused) {
     for (int t = 0; t < 4; t++) {
         hand(simulation, t, 0.01 + 0.02 * (t % 2), 0.01 + 0.02 * (t / 2), 0.005, 0, 1);
         int32_t held = felt(simulation, t).held;
-        assert_true(held > 24 && held <= LAR_HOLDS_MOST / 4);
+        assert_true(held > 24 && held <= LAR_GRASPS_MOST / 4);
     }
     double total = 0;
-    for (int32_t i = 0; i < simulation->tools.hold_count; i++)
-        total += simulation->tools.hold[i].stiffness;
+    for (int32_t i = 0; i < simulation->tools.grasp_count; i++)
+        total += simulation->tools.grasps[i].stiffness;
     assert_true(fabs(total / 4 - 600) < 1e-9);
     finish(simulation, model);
 }
@@ -121,8 +121,8 @@ static void a_grasper_takes_what_is_between_its_jaws(void **unused) {
     lar_tool_force force = felt(simulation, 0);
     print_message("jaws hold %d points\n", (int)force.held);
     assert_true(force.held > 0);
-    for (int32_t i = 0; i < simulation->tools.hold_count; i++) {
-        const double *p = simulation->tools.hold[i].anchor;
+    for (int32_t i = 0; i < simulation->tools.grasp_count; i++) {
+        const double *p = simulation->tools.grasps[i].anchor;
         assert_true(p[2] <= 0 && p[2] >= -0.022 && fabs(p[1]) <= 0.004);
     }
     advance(simulation, 400);
@@ -138,7 +138,7 @@ static void a_grasper_takes_what_is_between_its_jaws(void **unused) {
     finish(simulation, model);
 }
 
-/* Pulled away a metre and torn to and fro: the hold slips, or the run stops and says why. */
+/* Pulled away a metre and torn to and fro: the grasp slips, or the run stops and says why. */
 static void no_pull_explodes(void **unused) {
     (void)unused;
     static const double ways[4][3] = {{0, 0, 1}, {1, 0, 0.2}, {0.1, -1, 0}, {0, 0, -0.2}};

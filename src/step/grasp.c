@@ -1,4 +1,4 @@
-#include "step/hold.h"
+#include "step/grasp.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static const double HAND_STIFFNESS = 600, JAWS_STIFFNESS = 3000;
 static const double CLOSED = 0.25, OPEN = 0.5;
 
 /* More do not hold better, and cost time in every step. */
-enum { HOLDS_OF_A_TOOL = 48 };
+enum { GRASPS_OF_A_TOOL = 48 };
 
 /* What is asked about the points of the surface. */
 typedef struct lar_reach {
@@ -43,7 +43,7 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
 }
 
 /* Goes through all points in the order of the faces: counts those that are no farther than `most`,
- * notes the nearest distance, and adds every `every`-th to the holds when it is not 0. */
+ * notes the nearest distance, and adds every `every`-th to the grasps when it is not 0. */
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
                           double most, int32_t every, int32_t tool, lar_tools *tools,
                           double *nearest) {
@@ -60,11 +60,11 @@ static int32_t go_through(const lar_domain *whole, const lar_state *state, const
             double distance = reach_of(reach, point, own);
             if (distance < *nearest) *nearest = distance;
             if (!(distance <= most)) continue;
-            if (every > 0 && count % every == 0 && tools->hold_count < LAR_HOLDS_MOST) {
-                lar_hold *hold = &tools->hold[tools->hold_count++];
-                *hold = (lar_hold){.tool = tool, .face = s};
-                memcpy(hold->weight, weight, sizeof weight);
-                memcpy(hold->anchor, own, sizeof own);
+            if (every > 0 && count % every == 0 && tools->grasp_count < LAR_GRASPS_MOST) {
+                lar_grasp *grasp = &tools->grasps[tools->grasp_count++];
+                *grasp = (lar_grasp){.tool = tool, .face = s};
+                memcpy(grasp->weight, weight, sizeof weight);
+                memcpy(grasp->anchor, own, sizeof own);
             }
             count++;
         }
@@ -77,15 +77,15 @@ static int32_t room_of(const lar_tool_list *list, const lar_tools *tools) {
     int32_t holders = 0;
     for (int32_t i = 0; i < list->count; i++)
         holders += list->tool[i].shape == LAR_TOOL_HAND || list->tool[i].shape == LAR_TOOL_GRASPER;
-    int32_t room = LAR_HOLDS_MOST / holders, left = LAR_HOLDS_MOST - tools->hold_count;
-    if (room > HOLDS_OF_A_TOOL) room = HOLDS_OF_A_TOOL;
+    int32_t room = LAR_GRASPS_MOST / holders, left = LAR_GRASPS_MOST - tools->grasp_count;
+    if (room > GRASPS_OF_A_TOOL) room = GRASPS_OF_A_TOOL;
     return room < left ? room : left;
 }
 
 static void take(const lar_domain *whole, const lar_state *state, const lar_tool_list *list,
                  int32_t tool, const lar_tool_pose *pose, lar_tools *tools) {
     lar_reach reach = {.tool = &list->tool[tool], .pose = *pose};
-    int32_t before = tools->hold_count, room = room_of(list, tools);
+    int32_t before = tools->grasp_count, room = room_of(list, tools);
     double most = INFINITY, nearest = INFINITY;
     bool hand = reach.tool->shape == LAR_TOOL_HAND;
     if (whole->interactions.tool_contact.face_count == 0 || room <= 0) return;
@@ -104,28 +104,28 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
     }
     if (count == 0) return;
     go_through(whole, state, &reach, most, (count + room - 1) / room, tool, tools, &nearest);
-    int32_t taken = tools->hold_count - before;
-    for (int32_t i = before; i < tools->hold_count; i++)
-        tools->hold[i].stiffness = (hand ? HAND_STIFFNESS : JAWS_STIFFNESS) / taken;
+    int32_t taken = tools->grasp_count - before;
+    for (int32_t i = before; i < tools->grasp_count; i++)
+        tools->grasps[i].stiffness = (hand ? HAND_STIFFNESS : JAWS_STIFFNESS) / taken;
 }
 
-void lar_hold_drop(int32_t tool, lar_tools *tools) {
+void lar_grasp_drop(int32_t tool, lar_tools *tools) {
     int32_t kept = 0;
-    for (int32_t i = 0; i < tools->hold_count; i++)
-        if (tools->hold[i].tool != tool) tools->hold[kept++] = tools->hold[i];
-    memset(tools->hold + kept, 0, (size_t)(tools->hold_count - kept) * sizeof *tools->hold);
-    tools->hold_count = kept;
+    for (int32_t i = 0; i < tools->grasp_count; i++)
+        if (tools->grasps[i].tool != tool) tools->grasps[kept++] = tools->grasps[i];
+    memset(tools->grasps + kept, 0, (size_t)(tools->grasp_count - kept) * sizeof *tools->grasps);
+    tools->grasp_count = kept;
 }
 
-lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
-                           const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
-                           lar_tools *tools, lar_error *error) {
+lar_status lar_grasp_update(const lar_domain *whole, const lar_state *state,
+                            const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
+                            lar_tools *tools, lar_error *error) {
     (void)error;
     lar_tool_shape shape = list->tool[tool].shape;
     lar_tool_motion *motion = &tools->motion[tool];
     if (shape != LAR_TOOL_HAND && shape != LAR_TOOL_GRASPER) return LAR_OK;
     if (motion->holding && pose->opening > OPEN) {
-        lar_hold_drop(tool, tools);
+        lar_grasp_drop(tool, tools);
         motion->holding = 0;
     } else if (!motion->holding && pose->opening < CLOSED) {
         take(whole, state, list, tool, pose, tools);
@@ -134,30 +134,30 @@ lar_status lar_hold_update(const lar_domain *whole, const lar_state *state,
     return LAR_OK;
 }
 
-bool lar_hold_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
+bool lar_grasp_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening) {
     if (tool->shape != LAR_TOOL_GRASPER && tool->shape != LAR_TOOL_HAND) return false;
     return motion->holding ? opening > OPEN : opening < CLOSED;
 }
 
-int32_t lar_hold_count(const lar_tools *tools, int32_t tool) {
+int32_t lar_grasp_count(const lar_tools *tools, int32_t tool) {
     int32_t count = 0;
-    for (int32_t i = 0; i < tools->hold_count; i++) count += tools->hold[i].tool == tool;
+    for (int32_t i = 0; i < tools->grasp_count; i++) count += tools->grasps[i].tool == tool;
     return count;
 }
 
-void lar_hold_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool, double opening,
-                   lar_tools *tools) {
+void lar_grasp_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool,
+                    double opening, lar_tools *tools) {
     const lar_tool_contact *contact = &whole->interactions.tool_contact;
     if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
     lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
     double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));
-    double wanted = JAWS_STIFFNESS / fmax(1, lar_hold_count(tools, tool));
-    for (int32_t i = 0; i < tools->hold_count; i++) {
-        lar_hold *hold = &tools->hold[i];
-        if (hold->tool != tool) continue;
+    double wanted = JAWS_STIFFNESS / fmax(1, lar_grasp_count(tools, tool));
+    for (int32_t i = 0; i < tools->grasp_count; i++) {
+        lar_grasp *grasp = &tools->grasps[i];
+        if (grasp->tool != tool) continue;
         /* Of what it really has, or softening would begin unseen. */
-        double most = lar_hold_most(&contact->face[contact->face_of[hold->face]],
-                                    list->tool[tool].radius, &law, whole->mass);
-        hold->stiffness = share * fmin(wanted, most);
+        double most = lar_grasp_stiffness_limit(&contact->face[contact->face_of[grasp->face]],
+                                                list->tool[tool].radius, &law, whole->mass);
+        grasp->stiffness = share * fmin(wanted, most);
     }
 }
