@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "model/triangles/tree.h"
 
@@ -64,7 +64,7 @@ static void measure(samples *all, const lar_triangle_tree *tree) {
     enum { PORTION = 1024 };
     all->tree = tree;
     halve_weights(all);
-    lar_share((int32_t)(all->count - all->first), PORTION, measure_some, all);
+    lar_parallel_for((int32_t)(all->count - all->first), PORTION, measure_some, all);
     all->first = all->count;
 }
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/union_find.h"
 #include "model/triangles/skin.h"
 
@@ -40,7 +40,7 @@ static void find_near(void *context, int32_t first, int32_t end) {
 
 static void find_shells(question *q, shells *found) {
     const lar_triangles *surface = q->surface;
-    lar_share(surface->vertex_count, PORTION, find_near, q);
+    lar_parallel_for(surface->vertex_count, PORTION, find_near, q);
     lar_union_start(found->parent, surface->vertex_count);
     for (int32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 1; k < 3; k++)
@@ -107,7 +107,7 @@ lar_status lar_fine_surface_draw(const lar_mesh *mesh, double size, lar_triangle
                                  lar_error *error) {
     question q = {.surface = surface, .size = size};
     lar_status status = lar_mesh_skin_create(mesh, &q.skin, error);
-    if (!status) lar_share(surface->vertex_count, PORTION, draw_some, &q);
+    if (!status) lar_parallel_for(surface->vertex_count, PORTION, draw_some, &q);
     lar_mesh_skin_clear(&q.skin);
     return status;
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit/fit.h"
 #include "meshing/grid/lattice_check.h"
@@ -378,7 +378,7 @@ static lar_status describe(work *w) {
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
     judging both = {.work = w};
-    if (!status) lar_share(2, 1, judge, &both);
+    if (!status) lar_parallel_for(2, 1, judge, &both);
     for (int i = 0; !status && i < 2; i++) {
         status = both.status[i];
         if (status) *w->error = both.error[i];

@@ -10,29 +10,29 @@
 #include "base/pin.h"
 #include "step/identity.h"
 
-static int32_t seats(const lar_computer *computer) {
+static int32_t all_threads(const lar_computer *computer) {
     return computer->hosted * computer->threads;
 }
 
-static lar_processor *processor_of(const lar_computer *computer, int32_t seat) {
-    return &computer->processor[seat / computer->threads];
+static lar_processor *processor_of(const lar_computer *computer, int32_t number) {
+    return &computer->processor[number / computer->threads];
 }
 
 /* ---- what went wrong ----------------------------------------------------------------------- */
 
-/* How little a seat's failure says: it may be a consequence of another one. */
-static int consequence(const lar_computer *computer, int32_t seat) {
-    const lar_processor *p = processor_of(computer, seat);
-    if (p->worker && p->worker[seat % computer->threads].follows) return 2;
-    return computer->seat[seat].status == LAR_ERROR_PEER;
+/* How little a thread's failure says: it may be a consequence of another one. */
+static int consequence(const lar_computer *computer, int32_t number) {
+    const lar_processor *p = processor_of(computer, number);
+    if (p->worker && p->worker[number % computer->threads].follows) return 2;
+    return computer->result[number].status == LAR_ERROR_PEER;
 }
 
 static lar_status first_failure(lar_computer *computer, lar_error *error) {
-    const lar_seat *chosen = NULL;
+    const lar_thread_result *chosen = NULL;
     int least = 3;
-    for (int32_t i = 0; i < seats(computer); i++) {
-        if (!computer->seat[i].status || consequence(computer, i) >= least) continue;
-        chosen = &computer->seat[i];
+    for (int32_t i = 0; i < all_threads(computer); i++) {
+        if (!computer->result[i].status || consequence(computer, i) >= least) continue;
+        chosen = &computer->result[i];
         least = consequence(computer, i);
     }
     if (!chosen) return LAR_OK;
@@ -86,9 +86,9 @@ static bool shares_memory(const lar_options *options) {
 }
 
 /* Every processor is compiled in its own first thread. */
-static void compile_seat(void *context, int32_t number) {
+static void compile_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     if (number % computer->threads != 0) return;
     lar_processor *p = processor_of(computer, number);
     const lar_schedule *schedule =
@@ -99,15 +99,15 @@ static void compile_seat(void *context, int32_t number) {
                                      .shift = computer->shift,
                                      .delays = computer->options->delays,
                                      .near = computer->team || shares_memory(computer->options)};
-    seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
-    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->state);
+    result->status = lar_processor_create(&setting, schedule, p, &result->error);
+    if (!result->status) lar_processor_scatter(p, computer->whole, computer->state);
 }
 
-static void meet_seat(void *context, int32_t number) {
+static void meet_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     if (number % computer->threads != 0) return;
-    seat->status = open_comm(computer, processor_of(computer, number), &seat->error);
+    result->status = open_comm(computer, processor_of(computer, number), &result->error);
 }
 
 static lar_status size_buffers(lar_computer *computer, bool several, lar_error *error) {
@@ -151,22 +151,22 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
     if (status) return status;
     computer->processor = lar_calloc((size_t)computer->hosted, sizeof *computer->processor);
-    computer->seat = lar_calloc((size_t)seats(computer), sizeof *computer->seat);
-    if (!computer->processor || !computer->seat)
-        return lar_fail_memory(error, (size_t)seats(computer) * sizeof *computer->seat,
+    computer->result = lar_calloc((size_t)all_threads(computer), sizeof *computer->result);
+    if (!computer->processor || !computer->result)
+        return lar_fail_memory(error, (size_t)all_threads(computer) * sizeof *computer->result,
                                "the processors");
-    return lar_crew_create(seats(computer), pins(options, count * computer->threads),
-                           computer->first * computer->threads, &computer->crew, error);
+    return lar_thread_pool_create(all_threads(computer), pins(options, count * computer->threads),
+                                  computer->first * computer->threads, &computer->pool, error);
 }
 
 /* They meet when all here are compiled: otherwise the others would wait for one that does not come.
  */
 static lar_status open_processors(lar_computer *computer, bool *met, lar_error *error) {
-    lar_crew_run(computer->crew, compile_seat, computer);
+    lar_thread_pool_run(computer->pool, compile_on_thread, computer);
     lar_status status = first_failure(computer, error);
     if (status) return status;
     *met = true;
-    lar_crew_run(computer->crew, meet_seat, computer);
+    lar_thread_pool_run(computer->pool, meet_on_thread, computer);
     status = first_failure(computer, error);
     if (!status && computer->hosted < computer->division.grid.count)
         status = lar_control_create(computer->processor[0].comm, &computer->control, error);
@@ -201,7 +201,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
     return status;
 }
 
-static void close_seat(void *context, int32_t number) {
+static void close_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads != 0) return;
     lar_processor *p = processor_of(computer, number);
@@ -224,14 +224,14 @@ void lar_computer_destroy(lar_computer *computer) {
     if (!computer) return;
     take_leave(computer);
     lar_control_destroy(computer->control);
-    if (computer->crew) lar_crew_run(computer->crew, close_seat, computer);
-    lar_crew_destroy(computer->crew);
+    if (computer->pool) lar_thread_pool_run(computer->pool, close_on_thread, computer);
+    lar_thread_pool_destroy(computer->pool);
     lar_comm_team_destroy(computer->team);
     lar_contact_close(computer);
     lar_verification_destroy(&computer->check);
     lar_division_destroy(&computer->division);
     free(computer->processor);
-    free(computer->seat);
+    free(computer->result);
     free(computer->shift);
     free(computer->clock);
     free(computer);
@@ -262,7 +262,7 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 
 /* After a step: does somebody here want everyone to stop? One step more than the way to the
  * farthest processor, because other threads of this one may have sent already. */
-static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *faulted) {
+static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
     if (p->board) lar_contact_watch(worker, stop - done);
@@ -272,7 +272,7 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
                           &worker->fault);
         lar_processor_ask_stop(p, stop);
     }
-    if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
+    if (number == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
         !computer->watch(computer->watch_context, done)) {
         computer->called_off = true;
         lar_processor_ask_stop(p, stop);
@@ -280,9 +280,9 @@ static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat,
     check_clocks(computer, p->self, worker->round);
 }
 
-static void advance_seat(void *context, int32_t number) {
+static void advance_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
     bool faulted = false;
@@ -290,24 +290,24 @@ static void advance_seat(void *context, int32_t number) {
     while (worker->state.step < computer->until) {
         uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
         if (stop && worker->state.step >= stop) break;
-        seat->status = lar_worker_step(worker, &seat->error);
-        if (seat->status) break;
+        result->status = lar_worker_step(worker, &result->error);
+        if (result->status) break;
         after_step(computer, worker, number, &faulted);
     }
     /* Nobody shall wait for this processor; after a verdict this changes nothing. */
-    if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
+    if (result->status && worker->thread == 0) lar_comm_abort(p->comm);
 }
 
 /* What the threads here have felt in the last advance. */
 static void report_here(const lar_computer *computer, lar_report *report) {
     *report = (lar_report){0};
-    for (int32_t i = 0; i < seats(computer); i++) {
+    for (int32_t i = 0; i < all_threads(computer); i++) {
         const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
         lar_report_add(report, &worker->interactions, &worker->state);
     }
 }
 
-static void stiffen_seat(void *context, int32_t number) {
+static void stiffen_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads == 0)
         lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
@@ -322,7 +322,7 @@ static void take_settings(lar_computer *computer) {
     for (int32_t i = 0; i < computer->hosted; i++)
         computer->processor[i].domain.interval = interval;
     if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
-        lar_crew_run(computer->crew, stiffen_seat, computer);
+        lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
 }
 
 /* `first`: of the stretches of an advance. */
@@ -330,7 +330,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
                                lar_error *error) {
     computer->until = until;
     take_settings(computer);
-    for (int32_t i = 0; i < seats(computer); i++) {
+    for (int32_t i = 0; i < all_threads(computer); i++) {
         lar_interactions *interactions =
             &processor_of(computer, i)->worker[i % computer->threads].interactions;
         if (first) lar_report_begin(interactions);
@@ -338,7 +338,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
         processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
-    lar_crew_run(computer->crew, advance_seat, computer);
+    lar_thread_pool_run(computer->pool, advance_thread, computer);
     for (int32_t i = 0; i < computer->hosted; i++) lar_processor_pause(&computer->processor[i]);
     report_here(computer, &computer->report);
     return first_failure(computer, error);

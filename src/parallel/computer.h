@@ -3,7 +3,7 @@
  *
  *     one process (threads)               several processes (shm, tcp, ucx, mpi)
  *       caller   processor 0, thread 0      process 0: caller, processor 0     \  control.h:
- *       crew     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
+ *       pool     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
  *
  * The caller belongs to processor zero and computes with it. The whole model's domain and state
  * stay beside the parts: the state of the parts is gathered into it on demand, and everything that
@@ -18,7 +18,7 @@
 #ifndef LAR_PARALLEL_COMPUTER_H
 #define LAR_PARALLEL_COMPUTER_H
 
-#include "base/crew.h"
+#include "base/thread_pool.h"
 #include "parallel/contact_exchange.h"
 #include "parallel/control.h"
 #include "parallel/division.h"
@@ -26,11 +26,11 @@
 #include "parallel/processor.h"
 #include "step/report.h"
 
-/* One thread of one processor of this process: seat = processor * threads + thread. */
-typedef struct lar_seat {
+/* One thread of one processor of this process: number = processor * threads + thread. */
+typedef struct lar_thread_result {
     lar_status status;
     lar_error error;
-} lar_seat;
+} lar_thread_result;
 
 /* Contact of bodies (computer_contact.c). */
 typedef struct lar_computer_contact {
@@ -56,11 +56,11 @@ typedef struct lar_computer {
     lar_processor *processor;
     lar_comm_team *team;  /* comm threads only */
     lar_control *control; /* several processes only */
-    lar_crew *crew;
-    lar_seat *seat;  /* [hosted * threads] */
-    size_t *shift;   /* [processors] what control needs of their buffers */
-    uint64_t *clock; /* [processors] atomic: rounds done, of those in this process */
-    uint64_t until;  /* the step before which this advance ends */
+    lar_thread_pool *pool;
+    lar_thread_result *result; /* [hosted * threads] */
+    size_t *shift;             /* [processors] what control needs of their buffers */
+    uint64_t *clock;           /* [processors] atomic: rounds done, of those in this process */
+    uint64_t until;            /* the step before which this advance ends */
     lar_computer_contact contact;
     lar_watch *watch;
     void *watch_context;

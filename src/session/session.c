@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/thread.h"
 
 lar_session_options lar_session_options_default(void) {
@@ -66,7 +66,7 @@ static void make_advice(lar_session *session) {
                                    .elements = simulation->domain.model->mesh.element_count,
                                    .busy = lar_simulation_processors(simulation) *
                                            lar_simulation_threads(simulation),
-                                   .cores = lar_share_cores(),
+                                   .cores = lar_usable_cores(),
                                    .priority = session->options.priority};
 }
 

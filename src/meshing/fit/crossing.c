@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "meshing/fit/face_boxes.h"
 #include "model/triangles/triangles.h"
@@ -370,7 +370,7 @@ lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[
                                              : lar_fail_memory(error, 12 * (size_t)count,
                                                                "which faces cross each other");
     if (!status) status = lar_face_boxes_create(x, face, count, &boxes, error);
-    if (!status) lar_share(count, PORTION, look_around, &s);
+    if (!status) lar_parallel_for(count, PORTION, look_around, &s);
     *found = (lar_face_crossings){0};
     for (int32_t f = 0; !status && f < count; f++) {
         found->pairs += s.pairs[f];

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "model/triangles/tree.h"
 
@@ -201,7 +201,7 @@ lar_status lar_thin_find(const lar_boundary *boundary, double size, lar_thin *th
             status = lar_fail_memory(error, 2 * thin->capacity * sizeof *thin->place,
                                      "what is thin of the body");
     if (!status) {
-        lar_share((int32_t)thin->count, PORTION, measure_places, &s);
+        lar_parallel_for((int32_t)thin->count, PORTION, measure_places, &s);
         keep_thin(&s);
     }
     lar_triangle_tree_destroy(s.tree);

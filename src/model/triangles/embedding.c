@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "model/triangles/skin.h"
 
 /* Vertices farther from the body than so many mean edges are another body's. */
@@ -262,7 +262,7 @@ static lar_status bind_all(binder *b, lar_error *error) {
     b->outside = lar_calloc((size_t)vertices, sizeof *b->outside);
     if (!b->outside)
         return lar_fail_memory(error, 8 * (size_t)vertices, "a surface that rides on the mesh");
-    lar_share(vertices, PORTION, bind_some, b);
+    lar_parallel_for(vertices, PORTION, bind_some, b);
     for (int32_t v = 0; v < vertices; v++) {
         if (embedding->element[v] < 0) return refuse(b, &embedding->surface, v, error);
         embedding->farthest = fmax(embedding->farthest, b->outside[v]);

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 
 enum { MOST = 1000 };
 
@@ -34,7 +34,7 @@ static void every_item_is_done_once(void **state) {
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         for (size_t k = 0; k < sizeof portions / sizeof *portions; k++) {
             work w = {.count = counts[i], .portion = portions[k]};
-            lar_share(w.count, w.portion, count_up, &w);
+            lar_parallel_for(w.count, w.portion, count_up, &w);
             assert_int_equal(w.bad, 0);
             assert_int_equal(w.calls, ((int64_t)w.count + w.portion - 1) / w.portion);
             for (int32_t n = 0; n < MOST; n++) assert_int_equal(w.done[n], n < w.count);
@@ -49,7 +49,7 @@ static void share_rows(void *context, int32_t first, int32_t end) {
     nest *all = context;
     for (int32_t r = first; r < end; r++) {
         all->row[r] = (work){.count = MOST, .portion = 10};
-        lar_share(MOST, 10, count_up, &all->row[r]);
+        lar_parallel_for(MOST, 10, count_up, &all->row[r]);
     }
 }
 
@@ -57,7 +57,7 @@ static void calls_can_be_nested(void **state) {
     (void)state;
     static nest all;
     memset(&all, 0, sizeof all);
-    lar_share(8, 1, share_rows, &all);
+    lar_parallel_for(8, 1, share_rows, &all);
     for (int r = 0; r < 8; r++)
         for (int32_t n = 0; n < MOST; n++) assert_int_equal(all.row[r].done[n], 1);
 }
@@ -81,7 +81,7 @@ static void two_cores_are_at_work_at_once(void **state) {
         print_message("skipped: one core\n");
         return;
     }
-    lar_share(2, 1, meet, &here);
+    lar_parallel_for(2, 1, meet, &here);
     assert_int_equal(here, 2);
 }
 

@@ -1,4 +1,4 @@
-#include "base/share.h"
+#include "base/parallel_for.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 enum { THREADS_MOST = 16 };
 
 typedef struct task {
-    lar_share_work *work;
+    lar_parallel_for_work *work;
     void *context;
     int32_t count, portion;
     int64_t next; /* atomic: the first item that nobody has taken */
@@ -29,18 +29,18 @@ static void *help(void *argument) {
 }
 
 /* Not of base/pin.h, which knows none where Lariat was built without hwloc. */
-int32_t lar_share_cores(void) {
+int32_t lar_usable_cores(void) {
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
     const long online = sysconf(_SC_NPROCESSORS_ONLN); /* more than such a set holds */
     return online > 0 ? (int32_t)online : 1;
 }
 
-void lar_share(int32_t count, int32_t portion, lar_share_work *work, void *context) {
+void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context) {
     task shared = {work, context, count, portion, 0};
     pthread_t thread[THREADS_MOST];
     const int64_t portions = ((int64_t)count + portion - 1) / portion;
-    const int32_t most = portions > 1 ? lar_share_cores() : 1;
+    const int32_t most = portions > 1 ? lar_usable_cores() : 1;
     int started = 0;
     while (started + 1 < most && started + 1 < portions && started < THREADS_MOST &&
            !lar_thread_start(&thread[started], help, &shared))
