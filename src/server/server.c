@@ -1,4 +1,4 @@
-/* The viewers' server: its life, its thread, and its beat. */
+/* The viewers' server: its life, its thread, and its timer. */
 #include "server/state.h"
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
  */
-static const lws_usec_t BEAT = 5000, QUICK_BEAT = 2000, IDLE_BEAT = 100000;
+static const lws_usec_t INTERVAL = 5000, QUICK_INTERVAL = 2000, IDLE_INTERVAL = 100000;
 static const int64_t STATUS_EVERY = LAR_SECOND_NS / 10, WATCH_EVERY = LAR_SECOND_NS / 2;
 /* A picture that would show the same again is held back for so long. */
 static const int64_t STILL = LAR_SECOND_NS / 4;
@@ -32,7 +32,7 @@ static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
 static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST + 8.0);
 
-/* ---- the beat ----------------------------------------------------------------------------------
+/* ---- the timer ---------------------------------------------------------------------------------
  */
 
 void lar_server_take_status(lar_server *server) {
@@ -118,8 +118,8 @@ static void watch(lar_server *server, int64_t now) {
     }
 }
 
-static void beat(lws_sorted_usec_list_t *sul) {
-    lar_server *server = lws_container_of(sul, lar_server, beat);
+static void on_timer(lws_sorted_usec_list_t *sul) {
+    lar_server *server = lws_container_of(sul, lar_server, timer);
     int64_t now = lar_clock_ns();
     lar_server_collect(server);
     if (now - server->watched_at >= WATCH_EVERY) watch(server, now);
@@ -130,10 +130,10 @@ static void beat(lws_sorted_usec_list_t *sul) {
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
     lar_server_ask_readings(server);
-    lws_usec_t pause = !server->first                   ? IDLE_BEAT
-                       : lar_hands_busy(&server->hands) ? QUICK_BEAT
-                                                        : BEAT;
-    lws_sul_schedule(server->context, 0, &server->beat, beat, pause);
+    lws_usec_t pause = !server->first                   ? IDLE_INTERVAL
+                       : lar_hands_busy(&server->hands) ? QUICK_INTERVAL
+                                                        : INTERVAL;
+    lws_sul_schedule(server->context, 0, &server->timer, on_timer, pause);
 }
 
 /* ---- the thread ---------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ static void *run(void *argument) {
     lar_server *server = argument;
     lar_pin_nowhere(); /* not where a processor computes, whose thread may have started this one */
     setpriority(PRIO_PROCESS, 0, LAR_SERVER_NICE); /* of this thread only, on Linux */
-    lws_sul_schedule(server->context, 0, &server->beat, beat, 1);
+    lws_sul_schedule(server->context, 0, &server->timer, on_timer, 1);
     int64_t spent = lar_clock_thread_ns(), begun = server->paint_begun;
     while (!__atomic_load_n(&server->ending, __ATOMIC_ACQUIRE)) {
         lws_service(server->context, 0);
@@ -167,7 +167,7 @@ static void *run(void *argument) {
         begun = server->paint_begun;
     }
     part(server);
-    lws_sul_cancel(&server->beat);
+    lws_sul_cancel(&server->timer);
     return NULL;
 }
 

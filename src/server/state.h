@@ -144,7 +144,7 @@ struct lar_server {
     bool recording_ends;               /* it is asked for */
     char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
     char played[LAR_NAME_MOST + 1];
-    lws_sorted_usec_list_t beat;
+    lws_sorted_usec_list_t timer;
     bool reading; /* a viewer's values are being read */
     int64_t status_at, watched_at, paint_begun, paint_cost;
 };

@@ -21,24 +21,25 @@ static void set_factor(lar_pace *pace) {
 }
 
 void lar_pace_restart(lar_pace *pace, int64_t now) {
-    if (pace->pace > 0 && pace->beat.due > now) return;
-    pace->before = played(pace, pace->pace > 0 ? pace->beat.due : now);
+    if (pace->pace > 0 && pace->deadline.due > now) return;
+    pace->before = played(pace, pace->pace > 0 ? pace->deadline.due : now);
     pace->since = now;
-    lar_beat_restart(&pace->beat, now);
+    lar_deadline_clock_restart(&pace->deadline, now);
 }
 
 void lar_pace_start(lar_pace *pace, int64_t now) {
     if (pace->running) return;
     pace->running = true;
     pace->since = now;
-    lar_beat_restart(&pace->beat, now);
+    lar_deadline_clock_restart(&pace->deadline, now);
     pace->given_up_at = 0;
     pace->moments = 0; /* rates do not look across a pause */
 }
 
 void lar_pace_stop(lar_pace *pace, int64_t now) {
     if (!pace->running) return;
-    pace->before = played(pace, pace->pace > 0 && pace->beat.due > now ? pace->beat.due : now);
+    pace->before =
+        played(pace, pace->pace > 0 && pace->deadline.due > now ? pace->deadline.due : now);
     pace->running = false;
     pace->total.played = pace->before;
     set_factor(pace);
@@ -50,15 +51,15 @@ void lar_pace_set(lar_pace *pace, double wanted, int64_t now) {
     if (wanted == pace->pace) return;
     lar_pace_restart(pace, now);
     /* What is left of the tick under way goes at the new pace. */
-    if (pace->running && wanted > 0 && pace->beat.due > now) {
-        double left = (double)(pace->beat.due - now) * (pace->pace / wanted);
-        pace->beat.due = now + (int64_t)fmin(left, LONGEST);
+    if (pace->running && wanted > 0 && pace->deadline.due > now) {
+        double left = (double)(pace->deadline.due - now) * (pace->pace / wanted);
+        pace->deadline.due = now + (int64_t)fmin(left, LONGEST);
     }
     pace->pace = wanted;
 }
 
 void lar_pace_wait(lar_pace *pace) {
-    if (pace->pace > 0) lar_beat_wait(&pace->beat);
+    if (pace->pace > 0) lar_deadline_clock_wait(&pace->deadline);
 }
 
 static bool is_slow(const lar_pace *pace, int64_t now) {
@@ -66,7 +67,7 @@ static bool is_slow(const lar_pace *pace, int64_t now) {
 }
 
 static void give_up(lar_pace *pace, int64_t now) {
-    int64_t excess = lar_beat_give_up(&pace->beat, now);
+    int64_t excess = lar_deadline_clock_give_up(&pace->deadline, now);
     if (excess == 0) return;
     if (!is_slow(pace, now)) {
         pace->misses -= pace->late_run;
@@ -78,11 +79,11 @@ static void give_up(lar_pace *pace, int64_t now) {
 }
 
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
-    pace->beat.period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
+    pace->deadline.period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
     if (pace->pace > 0)
         give_up(pace, now);
     else
-        pace->beat.due = now;
+        pace->deadline.due = now;
     pace->total.at = now;
     pace->total.played = played(pace, now);
     set_factor(pace); /* without this tick, whose time is still to come */
@@ -104,11 +105,11 @@ void lar_pace_forget_least(lar_pace *pace) {
 
 void lar_pace_answered(lar_pace *pace, int64_t now) {
     bool slow = is_slow(pace, now);
-    int64_t from = slow ? pace->total.at : pace->beat.due;
+    int64_t from = slow ? pace->total.at : pace->deadline.due;
     lar_histogram_add(&pace->ticks, (uint64_t)(now > from ? now - from : 0));
     pace->total.ticks++;
     if (pace->pace <= 0) return;
-    if (!lar_beat_next(&pace->beat, now)) {
+    if (!lar_deadline_clock_next(&pace->deadline, now)) {
         pace->late_run = 0;
     } else if (slow) {
         pace->slow_ticks++;
@@ -177,8 +178,8 @@ void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
     status->misses = pace->misses;
     status->slow_ticks = pace->slow_ticks;
     status->skipped = pace->skipped;
-    status->lag = pace->running && pace->pace > 0 && now > pace->beat.due
-                      ? 1e-9 * (double)(now - pace->beat.due)
+    status->lag = pace->running && pace->pace > 0 && now > pace->deadline.due
+                      ? 1e-9 * (double)(now - pace->deadline.due)
                       : 0;
     status->slow_motion = is_slow(pace, now);
     status->step_max = 1e-9 * (double)pace->steps.most;

@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "base/histogram.h"
 #include "lariat.h"
 
@@ -36,8 +36,9 @@ typedef struct lar_pace_moment {
 } lar_pace_moment;
 
 typedef struct lar_pace {
-    double pace;         /* simulated per clock second; 0: as fast as it goes */
-    lar_beat beat;       /* of the tick under way, or the next one; its period is 0 without pace */
+    double pace; /* simulated per clock second; 0: as fast as it goes */
+    lar_deadline_clock
+        deadline;        /* of the tick under way, or the next one; its period is 0 without pace */
     bool running;        /* between lar_pace_start and lar_pace_stop */
     int64_t since;       /* of this stretch's start [ns] */
     double before;       /* played before this stretch [s] */

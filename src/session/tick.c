@@ -199,9 +199,10 @@ static void rest(lar_session *session, double *fade) {
 static void wait_for_tick(lar_session *session) {
     lar_pace *pace = &session->pace;
     while (!session->ended && session->status.state == LAR_SESSION_PLAYING && pace->pace > 0 &&
-           pace->beat.due - lar_clock_ns() > FAR) {
+           pace->deadline.due - lar_clock_ns() > FAR) {
         serve_snapshots(session);
-        lar_requests_sleep(&session->requests, snapshot_is_wanted, session, pace->beat.due - FAR);
+        lar_requests_sleep(&session->requests, snapshot_is_wanted, session,
+                           pace->deadline.due - FAR);
         obey_requests(session);
     }
     if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "study/bench/jitter.h"
 
 static void check_percentiles(const lar_percentiles *p) {
@@ -81,22 +81,24 @@ static void impossible_options_are_refused(void **unused) {
         assert_int_equal(lar_bench_jitter(&wrong[i], &r, NULL), LAR_ERROR_ARGUMENT);
 }
 
-/* The beat itself, played without a clock; tests/session/test_pace.c has it with pauses and pace.
+/* The deadline clock itself, played without a clock; tests/session/test_pace.c has it with pauses
+ * and pace.
  */
-static void a_beat_is_late_makes_up_and_gives_up(void **unused) {
+static void a_late_clock_makes_up_and_gives_up(void **unused) {
     (void)unused;
     enum { MS = 1000000 };
-    lar_beat beat = {.period = MS + 0.25};
-    lar_beat_restart(&beat, 5 * MS);
-    for (int i = 0; i < 4; i++) assert_false(lar_beat_next(&beat, beat.due + MS / 2));
-    assert_int_equal(beat.due, 9 * MS + 1); /* four quarters of a nanosecond */
-    assert_false(lar_beat_next(&beat, beat.due + MS));
-    assert_true(lar_beat_next(&beat, beat.due + MS + 1));
-    int64_t due = beat.due;
-    assert_int_equal(lar_beat_give_up(&beat, due + 100 * MS), 0);
-    assert_int_equal(beat.due, due);
-    assert_int_equal(lar_beat_give_up(&beat, due + 103 * MS), 3 * MS);
-    assert_int_equal(beat.due, due + 3 * MS);
+    lar_deadline_clock deadline = {.period = MS + 0.25};
+    lar_deadline_clock_restart(&deadline, 5 * MS);
+    for (int i = 0; i < 4; i++)
+        assert_false(lar_deadline_clock_next(&deadline, deadline.due + MS / 2));
+    assert_int_equal(deadline.due, 9 * MS + 1); /* four quarters of a nanosecond */
+    assert_false(lar_deadline_clock_next(&deadline, deadline.due + MS));
+    assert_true(lar_deadline_clock_next(&deadline, deadline.due + MS + 1));
+    int64_t due = deadline.due;
+    assert_int_equal(lar_deadline_clock_give_up(&deadline, due + 100 * MS), 0);
+    assert_int_equal(deadline.due, due);
+    assert_int_equal(lar_deadline_clock_give_up(&deadline, due + 103 * MS), 3 * MS);
+    assert_int_equal(deadline.due, due + 3 * MS);
 }
 
 int main(void) {
@@ -106,6 +108,6 @@ int main(void) {
         cmocka_unit_test(too_much_is_always_missed),
         cmocka_unit_test(a_priority_is_given_or_refused_with_a_sentence),
         cmocka_unit_test(impossible_options_are_refused),
-        cmocka_unit_test(a_beat_is_late_makes_up_and_gives_up)};
+        cmocka_unit_test(a_late_clock_makes_up_and_gives_up)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

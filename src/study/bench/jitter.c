@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "base/histogram.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -63,15 +63,15 @@ static lar_status count_out(turn *t, double load, lar_error *error) {
 
 /* ---- a turn ------------------------------------------------------------------------------- */
 
-static void tick(turn *t, lar_beat *beat) {
-    lar_beat_wait(beat);
-    int64_t now = lar_clock_ns(), due = beat->due;
-    t->skipped += lar_beat_give_up(beat, now);
+static void tick(turn *t, lar_deadline_clock *deadline) {
+    lar_deadline_clock_wait(deadline);
+    int64_t now = lar_clock_ns(), due = deadline->due;
+    t->skipped += lar_deadline_clock_give_up(deadline, now);
     lar_histogram_add(&t->late, (uint64_t)(now - due));
     if (t->rounds > 0) t->sink += t->work->run(t->rounds);
     now = lar_clock_ns();
     lar_histogram_add(&t->done, (uint64_t)(now - due));
-    t->misses += lar_beat_next(beat, now);
+    t->misses += lar_deadline_clock_next(deadline, now);
 }
 
 static void forget(turn *t) {
@@ -83,14 +83,14 @@ static void forget(turn *t) {
 
 static void *keep_time(void *context) {
     turn *t = context;
-    lar_beat beat = {.period = PERIOD};
+    lar_deadline_clock deadline = {.period = PERIOD};
     lar_clock_be_prompt();
-    lar_beat_restart(&beat, lar_clock_ns() + (int64_t)PERIOD);
-    int64_t begin = beat.due + (int64_t)WARM_UP;
-    while (beat.due < begin) tick(t, &beat);
+    lar_deadline_clock_restart(&deadline, lar_clock_ns() + (int64_t)PERIOD);
+    int64_t begin = deadline.due + (int64_t)WARM_UP;
+    while (deadline.due < begin) tick(t, &deadline);
     forget(t);
-    int64_t end = beat.due + t->length;
-    while (beat.due < end) tick(t, &beat);
+    int64_t end = deadline.due + t->length;
+    while (deadline.due < end) tick(t, &deadline);
     return NULL;
 }
 

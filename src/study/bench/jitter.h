@@ -1,5 +1,5 @@
 /* How punctual this machine is: a thread that wakes a thousand times a second, as a session's does
- * (base/beat.h), and does nothing, or computes for a given time.
+ * (base/deadline_clock.h), and does nothing, or computes for a given time.
  *
  *     due          due          due          due
  *      |.|==load==|  |...|==load==|  |.|==load==|  |.........|==load=|      --seconds, --repeat

@@ -10,8 +10,8 @@
  *
  * `now` is base/clock.h's, as a number that the caller gives: a test can play every lateness.
  */
-#ifndef LAR_BASE_BEAT_H
-#define LAR_BASE_BEAT_H
+#ifndef LAR_BASE_DEADLINE_CLOCK_H
+#define LAR_BASE_DEADLINE_CLOCK_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -24,36 +24,36 @@
  * on an idle machine. */
 enum { LAR_WAKE_EARLY = 20000 };
 
-typedef struct lar_beat {
+typedef struct lar_deadline_clock {
     int64_t due;     /* when the work under way, or the next, is due [ns] */
     double period;   /* [ns] */
     double fraction; /* of a nanosecond, what `due` leaves out */
-} lar_beat;
+} lar_deadline_clock;
 
 /* From now on, without a past. */
-static inline void lar_beat_restart(lar_beat *beat, int64_t now) {
-    beat->due = now;
-    beat->fraction = 0;
+static inline void lar_deadline_clock_restart(lar_deadline_clock *deadline, int64_t now) {
+    deadline->due = now;
+    deadline->fraction = 0;
 }
 
-static inline void lar_beat_wait(const lar_beat *beat) {
-    lar_clock_wait_until(beat->due, LAR_WAKE_EARLY);
+static inline void lar_deadline_clock_wait(const lar_deadline_clock *deadline) {
+    lar_clock_wait_until(deadline->due, LAR_WAKE_EARLY);
 }
 
 /* Puts off what cannot be made up for within LAR_LAG_MOST: returns how much that is [ns], or 0. */
-static inline int64_t lar_beat_give_up(lar_beat *beat, int64_t now) {
-    int64_t excess = now - beat->due - (int64_t)(1e9 * LAR_LAG_MOST);
+static inline int64_t lar_deadline_clock_give_up(lar_deadline_clock *deadline, int64_t now) {
+    int64_t excess = now - deadline->due - (int64_t)(1e9 * LAR_LAG_MOST);
     if (excess <= 0) return 0;
-    beat->due += excess;
+    deadline->due += excess;
     return excess;
 }
 
 /* The work is done; the next is due a period after this one was. True when that is past: a miss. */
-static inline bool lar_beat_next(lar_beat *beat, int64_t now) {
-    double next = beat->fraction + beat->period;
-    beat->due += (int64_t)next;
-    beat->fraction = next - floor(next);
-    return now > beat->due;
+static inline bool lar_deadline_clock_next(lar_deadline_clock *deadline, int64_t now) {
+    double next = deadline->fraction + deadline->period;
+    deadline->due += (int64_t)next;
+    deadline->fraction = next - floor(next);
+    return now > deadline->due;
 }
 
 #endif
