@@ -10,8 +10,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "comm/backend.h"
-#include "comm/meeting.h"
-#include "comm/watch.h"
+#include "comm/rendezvous.h"
+#include "comm/heartbeat.h"
 
 /* ---- the backends ------------------------------------------------------------------------ */
 
@@ -88,18 +88,18 @@ static lar_status check_options(const lar_comm_options *o, const lar_comm_backen
     return LAR_OK;
 }
 
-/* Connects to the peers between two meetings: before, all addresses are known; after, everyone can
- * reach everyone. */
+/* Connects to the peers between two parts of the rendezvous: before, all addresses are known;
+ * after, everyone can reach everyone. */
 static lar_status come_together(lar_comm *comm, lar_error *error) {
     const lar_comm_backend *backend = comm->backend;
     if (backend->meets) return backend->connect(comm, error);
-    lar_status status = lar_meeting_gather(comm, error);
+    lar_status status = lar_rendezvous_gather(comm, error);
     if (status) return status;
     for (int32_t p = 0; p < comm->options.count; p++)
         comm->peers[p].half = comm->addresses[p].receive_bytes;
     lar_error own;
     status = backend->connect(comm, &own);
-    return lar_meeting_ready(comm, status ? &own : NULL, error);
+    return lar_rendezvous_ready(comm, status ? &own : NULL, error);
 }
 
 static lar_status open_parts(lar_comm *comm, lar_error *error) {
@@ -117,7 +117,7 @@ static lar_status open_parts(lar_comm *comm, lar_error *error) {
     if (comm->backend->begin) comm->backend->begin(comm);
     /* What a processor sends to itself needs no network. */
     comm->peers[comm->options.self] = (lar_comm_peer){comm->receive, comm->options.receive_bytes};
-    return comm->backend->meets ? LAR_OK : lar_watch_start(comm, error);
+    return comm->backend->meets ? LAR_OK : lar_heartbeat_start(comm, error);
 }
 
 lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_error *error) {
@@ -151,7 +151,7 @@ void lar_comm_close(lar_comm *comm) {
     if (!comm) return;
     if (comm->backend->leave) comm->backend->leave(comm);
     /* Goodbyes first: a connection that ends after one is no loss. */
-    lar_watch_stop(comm);
+    lar_heartbeat_stop(comm);
     if (comm->backend->close) comm->backend->close(comm);
     for (int32_t p = 0; comm->links && p < comm->options.count; p++)
         if (comm->links[p] >= 0) close(comm->links[p]);
@@ -222,7 +222,7 @@ lar_status lar_comm_give_up(lar_comm *comm, int32_t processor, lar_comm_loss los
                             lar_error *error) {
     if (!__atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE)) {
         /* Processor zero decides among processes; without it everyone decides alone. */
-        if (comm->watch) lar_watch_report(comm, processor, loss, step);
+        if (comm->heartbeat) lar_heartbeat_report(comm, processor, loss, step);
         if (loss == LAR_LOSS_STALLED) processor = end_of_chain(comm, processor);
         uint64_t nobody = 0;
         __atomic_compare_exchange_n(comm->verdict, &nobody, lar_comm_verdict(processor, loss),

@@ -47,7 +47,7 @@ typedef struct mpi_state {
     int tag;
     int *ranks; /* [count] */
     bool begun;
-    bool broken;          /* MPI has failed; who is lost is the watch's to say */
+    bool broken;          /* MPI has failed; who is lost is the heartbeat's to say */
     int receives, oldest; /* the ring */
     size_t receive_bytes; /* of one */
     unsigned char *incoming;

@@ -140,14 +140,14 @@ static void fetch_foreign(const lar_worker *worker) {
 }
 
 /* How far the memory of a batch's packets has been asked for. */
-typedef struct near_cursor {
+typedef struct prefetch_cursor {
     lar_range packets;
     size_t at; /* in the first of them */
-} near_cursor;
+} prefetch_cursor;
 
 /* Asks for at most so many bytes of the packets that will be sent, or have come. */
-static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, size_t bytes,
-                       uint64_t round) {
+static void prefetch_packets(const lar_processor *p, prefetch_cursor *cursor, bool sends,
+                             size_t bytes, uint64_t round) {
     while (cursor->packets.count > 0 && bytes > 0) {
         const lar_packet_plan *packet = &p->packet[cursor->packets.first];
         size_t left = lar_comm_packet_bytes(packet->bytes) - cursor->at;
@@ -167,7 +167,7 @@ static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, 
     }
 }
 
-/* Between the runs of elements the memory of the batch's packets comes near, a little each time:
+/* Between the runs of elements the memory of the batch's packets is prefetched, a little each time:
  * a core can wait for a few dozen lines at once, and does not compute while it asks for more. */
 static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t round) {
     enum { PORTION = 4096 };
@@ -177,11 +177,11 @@ static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t ro
                                  &worker->state);
         return;
     }
-    near_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
+    prefetch_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
     for (int32_t r = 0; r < batch->run_count; r++) {
         if (r > 0 || batch->run_count == 1) {
-            bring_near(p, &sends, true, PORTION, round);
-            bring_near(p, &receives, false, PORTION, round);
+            prefetch_packets(p, &sends, true, PORTION, round);
+            prefetch_packets(p, &receives, false, PORTION, round);
         }
         lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->fault);
     }

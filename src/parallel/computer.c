@@ -98,12 +98,13 @@ static void compile_on_thread(void *context, int32_t number) {
                                      .check = computer->checking ? &computer->check : NULL,
                                      .shift = computer->shift,
                                      .delays = computer->options->delays,
-                                     .near = computer->team || shares_memory(computer->options)};
+                                     .low_latency =
+                                         computer->team || shares_memory(computer->options)};
     result->status = lar_processor_create(&setting, schedule, p, &result->error);
     if (!result->status) lar_processor_scatter(p, computer->whole, computer->state);
 }
 
-static void meet_on_thread(void *context, int32_t number) {
+static void rendezvous_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     lar_thread_result *result = &computer->result[number];
     if (number % computer->threads != 0) return;
@@ -166,7 +167,7 @@ static lar_status open_processors(lar_computer *computer, bool *met, lar_error *
     lar_status status = first_failure(computer, error);
     if (status) return status;
     *met = true;
-    lar_thread_pool_run(computer->pool, meet_on_thread, computer);
+    lar_thread_pool_run(computer->pool, rendezvous_on_thread, computer);
     status = first_failure(computer, error);
     if (!status && computer->hosted < computer->division.grid.count)
         status = lar_control_create(computer->processor[0].comm, &computer->control, error);
@@ -192,7 +193,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
         lar_schedule_set_clear(&computer->division.schedules);
         computer->options = NULL;
     }
-    /* Only the meeting of processor zero takes the listener over. */
+    /* Only the rendezvous of processor zero takes the listener over. */
     if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
     if (status)
         lar_computer_destroy(computer);

@@ -235,7 +235,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
                          .check = setting->check};
     assignment a = {0};
     lar_status status = assign(schedule, setting, &a, error);
-    if (!status && setting->near)
+    if (!status && setting->low_latency)
         recover_in_one_sweep(&setting->whole->layout, &setting->whole->model->mesh, &a);
     lar_part part = {
         .threads = schedule->threads, .thread = a.thread, .batch = a.batch, .owner = a.owner};

@@ -97,7 +97,7 @@ typedef struct lar_processor_setting {
     lar_verification *check; /* or NULL */
     const size_t *shift;     /* as above; outlives the processor */
     uint64_t delays;         /* seed of random delays, 0: none */
-    bool near;               /* packets arrive within a fraction of a microsecond */
+    bool low_latency;        /* packets arrive within a fraction of a microsecond */
 } lar_processor_setting;
 
 /* Compiles a schedule that has been checked against the mesh (read or built). `comm` may be set

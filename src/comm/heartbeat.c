@@ -1,4 +1,4 @@
-#include "comm/watch.h"
+#include "comm/heartbeat.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,7 +14,7 @@
 #include "base/thread.h"
 #include "comm/socket.h"
 
-static const double BEAT = 0.1; /* between signs of life [s] */
+static const double HEARTBEAT = 0.1; /* between signs of life [s] */
 /* Silence that says that someone is lost, as a share of the timeout: the rest is for telling the
  * others. As long as can be, because on a busy machine threads may get no turn for a second. */
 static const double SILENCE = 0.75;
@@ -25,7 +25,7 @@ static const double SETTLE = 0.02;
 static const double REPORT_TIME = 0.05;
 static const double VERDICT_TIME = 0.2; /* how long a report waits for its verdict [s] */
 
-typedef enum frame_kind { FRAME_BEAT = 1, FRAME_LOST, FRAME_REPORT, FRAME_BYE } frame_kind;
+typedef enum frame_kind { FRAME_HEARTBEAT = 1, FRAME_LOST, FRAME_REPORT, FRAME_BYE } frame_kind;
 typedef struct frame {
     uint32_t kind;
     uint32_t spare;
@@ -40,7 +40,7 @@ typedef struct link_state {
     frame partial;
 } link_state;
 
-typedef struct lar_comm_watch {
+typedef struct lar_comm_heartbeat {
     lar_comm *comm;
     pthread_t thread;
     bool runs;
@@ -56,32 +56,32 @@ typedef struct lar_comm_watch {
     bool said_bye;
     link_state *links;     /* [count] */
     struct pollfd *polled; /* [count + 1] */
-} lar_comm_watch;
+} lar_comm_heartbeat;
 
-static bool is_open(const lar_comm_watch *w, int32_t p) {
+static bool is_open(const lar_comm_heartbeat *w, int32_t p) {
     return w->comm->links[p] >= 0;
 }
 
-static void shut(lar_comm_watch *w, int32_t p) {
+static void shut(lar_comm_heartbeat *w, int32_t p) {
     close(w->comm->links[p]);
     w->comm->links[p] = -1;
 }
 
-static void decide(lar_comm_watch *w, uint64_t verdict) {
+static void decide(lar_comm_heartbeat *w, uint64_t verdict) {
     uint64_t nobody = 0;
     __atomic_compare_exchange_n(w->comm->verdict, &nobody, verdict, false, __ATOMIC_ACQ_REL,
                                 __ATOMIC_ACQUIRE);
 }
 
 /* Frames are tiny: a socket that does not take one is as good as dead, and its silence tells. */
-static void send_frame(lar_comm_watch *w, int32_t p, uint32_t kind, uint64_t verdict) {
+static void send_frame(lar_comm_heartbeat *w, int32_t p, uint32_t kind, uint64_t verdict) {
     frame f = {.kind = kind,
                .verdict = verdict,
                .step = __atomic_load_n(&w->reported_step, __ATOMIC_RELAXED)};
     if (is_open(w, p)) lar_socket_send(w->comm->links[p], &f, sizeof f, 0);
 }
 
-static void send_all(lar_comm_watch *w, uint32_t kind, uint64_t verdict) {
+static void send_all(lar_comm_heartbeat *w, uint32_t kind, uint64_t verdict) {
     for (int32_t p = 0; p < w->comm->options.count; p++) send_frame(w, p, kind, verdict);
 }
 
@@ -91,7 +91,7 @@ static int32_t accused(const frame *f) {
 
 /* Zero: keeps the report from the earliest step. Of one step, the report of an accused processor
  * goes before the one that accuses it. What a processor says of itself is final. */
-static void weigh(lar_comm_watch *w, int32_t reporter, const frame *f) {
+static void weigh(lar_comm_heartbeat *w, int32_t reporter, const frame *f) {
     if (f->verdict >> 32 != LAR_LOSS_STALLED) decide(w, f->verdict);
     bool first = w->report.kind == 0;
     if (first) w->judged = lar_comm_now() + REPORT_TIME;
@@ -100,7 +100,7 @@ static void weigh(lar_comm_watch *w, int32_t reporter, const frame *f) {
     w->report = *f;
 }
 
-static void take_frame(lar_comm_watch *w, int32_t p, const frame *f) {
+static void take_frame(lar_comm_heartbeat *w, int32_t p, const frame *f) {
     switch (f->kind) {
     case FRAME_LOST: /* from zero */
         if (f->verdict) decide(w, f->verdict);
@@ -118,7 +118,7 @@ static void take_frame(lar_comm_watch *w, int32_t p, const frame *f) {
     }
 }
 
-static void read_link(lar_comm_watch *w, int32_t p, double now) {
+static void read_link(lar_comm_heartbeat *w, int32_t p, double now) {
     link_state *link = &w->links[p];
     while (is_open(w, p)) {
         ssize_t got = recv(w->comm->links[p], (char *)&link->partial + link->filled,
@@ -141,14 +141,14 @@ static void read_link(lar_comm_watch *w, int32_t p, double now) {
     }
 }
 
-/* Sleeps until something arrives or the next beat is due, and reads it. */
-static void listen_to_all(lar_comm_watch *w, double next_beat) {
+/* Sleeps until something arrives or the next heartbeat is due, and reads it. */
+static void listen_to_all(lar_comm_heartbeat *w, double next_heartbeat) {
     nfds_t n = 0;
     w->polled[n++] = (struct pollfd){.fd = w->wake[0], .events = POLLIN};
     for (int32_t p = 0; p < w->comm->options.count; p++)
         if (is_open(w, p))
             w->polled[n++] = (struct pollfd){.fd = w->comm->links[p], .events = POLLIN};
-    double left = next_beat - lar_comm_now();
+    double left = next_heartbeat - lar_comm_now();
     poll(w->polled, n, left > 0 ? (int)(1e3 * left) + 1 : 0);
     char bytes[64];
     if (w->polled[0].revents && read(w->wake[0], bytes, sizeof bytes) < 0) return;
@@ -156,13 +156,13 @@ static void listen_to_all(lar_comm_watch *w, double next_beat) {
     for (int32_t p = 0; p < w->comm->options.count; p++) read_link(w, p, now);
 }
 
-static bool all_gone(const lar_comm_watch *w) {
+static bool all_gone(const lar_comm_heartbeat *w) {
     for (int32_t p = 0; p < w->comm->options.count; p++)
         if (is_open(w, p)) return false;
     return true;
 }
 
-static void look_for_losses(lar_comm_watch *w, double now) {
+static void look_for_losses(lar_comm_heartbeat *w, double now) {
     if (w->ended >= 0 && now >= w->settled) {
         bool cut_off = w->comm->options.self == 0 && w->comm->options.count > 2 && all_gone(w);
         decide(w, lar_comm_verdict(cut_off ? 0 : w->ended, LAR_LOSS_ENDED));
@@ -178,7 +178,7 @@ static void look_for_losses(lar_comm_watch *w, double now) {
             decide(w, lar_comm_verdict(p, LAR_LOSS_SILENT));
 }
 
-static void pass_on(lar_comm_watch *w) {
+static void pass_on(lar_comm_heartbeat *w) {
     bool zero = w->comm->options.self == 0;
     uint64_t reported = __atomic_exchange_n(&w->reported, 0, __ATOMIC_ACQ_REL);
     frame own = {.kind = FRAME_REPORT,
@@ -196,21 +196,21 @@ static void pass_on(lar_comm_watch *w) {
     send_all(w, zero ? FRAME_LOST : FRAME_REPORT, verdict);
 }
 
-static void *watch_thread(void *context) {
-    lar_comm_watch *w = context;
+static void *run_heartbeat(void *context) {
+    lar_comm_heartbeat *w = context;
     lar_pin_nowhere(); /* not where the one that it speaks for computes without a pause */
-    double next_beat = lar_comm_now(), last = next_beat, give_up = 0;
+    double next_heartbeat = lar_comm_now(), last = next_heartbeat, give_up = 0;
     for (;;) {
         double now = lar_comm_now();
         /* Held up for longer than a few beats: what the others said may still lie unread. */
-        if (now - last > 3 * BEAT)
+        if (now - last > 3 * HEARTBEAT)
             for (int32_t p = 0; p < w->comm->options.count; p++) w->links[p].heard = now;
         last = now;
-        if (now >= next_beat) {
-            send_all(w, FRAME_BEAT, 0);
-            next_beat = now + BEAT;
+        if (now >= next_heartbeat) {
+            send_all(w, FRAME_HEARTBEAT, 0);
+            next_heartbeat = now + HEARTBEAT;
         }
-        double until = next_beat;
+        double until = next_heartbeat;
         if (w->ended >= 0 && w->settled < until) until = w->settled;
         if (w->report.kind && w->judged < until) until = w->judged;
         listen_to_all(w, until);
@@ -227,10 +227,10 @@ static void *watch_thread(void *context) {
     }
 }
 
-lar_status lar_watch_start(lar_comm *comm, lar_error *error) {
+lar_status lar_heartbeat_start(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
     size_t count = (size_t)comm->options.count;
-    lar_comm_watch *w = comm->watch = lar_calloc(1, sizeof *w);
+    lar_comm_heartbeat *w = comm->heartbeat = lar_calloc(1, sizeof *w);
     if (!w) return lar_fail_memory(error, sizeof *w, "the watch over processors");
     w->comm = comm;
     w->wake[0] = w->wake[1] = -1;
@@ -241,7 +241,7 @@ lar_status lar_watch_start(lar_comm *comm, lar_error *error) {
     double now = lar_comm_now();
     for (size_t p = 0; p < count; p++) w->links[p].heard = now;
     if (pipe2(w->wake, O_CLOEXEC | O_NONBLOCK) != 0 ||
-        lar_thread_start(&w->thread, watch_thread, w) != 0)
+        lar_thread_start(&w->thread, run_heartbeat, w) != 0)
         return lar_fail(error, LAR_ERROR_IO,
                         "the thread that watches the other processors cannot be started; raise the "
                         "limits on threads and open files");
@@ -249,13 +249,13 @@ lar_status lar_watch_start(lar_comm *comm, lar_error *error) {
     return LAR_OK;
 }
 
-static void wake_up(lar_comm_watch *w) {
+static void wake_up(lar_comm_heartbeat *w) {
     /* A full pipe wakes as well. */
     if (write(w->wake[1], "", 1) < 0) return;
 }
 
-void lar_watch_report(lar_comm *comm, int32_t processor, lar_comm_loss loss, uint64_t step) {
-    lar_comm_watch *w = comm->watch;
+void lar_heartbeat_report(lar_comm *comm, int32_t processor, lar_comm_loss loss, uint64_t step) {
+    lar_comm_heartbeat *w = comm->heartbeat;
     __atomic_store_n(&w->reported_step, step, __ATOMIC_RELAXED);
     __atomic_store_n(&w->reported, lar_comm_verdict(processor, loss), __ATOMIC_RELEASE);
     wake_up(w);
@@ -264,8 +264,8 @@ void lar_watch_report(lar_comm *comm, int32_t processor, lar_comm_loss loss, uin
         nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
-void lar_watch_stop(lar_comm *comm) {
-    lar_comm_watch *w = comm->watch;
+void lar_heartbeat_stop(lar_comm *comm) {
+    lar_comm_heartbeat *w = comm->heartbeat;
     if (!w) return;
     if (w->runs) {
         __atomic_store_n(&w->leaving, 1, __ATOMIC_RELEASE);
@@ -277,5 +277,5 @@ void lar_watch_stop(lar_comm *comm) {
     free(w->links);
     free(w->polled);
     free(w);
-    comm->watch = NULL;
+    comm->heartbeat = NULL;
 }

@@ -1,4 +1,4 @@
-/* Bringing cache lines near before they are needed: a line that another core has written or read
+/* Fetching cache lines before they are needed: a line that another core has written or read
  * last takes some 0.1 us to come, and packets have dozens of them. */
 #include "comm/backend.h"
 

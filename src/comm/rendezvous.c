@@ -1,4 +1,4 @@
-#include "comm/meeting.h"
+#include "comm/rendezvous.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -42,7 +42,7 @@ static lar_status lost(int32_t p, lar_error *error) {
 static const double LOOK = 0.05;
 static const double LATE = 1; /* for guests after a refusal [s] */
 
-lar_status lar_meeting_check(const lar_comm *comm, lar_error *error) {
+lar_status lar_rendezvous_check(const lar_comm *comm, lar_error *error) {
     for (int32_t p = 0; p < comm->options.count; p++)
         if (comm->links[p] >= 0 && lar_socket_ended(comm->links[p])) return lost(p, error);
     struct pollfd zero = {.fd = comm->links[0], .events = POLLIN};
@@ -72,14 +72,14 @@ static lar_status deaf(const lar_comm *comm, int reason, lar_error *error) {
                     (int)comm->options.self, strerror(-reason));
 }
 
-lar_status lar_meeting_accept(const lar_comm *comm, int listener, double deadline, int *guest,
-                              lar_error *error) {
+lar_status lar_rendezvous_accept(const lar_comm *comm, int listener, double deadline, int *guest,
+                                 lar_error *error) {
     *guest = -1;
     for (;;) {
         *guest = lar_socket_accept(listener, next_look(deadline));
         if (*guest < LAR_SOCKET_NOBODY) return deaf(comm, *guest, error);
         if (*guest >= 0 || lar_comm_now() > deadline) return LAR_OK;
-        lar_status status = lar_meeting_check(comm, error);
+        lar_status status = lar_rendezvous_check(comm, error);
         if (status) return status;
     }
 }
@@ -146,7 +146,7 @@ static lar_status receive_guests(lar_comm *comm, const hello *own, double deadli
     for (*missing = comm->options.count - 1; *missing > 0;) {
         int guest;
         lar_status status =
-            lar_meeting_accept(comm, comm->options.listener, deadline, &guest, error);
+            lar_rendezvous_accept(comm, comm->options.listener, deadline, &guest, error);
         if (status) return status;
         if (guest < 0) return not_all_came(comm, error);
         hello h = {.magic = 0};
@@ -212,7 +212,7 @@ static lar_status tell_all(lar_comm *comm, bool addresses, double deadline, lar_
     return deaf ? lost(deaf, error) : LAR_OK;
 }
 
-static lar_status host_meeting(lar_comm *comm, const hello *own, lar_error *error) {
+static lar_status host_rendezvous(lar_comm *comm, const hello *own, lar_error *error) {
     double deadline = start_deadline(comm);
     lar_error why = {.status = LAR_OK};
     if (getrandom(&comm->token, sizeof comm->token, 0) != sizeof comm->token)
@@ -251,7 +251,7 @@ static lar_status hear_zero(lar_comm *comm, note *n, double deadline, lar_error 
     return LAR_OK;
 }
 
-static lar_status join_meeting(lar_comm *comm, const hello *own, lar_error *error) {
+static lar_status join_rendezvous(lar_comm *comm, const hello *own, lar_error *error) {
     /* Zero's own limit passes first, so that its sentence arrives. */
     double deadline = start_deadline(comm) + 1;
     lar_status status = lar_socket_connect(comm->options.master, deadline, &comm->links[0], error);
@@ -269,7 +269,7 @@ static lar_status join_meeting(lar_comm *comm, const hello *own, lar_error *erro
 
 /* ---- both ---------------------------------------------------------------------------------- */
 
-lar_status lar_meeting_gather(lar_comm *comm, lar_error *error) {
+lar_status lar_rendezvous_gather(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
     hello own = {.magic = MAGIC,
                  .identity = comm->options.identity,
@@ -278,7 +278,7 @@ lar_status lar_meeting_gather(lar_comm *comm, lar_error *error) {
                  .address = comm->addresses[comm->options.self]};
     snprintf(own.version, sizeof own.version, "%s", lar_version());
     snprintf(own.backend, sizeof own.backend, "%s", comm->backend->name);
-    return own.self == 0 ? host_meeting(comm, &own, error) : join_meeting(comm, &own, error);
+    return own.self == 0 ? host_rendezvous(comm, &own, error) : join_rendezvous(comm, &own, error);
 }
 
 /* Until there is something to read from p, or the deadline; fails when somebody has gone. */
@@ -287,7 +287,7 @@ static lar_status wait_to_read(const lar_comm *comm, int32_t p, double deadline,
     for (;;) {
         lar_socket_poll(link.fd, POLLIN, next_look(deadline));
         if (poll(&link, 1, 0) == 1 || lar_comm_now() > deadline) return LAR_OK;
-        lar_status status = lar_meeting_check(comm, error);
+        lar_status status = lar_rendezvous_check(comm, error);
         if (status) return status;
     }
 }
@@ -306,7 +306,8 @@ static lar_status gather_ready(lar_comm *comm, const lar_error *own, lar_error *
             lar_fail(&why, LAR_ERROR_PEER, "%s", n.why.message);
         }
     }
-    /* Who cannot be told has died since; some have begun already, and the watch will find it. */
+    /* Who cannot be told has died since; some have begun already, and the heartbeat will find it.
+     */
     if (!why.status) tell_all(comm, false, deadline, NULL);
     if (why.status) {
         refuse_all(comm, &why);
@@ -315,7 +316,7 @@ static lar_status gather_ready(lar_comm *comm, const lar_error *own, lar_error *
     return why.status;
 }
 
-lar_status lar_meeting_ready(lar_comm *comm, const lar_error *own, lar_error *error) {
+lar_status lar_rendezvous_ready(lar_comm *comm, const lar_error *own, lar_error *error) {
     if (comm->options.count == 1 || comm->options.self == 0) return gather_ready(comm, own, error);
     note n = {.magic = MAGIC};
     if (own) n = refusal(own);
