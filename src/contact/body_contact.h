@@ -53,10 +53,11 @@ static inline double lar_most(double most, double other) {
     return other <= most || isnan(most) ? most : other;
 }
 
-/* Of a contact node on a board: place, velocity, level. */
+/* Of a contact node in the exchange buffer: place, velocity, level. */
 enum { LAR_PLACE_VALUES = 7 };
 
-/* Where the contact nodes are: in the state of whoever has all of them, or on a board. */
+/* Where the contact nodes are: in the state of whoever has all of them, or in the exchange buffer.
+ */
 typedef struct lar_contact_view {
     const int32_t *value;                    /* [contact nodes] 4 * local node, -1: not here */
     const double (*place)[LAR_PLACE_VALUES]; /* NULL, or by slot */

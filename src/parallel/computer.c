@@ -266,7 +266,7 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
-    if (p->board) lar_contact_watch(worker, stop - done);
+    if (p->exchange) lar_contact_watch(worker, stop - done);
     if (worker->fault.kind && !*faulted) {
         *faulted = true;
         lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
@@ -287,7 +287,7 @@ static void advance_thread(void *context, int32_t number) {
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
     bool faulted = false;
-    if (p->board) lar_contact_publish(worker, worker->round + 1);
+    if (p->exchange) lar_contact_publish(worker, worker->round + 1);
     while (worker->state.step < computer->until) {
         uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
         if (stop && worker->state.step >= stop) break;

@@ -73,7 +73,7 @@ static void values_of(const lar_computer *computer, int32_t n, const double **u,
     } else {
         const lar_processor *p = &computer->processor[map->reporter[n]];
         state = &p->worker[0].state;
-        value = (size_t)p->board->value[n];
+        value = (size_t)p->exchange->value[n];
     }
     *u = state->u + value;
     *v = state->v + value;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "parallel/contact_exchange.h"
-#include "parallel/parcel.h"
+#include "parallel/thread_reduction.h"
 
 /* Who does what, by global element and node, while a schedule is compiled. */
 typedef struct assignment {
@@ -93,9 +93,9 @@ static lar_status compile_batches(const lar_schedule *schedule, lar_processor *p
                                   lar_error *error) {
     size_t batches = (size_t)schedule->batch_count, waits = (size_t)schedule->wait_count;
     p->batch = lar_calloc(batches, sizeof *p->batch);
-    p->mark = lar_calloc_aligned(batches, sizeof *p->mark);
+    p->sequence = lar_calloc_aligned(batches, sizeof *p->sequence);
     p->wait = lar_calloc(waits, sizeof *p->wait);
-    if (!p->batch || !p->mark || !p->wait)
+    if (!p->batch || !p->sequence || !p->wait)
         return lar_fail_memory(error, batches * sizeof *p->batch, "the batches of a processor");
     p->batch_count = schedule->batch_count;
     if (waits) memcpy(p->wait, schedule->wait, waits * sizeof *p->wait);
@@ -216,9 +216,9 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
         status = create_worker(schedule, setting, a, t, p, error);
     const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
     if (!status && !p->check)
-        status = lar_contact_board_create(&setting->whole->interactions.body_contact, &share,
-                                          setting->reporter, schedule->grid.count, p, error);
-    return status ? status : lar_parcels_create(schedule, a->thread, p, error);
+        status = lar_contact_exchange_create(&setting->whole->interactions.body_contact, &share,
+                                             setting->reporter, schedule->grid.count, p, error);
+    return status ? status : lar_thread_reduction_create(schedule, a->thread, p, error);
 }
 
 /* Between two runs a processor that exchanges asks for some memory of its packets (batch.c): often
@@ -252,11 +252,11 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 }
 
 void lar_processor_destroy(lar_processor *p) {
-    lar_contact_board_destroy(p);
+    lar_contact_exchange_destroy(p);
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
         lar_interactions_destroy(&worker->interactions);
-        lar_parcels_destroy(worker);
+        lar_thread_reduction_destroy(worker);
         free(worker->gather);
         if (t == 0)
             lar_state_destroy(&worker->state);
@@ -266,7 +266,7 @@ void lar_processor_destroy(lar_processor *p) {
     lar_domain_destroy(&p->domain);
     free(p->worker);
     free(p->batch);
-    free(p->mark);
+    free(p->sequence);
     free(p->packet);
     free(p->value);
     free(p->wait);
@@ -317,12 +317,12 @@ void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
         continue;
 }
 
-lar_status lar_processor_await(const lar_processor *p, const uint64_t *mark, uint64_t round,
+lar_status lar_processor_await(const lar_processor *p, const uint64_t *sequence, uint64_t round,
                                lar_error *error) {
     enum { POLLS = 50 };
     for (;;) {
         for (int i = 0; i < POLLS; i++)
-            if (__atomic_load_n(mark, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
+            if (__atomic_load_n(sequence, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
         /* The other thread itself has a deadline in everything that it waits for. */
         if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
             return lar_fail(error, LAR_ERROR_PEER,

@@ -1,4 +1,4 @@
-#include "parallel/parcel.h"
+#include "parallel/thread_reduction.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -87,36 +87,36 @@ static lar_status find_use(const lar_schedule *schedule, const int32_t *thread,
 }
 
 /* Whether a node that `owner` moves is summed in place. */
-static bool is_joint(const node_use *use, lar_lid n, int32_t owner) {
+static bool is_shared(const node_use *use, lar_lid n, int32_t owner) {
     unsigned others = ~(1u << owner);
     return (use->replaced[n] && use->adds[n] & others) ||
            (use->adds[n] & ~use->reads[n] & others) != 0;
 }
 
 static bool is_packed(const node_use *use, lar_lid n, int32_t from, int32_t owner) {
-    return use->adds[n] >> from & 1 && !is_joint(use, n, owner);
+    return use->adds[n] >> from & 1 && !is_shared(use, n, owner);
 }
 
-static lar_status create_parcel(const lar_schedule *schedule, const node_use *use, int32_t from,
+static lar_status create_buffer(const lar_schedule *schedule, const node_use *use, int32_t from,
                                 int32_t to, lar_processor *p, lar_error *error) {
-    lar_parcel *parcel = &p->worker[from].parcel[to];
+    lar_reduction_buffer *reduction = &p->worker[from].reduction[to];
     const lar_condition_context *moved = &p->worker[to].context;
-    *parcel = (lar_parcel){.batch = batch_waited_for(schedule, use->known, from, to)};
+    *reduction = (lar_reduction_buffer){.batch = batch_waited_for(schedule, use->known, from, to)};
     for (lar_lid n = moved->first; n < moved->end; n++)
-        parcel->count += is_packed(use, n, from, to);
-    if (parcel->count > 0 && parcel->batch < 0)
+        reduction->count += is_packed(use, n, from, to);
+    if (reduction->count > 0 && reduction->batch < 0)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "the schedule of processor %d lets thread %d move nodes without waiting "
                         "for thread %d, which has elements there; make the schedules anew with "
                         "lariat partition",
                         (int)p->self, (int)to, (int)from);
-    parcel->value = lar_calloc((size_t)parcel->count, sizeof *parcel->value);
-    parcel->vector = lar_calloc_aligned(3 * (size_t)parcel->count, sizeof *parcel->vector);
-    if (!parcel->value || !parcel->vector)
-        return lar_fail_memory(error, 28 * (size_t)parcel->count, "sums between threads");
+    reduction->value = lar_calloc((size_t)reduction->count, sizeof *reduction->value);
+    reduction->vector = lar_calloc_aligned(3 * (size_t)reduction->count, sizeof *reduction->vector);
+    if (!reduction->value || !reduction->vector)
+        return lar_fail_memory(error, 28 * (size_t)reduction->count, "sums between threads");
     int32_t count = 0;
     for (lar_lid n = moved->first; n < moved->end; n++)
-        if (is_packed(use, n, from, to)) parcel->value[count++] = 4 * n;
+        if (is_packed(use, n, from, to)) reduction->value[count++] = 4 * n;
     return LAR_OK;
 }
 
@@ -126,26 +126,26 @@ static lar_status join_worker(const lar_schedule *schedule, const node_use *use,
     lar_worker *worker = &p->worker[thread];
     const lar_condition_context *own = &worker->context;
     size_t nodes = (size_t)p->domain.layout.node_padded;
-    worker->parcel = lar_calloc((size_t)p->thread_count, sizeof *worker->parcel);
-    worker->joint = lar_calloc(nodes, sizeof *worker->joint);
+    worker->reduction = lar_calloc((size_t)p->thread_count, sizeof *worker->reduction);
+    worker->shared_node = lar_calloc(nodes, sizeof *worker->shared_node);
     worker->foreign = lar_calloc(nodes, sizeof *worker->foreign);
-    if (!worker->parcel || !worker->joint || !worker->foreign)
+    if (!worker->reduction || !worker->shared_node || !worker->foreign)
         return lar_fail_memory(error, 8 * nodes, "sums between threads");
     for (lar_lid n = 0; n < (lar_lid)nodes; n++) {
         bool moved = n >= own->first && n < own->end;
-        if (moved && is_joint(use, n, thread)) worker->joint[worker->joint_count++] = 4 * n;
+        if (moved && is_shared(use, n, thread)) worker->shared_node[worker->shared_count++] = 4 * n;
         if (!moved && use->reads[n] >> thread & 1) worker->foreign[worker->foreign_count++] = 4 * n;
     }
     lar_status status = LAR_OK;
     for (int32_t to = 0; to < p->thread_count && !status; to++) {
-        worker->parcel[to].batch = -1;
-        if (to != thread) status = create_parcel(schedule, use, thread, to, p, error);
+        worker->reduction[to].batch = -1;
+        if (to != thread) status = create_buffer(schedule, use, thread, to, p, error);
     }
     return status;
 }
 
-lar_status lar_parcels_create(const lar_schedule *schedule, const int32_t *thread, lar_processor *p,
-                              lar_error *error) {
+lar_status lar_thread_reduction_create(const lar_schedule *schedule, const int32_t *thread,
+                                       lar_processor *p, lar_error *error) {
     node_use use = {0};
     lar_status status = find_use(schedule, thread, p, &use, error);
     for (int32_t t = 0; t < p->thread_count && !status; t++)
@@ -154,14 +154,14 @@ lar_status lar_parcels_create(const lar_schedule *schedule, const int32_t *threa
     return status;
 }
 
-void lar_parcels_destroy(lar_worker *worker) {
-    for (int32_t to = 0; worker->parcel && to < worker->processor->thread_count; to++) {
-        free(worker->parcel[to].value);
-        free(worker->parcel[to].vector);
+void lar_thread_reduction_destroy(lar_worker *worker) {
+    for (int32_t to = 0; worker->reduction && to < worker->processor->thread_count; to++) {
+        free(worker->reduction[to].value);
+        free(worker->reduction[to].vector);
     }
-    free(worker->parcel);
-    free(worker->joint);
+    free(worker->reduction);
+    free(worker->shared_node);
     free(worker->foreign);
-    worker->parcel = NULL;
-    worker->joint = worker->foreign = NULL;
+    worker->reduction = NULL;
+    worker->shared_node = worker->foreign = NULL;
 }
