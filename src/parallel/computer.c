@@ -459,8 +459,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     return LAR_OK;
 }
 
-static lar_status obey(lar_computer *computer, const lar_order *order, const void *payload,
-                       size_t bytes, lar_error *error) {
+static lar_status execute(lar_computer *computer, const lar_order *order, const void *payload,
+                          size_t bytes, lar_error *error) {
     const lar_processor *p = &computer->processor[0];
     lar_control *control = computer->control;
     lar_answer answer = {0};
@@ -480,7 +480,7 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
     if (order->kind == LAR_ORDER_SCATTER)
         status = lar_computer_take_state(computer, order->argument, payload, bytes, error);
     else if (order->kind == LAR_ORDER_CONTACT)
-        status = lar_contact_obey(computer, payload, bytes, error);
+        status = lar_contact_execute(computer, payload, bytes, error);
     else
         status = refuse_order(error);
     return status ? status : lar_control_answer(control, &answer, NULL, 0, error);
@@ -492,12 +492,12 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error) {
         lar_order order;
         const void *payload;
         size_t bytes;
-        status = lar_control_obey(computer->control, &order, &payload, &bytes, error);
+        status = lar_control_await(computer->control, &order, &payload, &bytes, error);
         if (status) break;
         if (order.kind == LAR_ORDER_FINISH)
             computer->finished = true;
         else
-            status = obey(computer, &order, payload, bytes, error);
+            status = execute(computer, &order, payload, bytes, error);
     }
     if (status) computer->broken = true;
     return status;

@@ -116,8 +116,8 @@ uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
 /* After a stretch of so many steps. */
 void lar_contact_count(lar_computer *computer, uint64_t steps);
 /* Another process: takes what processor zero found. */
-lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
-                            lar_error *error);
+lar_status lar_contact_execute(lar_computer *computer, const void *payload, size_t bytes,
+                               lar_error *error);
 
 /* The sentence for calls after a failure. */
 lar_status lar_computer_refuse(lar_error *error);

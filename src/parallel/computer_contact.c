@@ -168,8 +168,8 @@ static bool list_fits(const lar_contact_surface *surface, const lar_contact_list
     return from == list->face_count;
 }
 
-lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
-                            lar_error *error) {
+lar_status lar_contact_execute(lar_computer *computer, const void *payload, size_t bytes,
+                               lar_error *error) {
     const lar_contact_map *map = &computer->contact.map;
     list_head head = {0};
     if (bytes >= sizeof head) memcpy(&head, payload, sizeof head);

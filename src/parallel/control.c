@@ -130,8 +130,8 @@ static lar_status await_part(lar_control *control, order_head *head, const void 
     return LAR_OK;
 }
 
-lar_status lar_control_obey(lar_control *control, lar_order *order, const void **payload,
-                            size_t *bytes, lar_error *error) {
+lar_status lar_control_await(lar_control *control, lar_order *order, const void **payload,
+                             size_t *bytes, lar_error *error) {
     order_head head;
     lar_status status = await_part(control, &head, payload, error);
     if (status) return status;

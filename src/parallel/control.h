@@ -85,8 +85,8 @@ lar_status lar_control_hear(lar_control *control, int32_t p, const lar_answer **
 /* The others: wait for an order, however long. *payload, aligned to 8, has *bytes bytes and is
  * valid until the next order. Then answer, with at most LAR_PART_BYTES of payload;
  * answer->bytes is set here. */
-lar_status lar_control_obey(lar_control *control, lar_order *order, const void **payload,
-                            size_t *bytes, lar_error *error);
+lar_status lar_control_await(lar_control *control, lar_order *order, const void **payload,
+                             size_t *bytes, lar_error *error);
 lar_status lar_control_answer(lar_control *control, const lar_answer *answer, const void *payload,
                               size_t bytes, lar_error *error);
 

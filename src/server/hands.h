@@ -59,11 +59,11 @@ typedef struct lar_hands {
 
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context);
 
-/* Grab, pull, release: `wish` is of these kinds. What is refused is told. */
-void lar_hands_wish(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now);
+/* Grab, pull, release: `command` is of these kinds. What is refused is told. */
+void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *command, int64_t now);
 /* Moves an instrument; an error when it is another's, with who it is. */
-lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
-                          lar_error *error);
+lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_command *command,
+                          int64_t now, lar_error *error);
 /* Whether it may be taken away: nobody else moves it. */
 lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool, int64_t now,
                                 lar_error *error);

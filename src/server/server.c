@@ -46,7 +46,7 @@ void lar_server_take_status(lar_server *server) {
         if (viewer->closing == LAR_CLOSE_NOT) lar_viewer_wants(viewer, LAR_DUE_STATUS);
 }
 
-/* Whether a viewer's wish for a picture is to be granted now. */
+/* Whether a viewer's request for a picture is answered now. */
 static bool wants_picture(const lar_viewer *viewer, const lar_session_status *status, int64_t now) {
     if (!viewer->asks || viewer->closing != LAR_CLOSE_NOT || (viewer->due & LAR_DUE_PICTURE))
         return false;

@@ -109,14 +109,14 @@ static bool may_speak(lar_viewer *viewer) {
 }
 
 static void hear(lar_server *server, lar_viewer *viewer) {
-    lar_wish wish;
+    lar_command command;
     char reason[LAR_REASON_BYTES];
     lar_close wrong =
-        lar_wish_read(viewer->in, viewer->in_length, server->session->tools, &wish, reason);
+        lar_command_read(viewer->in, viewer->in_length, server->session->tools, &command, reason);
     if (wrong)
         lar_viewer_close(viewer, wrong, reason);
     else
-        lar_server_act(server, viewer, &wish);
+        lar_server_act(server, viewer, &command);
 }
 
 /* A part of a message; they come in pieces, however they were sent. */

@@ -4,7 +4,7 @@
  *                        (checked: Host,|
  *                         Origin, path) '--> upgrade: socket.c, a viewer
  *
- *     viewers --wishes--> hands, session, work        socket.c: what comes in
+ *     viewers -commands-> hands, session, work        socket.c: what comes in
  *     viewers <-- hello, surface, status, frames --   send.c: what goes out
  *
  * One thread serves all connections (libwebsockets' loop); work.h has the second one, for
@@ -213,14 +213,14 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name);
 /* Ends a viewer's recording that has grown as large as may be. */
 void lar_server_watch_recording(lar_server *server);
 
-void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_command *command);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
 
 /* ---- inspect.c ----------- */
 
 /* A viewer's question for values, answered when its turn comes; it replaces one that waits. */
-void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_command *command);
 void lar_server_ask_readings(lar_server *server);
 void lar_server_tell_reading(lar_server *server, const lar_job_end *end);
 

@@ -18,11 +18,11 @@
 enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
 
 typedef struct lar_job {
-    lar_wish_kind kind; /* reset, save, load, record, replay, inspect, gravity, ... */
+    lar_command_kind kind; /* reset, save, load, record, replay, inspect, gravity, ... */
     uint64_t viewer;
     bool on;                      /* record */
     lar_question question;        /* inspect */
-    lar_wish setting;             /* gravity, damping, stiffness, add_tool, remove_tool */
+    lar_command setting;          /* gravity, damping, stiffness, add_tool, remove_tool */
     char name[LAR_NAME_MOST + 1]; /* of the file, without its folder */
     char path[LAR_PATH_MOST];
 } lar_job;

@@ -169,13 +169,13 @@ static lar_status go_back(lar_session *session, lar_kept_state *kept, lar_error 
     if (!kept) {
         status = lar_simulation_reset(session->simulation, error);
         if (!status)
-            lar_session_note(session,
-                             &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
+            lar_session_put_record(
+                session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
         return status;
     }
     open_hands(session, &kept->tools);
     status = lar_simulation_go_back(session->simulation, &kept->state, &kept->tools, error);
-    if (!status) status = lar_session_note_state(session, error);
+    if (!status) status = lar_session_record_state(session, error);
     return status ? status : keep_spares(session, spare, error);
 }
 

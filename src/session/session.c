@@ -201,7 +201,7 @@ lar_status lar_session_close(lar_session *session, lar_error *error) {
         pthread_mutex_unlock(&session->requests.lock);
         pthread_join(session->thread, NULL);
     }
-    lar_session_note_end(session);
+    lar_session_record_end(session);
     lar_status status = lar_recorder_close(session->recorder, error);
     destroy(session);
     return status;

@@ -105,7 +105,7 @@ lar_recording_header lar_session_recording_header(const lar_session *session);
  * none. */
 
 void *lar_session_run(void *session);
-void lar_session_obey(lar_session *session, const lar_request *request);
+void lar_session_execute(lar_session *session, const lar_request *request);
 /* The simulation is somewhere else now, and the run goes on from there. */
 lar_status lar_session_arrive(lar_session *session, lar_error *error);
 /* Plays from now on; rests; stops, because the run broke. */
@@ -126,11 +126,11 @@ void lar_session_publish(lar_session *session, bool quantiles);
 /* Sets it now, and in the recording. */
 lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error);
 /* Into the recording, when there is one. */
-void lar_session_note(lar_session *session, const lar_record *record);
+void lar_session_put_record(lar_session *session, const lar_record *record);
 /* The hash of this moment; the state that the simulation was put into; the end. */
-void lar_session_note_hash(lar_session *session);
-lar_status lar_session_note_state(lar_session *session, lar_error *error);
-void lar_session_note_end(lar_session *session);
+void lar_session_record_hash(lar_session *session);
+lar_status lar_session_record_state(lar_session *session, lar_error *error);
+void lar_session_record_end(lar_session *session);
 
 /* The force on the hand changes as fast as the tool's device allows, where it says so. */
 void lar_session_take_rate(lar_session_tool *tool);

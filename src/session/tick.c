@@ -155,7 +155,7 @@ static void tick(lar_session *session) {
     serve_snapshots(session);
     if (session->status.recording &&
         session->good_step - session->hashed >= session->options.hash_every)
-        lar_session_note_hash(session);
+        lar_session_record_hash(session);
     if (session->status.state == LAR_SESSION_PLAYING && lar_session_keep_state(session, &error))
         lar_session_stop(session, &error);
     if (!session->stepping) return;
@@ -165,10 +165,10 @@ static void tick(lar_session *session) {
 
 /* ---- the thread ---------------------------------------------------------------------------- */
 
-static void obey_requests(lar_session *session) {
+static void execute_requests(lar_session *session) {
     lar_request request;
     while (!session->ended && lar_requests_next(&session->requests, &request)) {
-        lar_session_obey(session, &request);
+        lar_session_execute(session, &request);
         if (request.answer) lar_requests_answer(&session->requests, request.answer);
     }
 }
@@ -203,7 +203,7 @@ static void wait_for_tick(lar_session *session) {
         serve_snapshots(session);
         lar_requests_sleep(&session->requests, snapshot_is_wanted, session,
                            pace->deadline.due - FAR);
-        obey_requests(session);
+        execute_requests(session);
     }
     if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);
 }
@@ -215,7 +215,7 @@ void *lar_session_run(void *argument) {
     lar_clock_be_prompt();
     if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
     while (!session->ended) {
-        obey_requests(session);
+        execute_requests(session);
         if (session->ended) break;
         if (session->status.state == LAR_SESSION_PLAYING) {
             if (!session->player)

@@ -99,11 +99,12 @@ static lar_status send_tool(lar_session *session, int32_t i, lar_error *error) {
         lar_simulation_tool_move(session->simulation, i, &tool->pose, session->tick_steps, error);
     if (!status) {
         tool->sent = tool->pose;
-        lar_session_note(session, &(lar_record){.kind = LAR_RECORD_MOVE,
-                                                .step = lar_simulation_steps(session->simulation),
-                                                .tool = i,
-                                                .steps = session->tick_steps,
-                                                .pose = tool->pose});
+        lar_session_put_record(session,
+                               &(lar_record){.kind = LAR_RECORD_MOVE,
+                                             .step = lar_simulation_steps(session->simulation),
+                                             .tool = i,
+                                             .steps = session->tick_steps,
+                                             .pose = tool->pose});
     } else if (status == LAR_ERROR_ARGUMENT) {
         /* Nowhere to go, or too far for one tick: it stays, and starts anew from there. */
         lar_simulation_tool_asked(session->simulation, i, &tool->pose);
@@ -133,7 +134,7 @@ static void tell_devices(lar_session *session) {
     }
 }
 
-static void note_load(lar_session_tool *tool) {
+static void record_load(lar_session_tool *tool) {
     const double *f = tool->force.force;
     double force = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     tool->load.limit = tool->force.limit;
@@ -149,7 +150,7 @@ void lar_session_feel_tools(lar_session *session) {
         lar_session_tool *tool = &session->tool[i];
         lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
         lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
-        note_load(tool);
+        record_load(tool);
         if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, &tool->felt);
         lar_history_put(&session->history, i, tool->force.force);
     }

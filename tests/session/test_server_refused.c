@@ -75,12 +75,12 @@ static void tokens_are_asked_for(void **unused) {
     end_serving(&s);
 }
 
-static void say_and_expect_note(client *c, const char *wish) {
-    say(c, wish);
+static void say_and_expect_note(client *c, const char *command) {
+    say(c, command);
     assert_non_null(strstr(await_text(c, "note"), "may only watch"));
 }
 
-/* Everything that acts on the run, by the watch token and by one's own wish. */
+/* Everything that acts on the run, by the watch token and by one's own choice. */
 static void who_may_only_watch_does_nothing_else(void **unused) {
     (void)unused;
     static const char *const acts[] = {"{\"do\":\"pause\"}",

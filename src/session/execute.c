@@ -17,12 +17,12 @@ static void lose_recording(lar_session *session) {
              why.message);
 }
 
-void lar_session_note(lar_session *session, const lar_record *record) {
+void lar_session_put_record(lar_session *session, const lar_record *record) {
     if (session->status.recording && !lar_recorder_put(session->recorder, record))
         lose_recording(session);
 }
 
-void lar_session_note_hash(lar_session *session) {
+void lar_session_record_hash(lar_session *session) {
     lar_error error;
     if (!session->status.recording) return;
     if (lar_simulation_gather(session->simulation, &error)) {
@@ -30,14 +30,15 @@ void lar_session_note_hash(lar_session *session) {
         return;
     }
     session->hashed = lar_simulation_steps(session->simulation);
-    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_HASH,
-                                            .step = session->hashed,
-                                            .hash = lar_simulation_hash(session->simulation)});
+    lar_session_put_record(session,
+                           &(lar_record){.kind = LAR_RECORD_HASH,
+                                         .step = session->hashed,
+                                         .hash = lar_simulation_hash(session->simulation)});
 }
 
 /* The state goes on all the same when it cannot be recorded; whoever closes the recording is told.
  */
-lar_status lar_session_note_state(lar_session *session, lar_error *error) {
+lar_status lar_session_record_state(lar_session *session, lar_error *error) {
     if (!session->status.recording ||
         !lar_recorder_put_state(session->recorder, session->simulation, error))
         return LAR_OK;
@@ -46,12 +47,13 @@ lar_status lar_session_note_state(lar_session *session, lar_error *error) {
 }
 
 /* A run that broke has no hash there: when it is played it breaks in the same step. */
-void lar_session_note_end(lar_session *session) {
+void lar_session_record_end(lar_session *session) {
     if (!session->status.recording) return;
     bool broken = session->status.state == LAR_SESSION_STOPPED;
-    if (!broken) lar_session_note_hash(session);
-    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_END,
-                                            .step = lar_simulation_steps(session->simulation)});
+    if (!broken) lar_session_record_hash(session);
+    lar_session_put_record(
+        session,
+        &(lar_record){.kind = LAR_RECORD_END, .step = lar_simulation_steps(session->simulation)});
 }
 
 static lar_status change_recorder(lar_session *session, const lar_request *request,
@@ -66,7 +68,7 @@ static lar_status change_recorder(lar_session *session, const lar_request *reque
         request->answer->recorder = fresh;
         return status;
     }
-    lar_session_note_end(session);
+    lar_session_record_end(session);
     request->answer->recorder = session->recorder;
     session->recorder = fresh;
     session->hashed = lar_simulation_steps(session->simulation);
@@ -90,7 +92,8 @@ lar_status lar_session_arrive(lar_session *session, lar_error *error) {
 static lar_status reset(lar_session *session, lar_error *error) {
     lar_status status = lar_simulation_reset(session->simulation, error);
     if (status) return status;
-    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
+    lar_session_put_record(session,
+                           &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
     return lar_session_arrive(session, error);
 }
 
@@ -98,7 +101,7 @@ static lar_status load(lar_session *session, const lar_request *request, lar_err
     lar_status status =
         lar_simulation_unpack(session->simulation, request->path, request->state, error);
     if (!status) status = lar_session_arrive(session, error);
-    return status ? status : lar_session_note_state(session, error);
+    return status ? status : lar_session_record_state(session, error);
 }
 
 static lar_status attach(lar_session *session, const lar_request *request, lar_error *error) {
@@ -145,9 +148,9 @@ static lar_status change_player(lar_session *session, const lar_request *request
 lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error) {
     lar_status status = lar_setting_apply(setting, session->simulation, error);
     if (status) return status;
-    lar_session_note(session, &(lar_record){.kind = LAR_RECORD_SET,
-                                            .step = lar_simulation_steps(session->simulation),
-                                            .setting = *setting});
+    lar_session_put_record(session, &(lar_record){.kind = LAR_RECORD_SET,
+                                                  .step = lar_simulation_steps(session->simulation),
+                                                  .setting = *setting});
     lar_session_look_at_spares(session);
     lar_session_publish(session, false);
     return LAR_OK;
@@ -248,7 +251,7 @@ static void go(lar_session *session, const lar_request *request) {
     lar_session_go_on(session);
 }
 
-void lar_session_obey(lar_session *session, const lar_request *request) {
+void lar_session_execute(lar_session *session, const lar_request *request) {
     if (!request->answer) {
         go(session, request);
         return;
