@@ -52,7 +52,7 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
         status = lar_simulation_tool(session->simulation, i, &tool->info, error);
         lar_session_couple(session, i);
         if (!status)
-            status = lar_mailbox_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
+            status = lar_triple_buffer_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
     }
     if (!status) status = lar_history_create(session->tools, &session->history, error);
     if (!status) lar_session_take_tools(session);
@@ -105,13 +105,13 @@ static void destroy(lar_session *session) {
     __atomic_store_n(&session->simulation->sessions, 0, __ATOMIC_RELEASE);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_device_close(session->tool[i].device);
-        lar_mailbox_destroy(&session->tool[i].hand);
+        lar_triple_buffer_destroy(&session->tool[i].hand);
     }
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
     lar_recovery_destroy(&session->recovery);
     lar_player_close(session->player);
-    lar_mailbox_destroy(&session->view);
+    lar_triple_buffer_destroy(&session->view);
     lar_requests_destroy(&session->requests);
     free(session);
 }
@@ -138,7 +138,8 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     lar_status status = choose(session, &asked, error);
     if (!status) status = make_tools(session, error);
     if (!status)
-        status = lar_mailbox_create(&session->view, sizeof(lar_session_view), "a session", error);
+        status =
+            lar_triple_buffer_create(&session->view, sizeof(lar_session_view), "a session", error);
     if (!status) status = lar_snapshots_create(simulation, &session->snapshots, error);
     if (!status) status = make_recovery(session, error);
     if (status) {

@@ -3,11 +3,11 @@
  *     any thread                              the engine's thread, every tick
  *     ----------                              -------------------------------
  *     play, pause, save, ... --requests-->    what was asked for
- *     tool_move ---------mailbox per tool-->  hands --> couplings --> tools move within the tick
+ *     tool_move ---triple buffer per tool-->  hands --> couplings --> tools move within the tick
  *                                             advance by the tick's steps
- *     tool_force, status <----mailbox------   forces, poses, counts
+ *     tool_force, status <-triple buffer----   forces, poses, counts
  *     force_history <----------ring--------   forces of past ticks
- *     snapshot (asks) <-------mailbox------   the whole state, when somebody has asked
+ *     snapshot (asks) <---triple buffer----   the whole state, when somebody has asked
  *     (file) <---------ring, a thread------   recording
  *                                             sleep until the next tick
  *
@@ -23,7 +23,7 @@
 #include "session/advice.h"
 #include "session/coupling.h"
 #include "session/device/device.h"
-#include "session/exchange.h"
+#include "session/triple_buffer.h"
 #include "session/history.h"
 #include "session/pace.h"
 #include "session/recording/player.h"
@@ -49,13 +49,13 @@ typedef struct lar_session_view {
 
 /* A tool and whoever moves it: the engine's. */
 typedef struct lar_session_tool {
-    lar_mailbox hand;   /* lar_tool_pose, from tool_move */
-    lar_tool_info info; /* constant, but for spares: then the engine's, others ask the view */
-    int32_t serial;     /* as in the view */
-    lar_device *device; /* NULL: it listens to tool_move */
-    bool led;           /* somebody has moved it since the start, or since the simulation was last
-                           put somewhere else */
-    bool waits;         /* a hand that let go when the run went back: until it has opened */
+    lar_triple_buffer hand; /* lar_tool_pose, from tool_move */
+    lar_tool_info info;     /* constant, but for spares: then the engine's, others ask the view */
+    int32_t serial;         /* as in the view */
+    lar_device *device;     /* NULL: it listens to tool_move */
+    bool led;   /* somebody has moved it since the start, or since the simulation was last
+                   put somewhere else */
+    bool waits; /* a hand that let go when the run went back: until it has opened */
     lar_device_status device_status; /* as last summed up */
     lar_coupling coupling;           /* between the hand and it */
     lar_tool_pose target;            /* where its hand is */
@@ -77,7 +77,7 @@ struct lar_session {
     lar_session_tool tool[LAR_TOOLS_MOST];
 
     lar_requests requests;
-    lar_mailbox view; /* lar_session_view, to everybody */
+    lar_triple_buffer view; /* lar_session_view, to everybody */
     lar_history history;
     lar_snapshots snapshots;
     pthread_t thread;

@@ -17,7 +17,7 @@ static lar_device_tick tick_of(const lar_session *session) {
 static void take_tool(lar_session *session, int32_t i) {
     lar_session_tool *tool = &session->tool[i];
     lar_tool_force now;
-    lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
+    lar_triple_buffer_newest(&tool->hand, NULL); /* what was sent before does not count */
     lar_simulation_tool_asked(session->simulation, i, &tool->pose);
     lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
     tool->sent = tool->target = tool->pose;
@@ -81,7 +81,7 @@ static void look_at_hands(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         bool fresh;
-        const lar_tool_pose *hand = lar_mailbox_newest(&tool->hand, &fresh);
+        const lar_tool_pose *hand = lar_triple_buffer_newest(&tool->hand, &fresh);
         if (tool->device)
             fresh = lar_device_poll(tool->device, &now, &tool->target);
         else if (fresh)

@@ -19,13 +19,13 @@ lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_
 
 /* Reading takes over the newest view, which changes nothing that callers see. */
 static const lar_session_view *look_at_view(const lar_session *session) {
-    lar_mailbox *box = &((lar_session *)session)->view;
-    lar_mailbox_lock(box);
-    return lar_mailbox_newest(box, NULL);
+    lar_triple_buffer *box = &((lar_session *)session)->view;
+    lar_triple_buffer_lock(box);
+    return lar_triple_buffer_newest(box, NULL);
 }
 
 static void end_look(const lar_session *session) {
-    lar_mailbox_unlock(&((lar_session *)session)->view);
+    lar_triple_buffer_unlock(&((lar_session *)session)->view);
 }
 
 int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info) {
@@ -73,11 +73,11 @@ lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_t
     if (!status) status = clean_pose(pose, &clean, error);
     if (!status) status = check_there(session, tool, error);
     if (status) return status;
-    lar_mailbox *box = &session->tool[tool].hand;
-    lar_mailbox_lock(box);
-    *(lar_tool_pose *)lar_mailbox_draft(box) = clean;
-    lar_mailbox_send(box);
-    lar_mailbox_unlock(box);
+    lar_triple_buffer *box = &session->tool[tool].hand;
+    lar_triple_buffer_lock(box);
+    *(lar_tool_pose *)lar_triple_buffer_back(box) = clean;
+    lar_triple_buffer_publish(box);
+    lar_triple_buffer_unlock(box);
     return LAR_OK;
 }
 

@@ -1,58 +1,58 @@
-/* Mailboxes and the history of forces between threads that never wait for each other: what is read
- * is whole, the newest, and never goes back. */
+/* Triple buffers and the history of forces between threads that never wait for each other: what is
+ * read is whole, the newest, and never goes back. */
 #include <pthread.h>
 #include <sched.h>
 
-#include "session/exchange.h"
+#include "session/triple_buffer.h"
 #include "session/history.h"
 #include "testing.h"
 
 static lar_error failure;
 
-enum { WORDS = 100, LETTERS = 200000 };
+enum { WORDS = 100, VALUES = 200000 };
 
-typedef struct letter {
+typedef struct value {
     uint64_t word[WORDS];
-} letter;
+} value;
 
-static void *write_letters(void *argument) {
-    lar_mailbox *box = argument;
-    for (uint64_t n = 1; n <= LETTERS; n++) {
-        letter *draft = lar_mailbox_draft(box);
+static void *write_values(void *argument) {
+    lar_triple_buffer *box = argument;
+    for (uint64_t n = 1; n <= VALUES; n++) {
+        value *draft = lar_triple_buffer_back(box);
         for (int i = 0; i < WORDS; i++) {
             draft->word[i] = n;
             if (n % 100 == 0 && i == WORDS / 2) sched_yield(); /* also where there is one core */
         }
-        lar_mailbox_send(box);
+        lar_triple_buffer_publish(box);
     }
     return NULL;
 }
 
-static void letters_are_whole(void **unused) {
+static void values_are_whole(void **unused) {
     (void)unused;
-    lar_mailbox box;
+    lar_triple_buffer box;
     pthread_t writer;
-    assert_int_equal(lar_mailbox_create(&box, sizeof(letter), "a test", &failure), LAR_OK);
+    assert_int_equal(lar_triple_buffer_create(&box, sizeof(value), "a test", &failure), LAR_OK);
     bool fresh = true;
-    lar_mailbox_newest(&box, &fresh);
+    lar_triple_buffer_newest(&box, &fresh);
     assert_false(fresh);
-    assert_int_equal(pthread_create(&writer, NULL, write_letters, &box), 0);
+    assert_int_equal(pthread_create(&writer, NULL, write_values, &box), 0);
     uint64_t last = 0, seen = 0;
-    while (last < LETTERS) {
-        const letter *newest = lar_mailbox_newest(&box, &fresh);
+    while (last < VALUES) {
+        const value *newest = lar_triple_buffer_newest(&box, &fresh);
         uint64_t n = newest->word[0];
         if (fresh ? n <= last : n != last) fail_msg("%d behind %d", (int)n, (int)last);
         for (int i = 0; i < WORDS; i++) {
             if (i == WORDS / 2) sched_yield();
-            if (newest->word[i] != n) fail_msg("a torn letter: %d and %d", (int)n, i);
+            if (newest->word[i] != n) fail_msg("a torn value: %d and %d", (int)n, i);
         }
         seen += fresh;
         last = n;
     }
     assert_true(seen > 0);
     pthread_join(writer, NULL);
-    lar_mailbox_destroy(&box);
-    lar_mailbox_destroy(&box);
+    lar_triple_buffer_destroy(&box);
+    lar_triple_buffer_destroy(&box);
 }
 
 /* ---- the history --------------------------------------------------------------------------- */
@@ -115,7 +115,7 @@ static void old_ticks_are_left_out(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(letters_are_whole),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(values_are_whole),
                                        cmocka_unit_test(histories_are_whole),
                                        cmocka_unit_test(old_ticks_are_left_out)};
     return cmocka_run_group_tests(tests, NULL, NULL);
