@@ -24,7 +24,7 @@ void lar_model_destroy(lar_model *model) {
     if (!model) return;
     lar_mesh_clear(&model->mesh);
     lar_surface_clear(&model->surface);
-    lar_embedding_clear(&model->embedding);
+    lar_embedded_surface_clear(&model->embedded);
     for (int i = 0; i < model->mesh_file_count; i++) free(model->mesh_file[i]);
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);

@@ -7,7 +7,7 @@
 #define LAR_MODEL_MODEL_H
 
 #include "model/curve.h"
-#include "model/triangles/embedding.h"
+#include "model/triangles/embedded_surface.h"
 #include "model/material.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/surface.h"
@@ -140,8 +140,8 @@ struct lar_model {
 
     lar_output output;
 
-    lar_surface surface;     /* of the mesh; lar_model_check fills it */
-    lar_embedding embedding; /* a fine surface for display; without vertices: there is none */
+    lar_surface surface;           /* of the mesh; lar_model_check fills it */
+    lar_embedded_surface embedded; /* a fine surface for display; without vertices: there is none */
 
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;

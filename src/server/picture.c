@@ -88,7 +88,7 @@ static lar_status make_surface(const lar_model *model, const float *processor, l
 }
 
 lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
-                                lar_blob *surface, lar_blob *riding, lar_error *error) {
+                                lar_blob *surface, lar_blob *embedded, lar_error *error) {
     size_t nodes = (size_t)model->mesh.node_count;
     float *processor = lar_calloc(nodes, sizeof *processor);
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
@@ -101,7 +101,7 @@ lar_status lar_surface_messages(const lar_simulation *simulation, const lar_mode
                                       processor, error);
     if (!status) status = make_surface(model, processor, surface, error);
     if (!status) status = lar_shown_create(model, &shown, error);
-    if (!status) status = lar_riding_message(model, &shown, processor, riding, error);
+    if (!status) status = lar_embedded_message(model, &shown, processor, embedded, error);
     lar_shown_destroy(&shown);
     free(processor);
     free(u);

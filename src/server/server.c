@@ -318,7 +318,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     lar_status status = lar_server_make_hello(server, error);
     if (!status)
         status = lar_surface_messages(session->simulation, server->model, &server->surface,
-                                      &server->riding, error);
+                                      &server->embedded, error);
     if (!status) status = make_context(server, error);
     if (status) return status;
     status = lar_work_start(&server->work, session, server->model, wake, server, error);
@@ -396,7 +396,7 @@ void lar_server_close(lar_server *server) {
     lar_json_clear(&server->hello);
     lar_json_clear(&server->json);
     free(server->surface.memory);
-    free(server->riding.memory);
+    free(server->embedded.memory);
     free(server->forces.memory);
     free(server->token);
     free(server->watch_token);

@@ -50,14 +50,14 @@ static void read_rights(const lar_server *server, lar_viewer *viewer, struct lws
 }
 
 static void welcome(lar_server *server, lar_viewer *viewer) {
-    unsigned riding = server->riding.length > 0 ? LAR_DUE_RIDING : 0;
-    lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | riding | LAR_DUE_STATUS);
+    unsigned embedded = server->embedded.length > 0 ? LAR_DUE_EMBEDDED : 0;
+    lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | embedded | LAR_DUE_STATUS);
     lar_server_take_status(server); /* while nobody was there none was taken */
-    if (!lar_riding_is_too_large(server->model)) return;
+    if (!lar_embedded_is_too_large(server->model)) return;
     char sentence[160];
     snprintf(sentence, sizeof sentence,
              "The scene's fine surface is not drawn: it has more than %d triangles or vertices.",
-             LAR_RIDING_MOST);
+             LAR_EMBEDDED_MOST);
     lar_viewer_note(server, viewer, sentence);
 }
 

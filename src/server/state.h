@@ -49,7 +49,7 @@ typedef struct lar_saved_list {
 enum {
     LAR_DUE_HELLO = 1,
     LAR_DUE_SURFACE = 2,
-    LAR_DUE_RIDING = 4,
+    LAR_DUE_EMBEDDED = 4,
     LAR_DUE_NOTES = 8,
     LAR_DUE_FORCES = 16,
     LAR_DUE_PICTURE = 32, /* the server's picture has what it asked for */
@@ -124,7 +124,7 @@ struct lar_server {
     lar_work work;
     bool working;
     lar_hands hands;
-    lar_blob surface, riding;
+    lar_blob surface, embedded;
     lar_scan scan;
     lar_picture picture;
     lar_json hello; /* all but its beginning */

@@ -15,7 +15,7 @@ typedef struct lar_surface_results {
 lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
                                               const lar_model *model, lar_error *error);
 
-/* Without a riding surface all of these do nothing. `taken`: the name of the frames of the mesh,
+/* Without an embedded surface all of these do nothing. `taken`: the name of the frames of the mesh,
  * which stays theirs. The caller closes in any case. */
 lar_status lar_surface_results_open(lar_surface_results *results, const char *folder,
                                     const char *taken, const lar_model *model, lar_error *error);

@@ -1,5 +1,5 @@
 /* What is drawn of the bodies: the mesh's own surface, rounded (surface.ts), or a fine one that rides on
- * the mesh (riding.ts). Both follow the nodes that frames carry. */
+ * the mesh (embedded.ts). Both follow the nodes that frames carry. */
 export interface Drawn {
     readonly nodes: number; // drawn ones
     readonly positions: Float32Array;

@@ -3,32 +3,32 @@
  *
  *     surface's nodes 0 .. n-1 | further nodes n .. n+s-1, of the elements that carry vertices
  */
-#ifndef LAR_SERVER_RIDING_H
-#define LAR_SERVER_RIDING_H
+#ifndef LAR_SERVER_EMBEDDED_H
+#define LAR_SERVER_EMBEDDED_H
 
 #include "base/memory.h"
 #include "server/blob.h"
 
 /* More than a browser moves thirty times a second. */
-enum { LAR_RIDING_MOST = 1000000 };
+enum { LAR_EMBEDDED_MOST = 1000000 };
 
 /* The nodes that frames carry, by index in the model: those of the surface, and behind them what a
- * riding surface needs besides. */
+ * embedded surface needs besides. */
 typedef struct lar_shown {
     int32_t count, surface; /* all; of them of the surface */
     int32_t *node;          /* [count], ascending in each of the two parts */
-    bool rides;             /* there is a riding surface to draw */
+    bool has_embedded;      /* there is an embedded surface to draw */
 } lar_shown;
 
 lar_status lar_shown_create(const lar_model *model, lar_shown *shown, lar_error *error);
 void lar_shown_destroy(lar_shown *shown); /* idempotent; a zeroed one is fine */
 
-/* Whether the model has a riding surface with more triangles or vertices than are drawn. */
-bool lar_riding_is_too_large(const lar_model *model);
+/* Whether the model has an embedded surface with more triangles or vertices than are drawn. */
+bool lar_embedded_is_too_large(const lar_model *model);
 
-/* `processor`: of each node of the model. Without a riding surface the message stays empty. The
+/* `processor`: of each node of the model. Without an embedded surface the message stays empty. The
  * caller frees message->memory. */
-lar_status lar_riding_message(const lar_model *model, const lar_shown *shown,
-                              const float *processor, lar_blob *message, lar_error *error);
+lar_status lar_embedded_message(const lar_model *model, const lar_shown *shown,
+                                const float *processor, lar_blob *message, lar_error *error);
 
 #endif

@@ -21,15 +21,15 @@ static lar_mesh twisted_brick(void) {
     return mesh;
 }
 
-static lar_embedding bind_ball(const lar_mesh *mesh, double radius) {
+static lar_embedded_surface bind_ball(const lar_mesh *mesh, double radius) {
     static const double centre[3] = {0.0115, 0.0102, 0.0104};
     lar_triangles ball;
-    lar_embedding embedding;
+    lar_embedded_surface embedded;
     lar_error error = {0};
     shape_ellipsoid_surface(&ball, (double[3]){radius, radius, radius}, centre, BALL);
-    if (lar_embedding_bind(mesh, &ball, &embedding, &error)) fail_msg("%s", error.message);
+    if (lar_embedded_surface_bind(mesh, &ball, &embedded, &error)) fail_msg("%s", error.message);
     assert_null(ball.vertex);
-    return embedding;
+    return embedded;
 }
 
 static double distance(const double a[3], const double b[3]) {
@@ -37,31 +37,31 @@ static double distance(const double a[3], const double b[3]) {
 }
 
 /* The place that the weights alone give. */
-static void weighted(const lar_embedding *embedding, const lar_mesh *mesh, int32_t v,
+static void weighted(const lar_embedded_surface *embedded, const lar_mesh *mesh, int32_t v,
                      double place[3]) {
-    const int32_t *node = mesh->element[embedding->element[v]];
+    const int32_t *node = mesh->element[embedded->element[v]];
     for (int i = 0; i < 3; i++) {
         place[i] = 0;
         for (int a = 0; a < 8; a++)
-            place[i] += (double)embedding->weight[v][a] * mesh->position[node[a]][i];
+            place[i] += (double)embedded->weight[v][a] * mesh->position[node[a]][i];
     }
 }
 
 static void expect_exact(const lar_mesh *mesh, double radius, bool outside) {
-    lar_embedding embedding = bind_ball(mesh, radius);
-    int32_t count = embedding.surface.vertex_count;
+    lar_embedded_surface embedded = bind_ball(mesh, radius);
+    int32_t count = embedded.surface.vertex_count;
     double(*place)[3] = lar_calloc((size_t)count, sizeof *place);
     double(*u)[3] = lar_calloc((size_t)mesh->node_count, sizeof *u);
-    assert_true(outside == (embedding.farthest > 0));
-    assert_below(embedding.farthest, 0.01);
-    lar_embedding_move(&embedding, mesh, NULL, place);
-    assert_memory_equal(place, embedding.surface.vertex, (size_t)count * sizeof *place);
+    assert_true(outside == (embedded.farthest > 0));
+    assert_below(embedded.farthest, 0.01);
+    lar_embedded_surface_move(&embedded, mesh, NULL, place);
+    assert_memory_equal(place, embedded.surface.vertex, (size_t)count * sizeof *place);
     for (int32_t v = 0; v < count; v++) {
         double sum = 0, here[3];
-        for (int a = 0; a < 8; a++) sum += (double)embedding.weight[v][a];
+        for (int a = 0; a < 8; a++) sum += (double)embedded.weight[v][a];
         assert_below(fabs(sum - 1), 1e-6);
-        weighted(&embedding, mesh, v, here);
-        assert_below(distance(here, embedding.surface.vertex[v]), 0.02e-6);
+        weighted(&embedded, mesh, v, here);
+        assert_below(distance(here, embedded.surface.vertex[v]), 0.02e-6);
     }
     /* Turned, stretched, sheared and shifted: every vertex follows. */
     static const double f[3][3] = {{0.3, -1.1, 0.2}, {0.9, 0.4, 0.3}, {-0.1, 0.2, 1.4}};
@@ -71,20 +71,20 @@ static void expect_exact(const lar_mesh *mesh, double radius, bool outside) {
             u[n][i] = shift[i] - mesh->position[n][i];
             for (int k = 0; k < 3; k++) u[n][i] += f[i][k] * mesh->position[n][k];
         }
-    lar_embedding_move(&embedding, mesh, (const double(*)[3])u, place);
+    lar_embedded_surface_move(&embedded, mesh, (const double(*)[3])u, place);
     for (int32_t v = 0; v < count; v++) {
         double expected[3];
         for (int i = 0; i < 3; i++) {
             expected[i] = shift[i];
-            for (int k = 0; k < 3; k++) expected[i] += f[i][k] * embedding.surface.vertex[v][k];
+            for (int k = 0; k < 3; k++) expected[i] += f[i][k] * embedded.surface.vertex[v][k];
         }
         assert_below(distance(place[v], expected), 0.3e-6);
     }
     free(place);
     free(u);
-    lar_embedding_clear(&embedding);
-    lar_embedding_clear(&embedding);
-    assert_int_equal(embedding.surface.vertex_count, 0);
+    lar_embedded_surface_clear(&embedded);
+    lar_embedded_surface_clear(&embedded);
+    assert_int_equal(embedded.surface.vertex_count, 0);
 }
 
 static void test_inside(void **state) {
@@ -107,15 +107,15 @@ static void test_inside_weights(void **state) {
     (void)state;
     lar_mesh mesh = {0};
     assert_int_equal(brick_read("brick.vtu", 1.0, &mesh, NULL), LAR_OK);
-    lar_embedding embedding = bind_ball(&mesh, 0.007);
-    for (int32_t v = 0; v < embedding.surface.vertex_count; v++) {
-        const double *x = embedding.surface.vertex[v];
+    lar_embedded_surface embedded = bind_ball(&mesh, 0.007);
+    for (int32_t v = 0; v < embedded.surface.vertex_count; v++) {
+        const double *x = embedded.surface.vertex[v];
         int32_t e = (x[0] > 0.01) + 2 * (x[1] > 0.01) + 4 * (x[2] > 0.01);
-        assert_int_equal(embedding.element[v], e);
+        assert_int_equal(embedded.element[v], e);
         for (int a = 0; a < 8; a++)
-            assert_true(embedding.weight[v][a] >= 0 && embedding.weight[v][a] <= 1);
+            assert_true(embedded.weight[v][a] >= 0 && embedded.weight[v][a] <= 1);
     }
-    lar_embedding_clear(&embedding);
+    lar_embedded_surface_clear(&embedded);
     lar_mesh_clear(&mesh);
 }
 
@@ -124,18 +124,18 @@ static void test_on_nodes(void **state) {
     (void)state;
     lar_mesh mesh = twisted_brick();
     lar_triangles surface;
-    lar_embedding embedding;
+    lar_embedded_surface embedded;
     shape_surface_begin(&surface, BRICK_NODES, BRICK_NODES - 2);
     memcpy(surface.vertex, mesh.position, BRICK_NODES * sizeof *surface.vertex);
     for (int t = 0; t < BRICK_NODES - 2; t++) shape_triangle(&surface, t, t, t + 1, t + 2);
-    assert_int_equal(lar_embedding_bind(&mesh, &surface, &embedding, NULL), LAR_OK);
+    assert_int_equal(lar_embedded_surface_bind(&mesh, &surface, &embedded, NULL), LAR_OK);
     for (int32_t v = 0; v < BRICK_NODES; v++)
         for (int a = 0; a < 8; a++) {
-            bool itself = mesh.element[embedding.element[v]][a] == v;
-            assert_below(fabs((double)embedding.weight[v][a] - itself), 1e-6);
+            bool itself = mesh.element[embedded.element[v]][a] == v;
+            assert_below(fabs((double)embedded.weight[v][a] - itself), 1e-6);
         }
-    assert_below(embedding.farthest, 0);
-    lar_embedding_clear(&embedding);
+    assert_below(embedded.farthest, 0);
+    lar_embedded_surface_clear(&embedded);
     lar_mesh_clear(&mesh);
 }
 
@@ -143,32 +143,32 @@ static void test_on_nodes(void **state) {
 static void test_far_from_origin(void **state) {
     (void)state;
     lar_mesh mesh = twisted_brick();
-    lar_embedding near = bind_ball(&mesh, 0.0145), far;
+    lar_embedded_surface near = bind_ball(&mesh, 0.0145), far;
     for (int n = 0; n < BRICK_NODES; n++) mesh.position[n][1] += 5;
     lar_triangles ball;
     shape_ellipsoid_surface(&ball, (double[3]){0.0145, 0.0145, 0.0145},
                             (double[3]){0.0115, 5.0102, 0.0104}, BALL);
-    assert_int_equal(lar_embedding_bind(&mesh, &ball, &far, NULL), LAR_OK);
+    assert_int_equal(lar_embedded_surface_bind(&mesh, &ball, &far, NULL), LAR_OK);
     for (int32_t v = 0; v < near.surface.vertex_count; v++)
         if (near.element[v] == far.element[v])
             for (int a = 0; a < 8; a++)
                 assert_below(fabs((double)(near.weight[v][a] - far.weight[v][a])), 1e-5);
-    lar_embedding_clear(&near);
-    lar_embedding_clear(&far);
+    lar_embedded_surface_clear(&near);
+    lar_embedded_surface_clear(&far);
     lar_mesh_clear(&mesh);
 }
 
 static void expect_refused(const double half, const double centre[3], const char *part) {
     lar_mesh mesh = twisted_brick();
     lar_triangles ball;
-    lar_embedding embedding;
+    lar_embedded_surface embedded;
     lar_error error = {0};
     shape_ellipsoid_surface(&ball, (double[3]){half, half, half}, centre, 8);
-    assert_int_equal(lar_embedding_bind(&mesh, &ball, &embedding, &error), LAR_ERROR_MODEL);
+    assert_int_equal(lar_embedded_surface_bind(&mesh, &ball, &embedded, &error), LAR_ERROR_MODEL);
     if (!strstr(error.message, part)) fail_msg("'%s' is not in: %s", part, error.message);
     assert_null(ball.vertex);
-    assert_null(embedding.surface.vertex);
-    assert_null(embedding.weight);
+    assert_null(embedded.surface.vertex);
+    assert_null(embedded.weight);
     lar_mesh_clear(&mesh);
 }
 

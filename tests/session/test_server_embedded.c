@@ -11,7 +11,7 @@ static void let_ball_ride(lar_model *model, int n) {
     static const double half[3] = {0.008, 0.012, 0.011}, centre[3] = {0.0102, 0.0098, 0.0101};
     lar_triangles ball;
     shape_ellipsoid_surface(&ball, half, centre, n);
-    DONE(lar_embedding_bind(&model->mesh, &ball, &model->embedding, &failure));
+    DONE(lar_embedded_surface_bind(&model->mesh, &ball, &model->embedded, &failure));
 }
 
 static served serve_ball(int n, const char *grid) {
@@ -85,7 +85,7 @@ static void place_of(const shown *s, uint32_t v, const float *x, double place[3]
     }
 }
 
-static void riding_surface_is_told(void **unused) {
+static void embedded_surface_is_told(void **unused) {
     (void)unused;
     served s = serve_ball(12, "2x1x1");
     client c = open_client(s.port);
@@ -93,11 +93,11 @@ static void riding_surface_is_told(void **unused) {
     assert_non_null(strstr(hello, "\"view\":[0,1,0]"));
     lar_embedded_info info;
     assert_int_equal(lar_model_embedded(s.b.model, &info), 1);
-    const char *riding = strstr(hello, "\"riding\":{");
-    assert_non_null(riding);
-    assert_int_equal((int)number_of(riding, "vertices"), info.vertices);
-    assert_int_equal((int)number_of(riding, "triangles"), info.triangles);
-    int further = (int)number_of(riding, "nodes");
+    const char *embedded = strstr(hello, "\"riding\":{");
+    assert_non_null(embedded);
+    assert_int_equal((int)number_of(embedded, "vertices"), info.vertices);
+    assert_int_equal((int)number_of(embedded, "triangles"), info.triangles);
+    int further = (int)number_of(embedded, "nodes");
     assert_true(further > 0);
     shown sent = await_shown(&c);
     assert_int_equal(sent.vertices, info.vertices);
@@ -135,7 +135,7 @@ static void frames_move_it(void **unused) {
     lar_simulation *plain = served_simulation(model, NULL);
     size_t nodes = (size_t)model->mesh.node_count;
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
-    double(*place)[3] = lar_calloc((size_t)model->embedding.surface.vertex_count, sizeof *place);
+    double(*place)[3] = lar_calloc((size_t)model->embedded.surface.vertex_count, sizeof *place);
     float *value = lar_calloc(nodes, sizeof *value);
     client c = open_client(s.port);
     shown sent = await_shown(&c);
@@ -196,7 +196,7 @@ static void too_large_is_a_note(void **unused) {
 }
 
 /* A model without one: no message 4, and frames as ever. */
-static void nothing_rides(void **unused) {
+static void nothing_is_embedded(void **unused) {
     (void)unused;
     served s = serve(NULL);
     client c = open_client(s.port);
@@ -214,7 +214,7 @@ static void nothing_rides(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(riding_surface_is_told), cmocka_unit_test(frames_move_it),
-        cmocka_unit_test(too_large_is_a_note), cmocka_unit_test(nothing_rides)};
+        cmocka_unit_test(embedded_surface_is_told), cmocka_unit_test(frames_move_it),
+        cmocka_unit_test(too_large_is_a_note), cmocka_unit_test(nothing_is_embedded)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,14 @@
-#include "server/riding.h"
+#include "server/embedded.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/model.h"
 
-bool lar_riding_is_too_large(const lar_model *model) {
+bool lar_embedded_is_too_large(const lar_model *model) {
     lar_embedded_info info;
     if (!lar_model_embedded(model, &info)) return false;
-    return info.triangles > LAR_RIDING_MOST || info.vertices > LAR_RIDING_MOST;
+    return info.triangles > LAR_EMBEDDED_MOST || info.vertices > LAR_EMBEDDED_MOST;
 }
 
 /* Marks the nodes of elements that carry vertices. */
@@ -25,18 +25,18 @@ lar_status lar_shown_create(const lar_model *model, lar_shown *shown, lar_error 
     size_t nodes = (size_t)model->mesh.node_count;
     lar_surface_info surface;
     lar_model_surface(model, &surface);
-    *shown =
-        (lar_shown){.count = surface.nodes,
-                    .surface = surface.nodes,
-                    .node = lar_calloc(nodes, sizeof *shown->node),
-                    .rides = lar_model_embedded(model, NULL) && !lar_riding_is_too_large(model)};
+    *shown = (lar_shown){.count = surface.nodes,
+                         .surface = surface.nodes,
+                         .node = lar_calloc(nodes, sizeof *shown->node),
+                         .has_embedded =
+                             lar_model_embedded(model, NULL) && !lar_embedded_is_too_large(model)};
     unsigned char *mark = lar_calloc(nodes, 1);
     if (!shown->node || !mark) {
         lar_shown_destroy(shown);
         free(mark);
         return lar_fail_memory(error, 5 * nodes, "the nodes that viewers see");
     }
-    if (shown->rides) mark_carriers(model, mark);
+    if (shown->has_embedded) mark_carriers(model, mark);
     for (int32_t i = 0; i < surface.nodes; i++) {
         shown->node[i] = surface.node[i];
         mark[surface.node[i]] = 0;
@@ -86,11 +86,11 @@ static void write_message(const lar_model *model, const lar_shown *shown, const 
     memcpy(corner, info.triangle, k * sizeof *info.triangle);
 }
 
-lar_status lar_riding_message(const lar_model *model, const lar_shown *shown,
-                              const float *processor, lar_blob *message, lar_error *error) {
+lar_status lar_embedded_message(const lar_model *model, const lar_shown *shown,
+                                const float *processor, lar_blob *message, lar_error *error) {
     lar_embedded_info info;
     *message = (lar_blob){0};
-    if (!shown->rides || !lar_model_embedded(model, &info)) return LAR_OK;
+    if (!shown->has_embedded || !lar_model_embedded(model, &info)) return LAR_OK;
     size_t s = (size_t)(shown->count - shown->surface);
     size_t length = 16 + 20 * s + 68 * (size_t)info.vertices + 12 * (size_t)info.triangles;
     unsigned char *memory = lar_calloc_aligned(LAR_HEADROOM + length, 1);
@@ -98,7 +98,7 @@ lar_status lar_riding_message(const lar_model *model, const lar_shown *shown,
     if (!memory || !index) {
         free(memory);
         free(index);
-        return lar_fail_memory(error, length, "the riding surface for viewers");
+        return lar_fail_memory(error, length, "the embedded surface for viewers");
     }
     for (int32_t i = 0; i < shown->count; i++) index[shown->node[i]] = i;
     write_message(model, shown, processor, index, memory + LAR_HEADROOM);

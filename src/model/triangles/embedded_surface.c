@@ -7,7 +7,7 @@
  * The weights sum to 1 and give x exactly, as trilinear ones beyond -1..1 would, but they grow with
  * the distance and not with its cube, so a strained element throws nothing about.
  */
-#include "model/triangles/embedding.h"
+#include "model/triangles/embedded_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -127,8 +127,8 @@ typedef struct binder {
     lar_triangles boxes;
     lar_triangle_tree *box_tree;
     lar_mesh_skin skin;
-    lar_embedding *embedding; /* that is made */
-    double *outside;          /* [vertices] distance from the body; 0 in it */
+    lar_embedded_surface *embedded; /* that is made */
+    double *outside;                /* [vertices] distance from the body; 0 in it */
 } binder;
 
 static void binder_clear(binder *b) {
@@ -218,10 +218,10 @@ static lar_status refuse(const binder *b, const lar_triangles *surface, int32_t 
 
 /* The element of one vertex and its weights; -1: none is near. Returns how far it lies outside. */
 static double bind_vertex(const binder *b, int32_t vertex) {
-    lar_embedding *embedding = b->embedding;
-    const double *point = embedding->surface.vertex[vertex];
+    lar_embedded_surface *embedded = b->embedded;
+    const double *point = embedded->surface.vertex[vertex];
     double outside = 0;
-    embedding->element[vertex] = -1;
+    embedded->element[vertex] = -1;
     if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2])) return 0;
     search s = {.binder = b, .point = point, .element = -1};
     lar_triangle_tree_boxes(b->box_tree, point, point, SKIN * b->mean_edge, try_element, &s);
@@ -244,8 +244,8 @@ static double bind_vertex(const binder *b, int32_t vertex) {
     double corner[8][3], weight[8];
     lar_mesh_corners(b->mesh, s.element, corner);
     weigh((const double(*)[3])corner, s.xi, point, weight);
-    embedding->element[vertex] = s.element;
-    for (int a = 0; a < 8; a++) embedding->weight[vertex][a] = (float)weight[a];
+    embedded->element[vertex] = s.element;
+    for (int a = 0; a < 8; a++) embedded->weight[vertex][a] = (float)weight[a];
     return outside;
 }
 
@@ -257,56 +257,56 @@ static void bind_some(void *context, int32_t first, int32_t end) {
 /* The first vertex that nothing is near is the one that is told. */
 static lar_status bind_all(binder *b, lar_error *error) {
     enum { PORTION = 1024 };
-    lar_embedding *embedding = b->embedding;
-    const int32_t vertices = embedding->surface.vertex_count;
+    lar_embedded_surface *embedded = b->embedded;
+    const int32_t vertices = embedded->surface.vertex_count;
     b->outside = lar_calloc((size_t)vertices, sizeof *b->outside);
     if (!b->outside)
         return lar_fail_memory(error, 8 * (size_t)vertices, "a surface that rides on the mesh");
     lar_parallel_for(vertices, PORTION, bind_some, b);
     for (int32_t v = 0; v < vertices; v++) {
-        if (embedding->element[v] < 0) return refuse(b, &embedding->surface, v, error);
-        embedding->farthest = fmax(embedding->farthest, b->outside[v]);
+        if (embedded->element[v] < 0) return refuse(b, &embedded->surface, v, error);
+        embedded->farthest = fmax(embedded->farthest, b->outside[v]);
     }
     return LAR_OK;
 }
 
-lar_status lar_embedding_bind(const lar_mesh *mesh, lar_triangles *surface,
-                              lar_embedding *embedding, lar_error *error) {
-    *embedding = (lar_embedding){.surface = *surface};
+lar_status lar_embedded_surface_bind(const lar_mesh *mesh, lar_triangles *surface,
+                                     lar_embedded_surface *embedded, lar_error *error) {
+    *embedded = (lar_embedded_surface){.surface = *surface};
     *surface = (lar_triangles){0};
-    size_t vertices = (size_t)embedding->surface.vertex_count;
-    binder b = {.mesh = mesh, .mean_edge = lar_mesh_mean_edge(mesh), .embedding = embedding};
-    embedding->element = lar_calloc(vertices, sizeof *embedding->element);
-    embedding->weight = lar_calloc(vertices, sizeof *embedding->weight);
+    size_t vertices = (size_t)embedded->surface.vertex_count;
+    binder b = {.mesh = mesh, .mean_edge = lar_mesh_mean_edge(mesh), .embedded = embedded};
+    embedded->element = lar_calloc(vertices, sizeof *embedded->element);
+    embedded->weight = lar_calloc(vertices, sizeof *embedded->weight);
     lar_status status = LAR_OK;
-    if (!embedding->element || !embedding->weight)
+    if (!embedded->element || !embedded->weight)
         status = lar_fail_memory(error, 36 * vertices, "a surface that rides on the mesh");
     if (!status) status = make_boxes(&b, error);
     if (!status) status = lar_mesh_skin_create(mesh, &b.skin, error);
     if (!status) status = bind_all(&b, error);
     binder_clear(&b);
-    if (status) lar_embedding_clear(embedding);
+    if (status) lar_embedded_surface_clear(embedded);
     return status;
 }
 
-void lar_embedding_clear(lar_embedding *embedding) {
-    lar_triangles_clear(&embedding->surface);
-    free(embedding->element);
-    free(embedding->weight);
-    *embedding = (lar_embedding){0};
+void lar_embedded_surface_clear(lar_embedded_surface *embedded) {
+    lar_triangles_clear(&embedded->surface);
+    free(embedded->element);
+    free(embedded->weight);
+    *embedded = (lar_embedded_surface){0};
 }
 
 /* ---- moving --------------------------------------------------------------------------------- */
 
 /* From the place at rest by the mean of the nodes' movements, so that rounding of the weights does
  * not show at rest, wherever the body lies. */
-void lar_embedding_move(const lar_embedding *embedding, const lar_mesh *mesh, const double (*u)[3],
-                        double (*place)[3]) {
-    for (int32_t v = 0; v < embedding->surface.vertex_count; v++) {
-        memcpy(place[v], embedding->surface.vertex[v], sizeof place[v]);
-        const int32_t *node = mesh->element[embedding->element[v]];
+void lar_embedded_surface_move(const lar_embedded_surface *embedded, const lar_mesh *mesh,
+                               const double (*u)[3], double (*place)[3]) {
+    for (int32_t v = 0; v < embedded->surface.vertex_count; v++) {
+        memcpy(place[v], embedded->surface.vertex[v], sizeof place[v]);
+        const int32_t *node = mesh->element[embedded->element[v]];
         for (int a = 0; u && a < 8; a++)
             for (int i = 0; i < 3; i++)
-                place[v][i] += (double)embedding->weight[v][a] * u[node[a]][i];
+                place[v][i] += (double)embedded->weight[v][a] * u[node[a]][i];
     }
 }
