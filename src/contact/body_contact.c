@@ -177,24 +177,24 @@ static int32_t choose_face(const lar_body_contact *contact, const lar_state *sta
     return chosen;
 }
 
-/* ---- levels ---------------------------------------------------------------------------------- */
+/* ---- offsets --------------------------------------------------------------------------------- */
 
 static bool same_body(const lar_body_contact *contact, int32_t node, int32_t face) {
     return contact->surface->node[node].body == contact->surface->face[face].body;
 }
 
-static double level_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
+static double offset_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
     const lar_contact_view *view = &contact->view;
     return view->place ? view->place[view->slot[node]][6] : state->u[view->value[node] + 3];
 }
 
-/* Notes the level that the node will have when it moves. */
-static void set_level(lar_body_contact *contact, const lar_state *state, int32_t node,
-                      double level) {
-    if (level == level_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
+/* Notes the offset that the node will have when it moves. */
+static void set_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                       double offset) {
+    if (offset == offset_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
         return;
-    contact->level[contact->level_count++] =
-        (lar_body_contact_level){contact->view.value[node] + 3, level};
+    contact->offset[contact->offset_count++] =
+        (lar_penetration_offset){contact->view.value[node] + 3, offset};
 }
 
 /* Who is so deep when it appears behind a face belongs inside. */
@@ -205,29 +205,30 @@ static double deep_of(const lar_body_contact *contact, int32_t node, int32_t fac
 
 /* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
  * `rate`. Who was before the face a step ago has come through it. */
-static double follow_level(lar_body_contact *contact, const lar_state *state, int32_t node,
-                           int32_t face, double depth, double rate) {
-    double before = level_of(contact, state, node), level = depth;
+static double follow_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                            int32_t face, double depth, double rate) {
+    double before = offset_of(contact, state, node), offset = depth;
     double deep = deep_of(contact, node, face);
-    bool home = before == LAR_LEVEL_OUT || before == LAR_LEVEL_HOME;
-    if (home)
-        level = LAR_LEVEL_HOME;
+    bool returning = before == LAR_OFFSET_OUT || before == LAR_OFFSET_RETURN;
+    if (returning)
+        offset = LAR_OFFSET_RETURN;
     else if (depth <= contact->time_step * rate)
-        level = LAR_LEVEL_FRONT;
+        offset = LAR_OFFSET_FRONT;
     else if (before > 0 && (before < depth || before >= deep))
-        level = before;
-    set_level(contact, state, node, level);
-    return home ? depth : level;
+        offset = before;
+    set_offset(contact, state, node, offset);
+    return returning ? depth : offset;
 }
 
 /* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
  * has come out through the back. */
-static void leave_level(lar_body_contact *contact, const lar_state *state, int32_t node,
-                        int32_t face) {
-    double before = level_of(contact, state, node), level = 0;
-    bool inside = before == LAR_LEVEL_HOME || (face >= 0 && before >= deep_of(contact, node, face));
-    if (before == LAR_LEVEL_OUT || (face >= 0 && inside)) level = LAR_LEVEL_OUT;
-    set_level(contact, state, node, level);
+static void leave_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                         int32_t face) {
+    double before = offset_of(contact, state, node), offset = 0;
+    bool inside =
+        before == LAR_OFFSET_RETURN || (face >= 0 && before >= deep_of(contact, node, face));
+    if (before == LAR_OFFSET_OUT || (face >= 0 && inside)) offset = LAR_OFFSET_OUT;
+    set_offset(contact, state, node, offset);
 }
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -397,12 +398,12 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     /* Without a length there is no direction. */
     if (isnan(depth)) return false;
     for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
-    double level =
-        same_body(contact, node, face) ? follow_level(contact, state, node, face, depth, rate) : 0;
+    double offset =
+        same_body(contact, node, face) ? follow_offset(contact, state, node, face, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
-    double from = standoff - level;
+    double from = standoff - offset;
     moved *= softness(contact, standoff);
     double force = f->fades && !same_body(contact, node, face)
                        ? fade(contact, state, x, face, closest, full_of(contact, node, face), moved,
@@ -446,7 +447,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     if (face >= 0 && touches(contact, group->node, face, &point))
         return push(contact, state, g, face, &point, &s, t);
     if (same_body(contact, group->node, contact->list.face[group->first]))
-        leave_level(contact, state, group->node, face);
+        leave_offset(contact, state, group->node, face);
     return false;
 }
 
@@ -531,7 +532,7 @@ static void look_ahead(lar_body_contact *contact) {
 void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
                           lar_state *state) {
     contact->time_step = context->time_step; /* of a part, where steps are divided */
-    contact->part_count = contact->level_count = 0;
+    contact->part_count = contact->offset_count = 0;
     contact->info.touching = 0;
     contact->info.deepest = 0;
     if (!(contact->travel < contact->horizon)) look_ahead(contact);

@@ -2,7 +2,7 @@
  *
  *     search (contact_search.h)     now and then: groups of a node and faces that it may meet
  *     prediction                    each group: not looked at before it can have come into reach
- *     contact                       a function of places, velocities and levels
+ *     contact                       a function of places, velocities and offsets
  *
  * Contact of a group. Of all its faces within reach the closest one counts; between equally close
  * ones the one over or under whose plane the node is farthest, then the one with the lower number.
@@ -19,15 +19,15 @@
  * Sharp edges (contact_edges.c): towards them springs fade, with a force
  * along the face; and points of them are pushed by faces of other bodies as nodes are.
  *
- * Levels. A node of a body may come to lie below that body's own faces without having come through
+ * Offsets. A node of a body may come to lie below that body's own faces without having come through
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
  * rest. Pushed from there it would get energy that contact never took. So the depth at which it
- * appears is its level, and only what it sinks below that pushes it; coming out, it takes the level
- * along. A node that came through the face has the level 0. One that appears deep belongs inside,
- * as in a thin part that is squeezed: it keeps its level, and when it comes out through the back of
- * the face nothing hinders it from going home. Levels are the one thing that contact remembers:
- * they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is not inside,
- * and belong to the state like u and v.
+ * appears is its offset, and only what it sinks below that pushes it; coming out, it takes the
+ * offset along. A node that came through the face has the offset 0. One that appears deep belongs
+ * inside, as in a thin part that is squeezed: it keeps its offset, and when it comes out through
+ * the back of the face nothing hinders it on its way in. Offsets are the one thing that contact
+ * remembers: they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is
+ * not inside, and belong to the state like u and v.
  *
  * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
  * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
@@ -53,7 +53,7 @@ static inline double lar_most(double most, double other) {
     return other <= most || isnan(most) ? most : other;
 }
 
-/* Of a contact node in the exchange buffer: place, velocity, level. */
+/* Of a contact node in the exchange buffer: place, velocity, offset. */
 enum { LAR_PLACE_VALUES = 7 };
 
 /* Where the contact nodes are: in the state of whoever has all of them, or in the exchange buffer.
@@ -74,18 +74,18 @@ typedef struct lar_body_contact_part {
     double force[LAR_CONTACT_PARTS][3];
 } lar_body_contact_part;
 
-/* Levels that cannot be measured, but are not 0: of a node that came through the face; of one that
+/* Offsets that cannot be measured, but are not 0: of a node that came through the face; of one that
  * belongs inside and is outside, having come out through the back of a face; of the same on its way
  * in again, which nothing hinders. */
-#define LAR_LEVEL_FRONT 1e-300
-#define LAR_LEVEL_OUT   2e-300
-#define LAR_LEVEL_HOME  3e-300
+#define LAR_OFFSET_FRONT  1e-300
+#define LAR_OFFSET_OUT    2e-300
+#define LAR_OFFSET_RETURN 3e-300
 
-/* A level that is another than in the last step. */
-typedef struct lar_body_contact_level {
+/* An offset that is another than in the last step. */
+typedef struct lar_penetration_offset {
     int32_t value; /* 4 * local node + 3 */
     double depth;  /* [m] */
-} lar_body_contact_level;
+} lar_penetration_offset;
 
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_body_contact_motion {
@@ -119,9 +119,9 @@ typedef struct lar_body_contact {
     int32_t part_count;
     lar_body_contact_part *part; /* [list.group_room] */
     const uint8_t *keeps;        /* [contact nodes] those that this thread moves; NULL: all */
-    int32_t level_count;
-    lar_body_contact_level *level; /* [list.group_room] of these nodes, from when they move on */
-    bool too_many_pairs;           /* there was no room for all pairs: the run must stop */
+    int32_t offset_count;
+    lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
+    bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
     lar_body_contact_motion *motion; /* of whoever has all nodes; otherwise NULL */
 } lar_body_contact;
@@ -147,7 +147,7 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
 /* All groups are to be looked at again. */
 void lar_body_contact_restart(lar_body_contact *contact);
 
-/* The nodes have moved, none farther than `way` along any axis [m]; levels become theirs. */
+/* The nodes have moved, none farther than `way` along any axis [m]; offsets become theirs. */
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way);
 
 /* Half the work of these forces in this step, to state->contact: once before and once after the

@@ -100,9 +100,9 @@ void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_conte
 }
 
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {
-    for (int32_t i = 0; i < contact->level_count; i++)
-        state->u[contact->level[i].value] = contact->level[i].depth;
-    contact->level_count = 0;
+    for (int32_t i = 0; i < contact->offset_count; i++)
+        state->u[contact->offset[i].value] = contact->offset[i].depth;
+    contact->offset_count = 0;
     contact->moved += way;
     contact->way = way;
     if (!contact->motion) return;
@@ -131,9 +131,9 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     contact->near = lar_calloc(groups, sizeof *contact->near);
     contact->away = lar_calloc(pairs, sizeof *contact->away);
     contact->part = lar_calloc(groups, sizeof *contact->part);
-    contact->level = lar_calloc(groups, sizeof *contact->level);
+    contact->offset = lar_calloc(groups, sizeof *contact->offset);
     if (!value || !motion->x || !motion->searched || !contact->due || !contact->last ||
-        !contact->near || !contact->away || !contact->part || !contact->level)
+        !contact->near || !contact->away || !contact->part || !contact->offset)
         return lar_fail_memory(error, groups * sizeof *contact->part, "contact of bodies");
     for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
     return LAR_OK;
@@ -178,7 +178,7 @@ void lar_body_contact_destroy(lar_body_contact *contact) {
     free(contact->near);
     free(contact->away);
     free(contact->part);
-    free(contact->level);
+    free(contact->offset);
     if (motion) {
         free((int32_t *)contact->view.value);
         if (motion->search) lar_contact_search_clear(motion->search);

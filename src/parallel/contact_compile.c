@@ -88,7 +88,7 @@ static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *li
     return s->face[list->face[group->first]].body == s->node[group->node].body;
 }
 
-/* Whether a processor adds forces of a group, or has the node and keeps its level. */
+/* Whether a processor adds forces of a group, or has the node and keeps its offset. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
@@ -157,7 +157,7 @@ static void plan_peer(lar_contact_exchange *exchange, const lar_contact_list *li
     if (peer->send_count + peer->receive_count > 0) exchange->peer_count++;
 }
 
-/* The groups in which a thread adds something, or whose node's level it keeps. */
+/* The groups in which a thread adds something, or whose node's offset it keeps. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     lar_body_contact *contact = &worker->interactions.body_contact;
     lar_contact_list *own = &contact->list;
@@ -222,11 +222,11 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
                                   .near = lar_calloc(groups, sizeof *contact->near),
                                   .away = lar_calloc(pairs, sizeof *contact->away),
                                   .part = lar_calloc(groups, sizeof *contact->part),
-                                  .level = lar_calloc(groups, sizeof *contact->level)};
+                                  .offset = lar_calloc(groups, sizeof *contact->offset)};
     contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
     contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
     if (!adds_node || !adds_corner || !keeps || !contact->due || !contact->last || !contact->near ||
-        !contact->away || !contact->part || !contact->level || !contact->list.group ||
+        !contact->away || !contact->part || !contact->offset || !contact->list.group ||
         !contact->list.face)
         return lar_fail_memory(error, groups * sizeof *contact->part + 4 * pairs,
                                "contact of bodies");

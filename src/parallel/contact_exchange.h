@@ -4,10 +4,10 @@
  *                   the whole model and everyone gets the same list of groups (computer_contact.c)
  *     compile       each processor takes the groups that concern it: it accounts for the node, or
  *                   recovers the element behind a face that may push, or has the node of a group
- *                   within one body and keeps its level. All who take part in a group need the
+ *                   within one body and keeps its offset. All who take part in a group need the
  *                   places of all its nodes, and compute its contact to the same bits; who accounts
  *                   for the node adds the node's force, who recovers the element the forces of the
- *                   corners. So nothing but places travels, with velocities and levels, once per
+ *                   corners. So nothing but places travels, with velocities and offsets, once per
  *                   step.
  *     each step     publish --> buffer --> packets to others --> their buffers --> contact
  *

@@ -81,13 +81,13 @@ uint64_t lar_checkpoint_sum(const void *data, size_t words) {
 }
 
 /* As lar_state_hash, for nodes in the mesh's order. */
-static uint64_t hash_state(uint64_t step, const double *level, const node_vector *u,
+static uint64_t hash_state(uint64_t step, const double *offset, const node_vector *u,
                            const node_vector *v, lar_gid nodes) {
     uint64_t hash = lar_hash_word(0, step);
     for (lar_gid n = 0; n < nodes; n++) {
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
-        if (level[n] > 0) hash = lar_hash_double(hash, level[n]);
+        if (offset[n] > 0) hash = lar_hash_double(hash, offset[n]);
     }
     return hash;
 }
@@ -141,11 +141,11 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
-    node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
+    double *offset = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
+    node_vector *u = (node_vector *)(offset + nodes), *v = u + nodes;
     for (lar_gid g = 0; g < nodes; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
-        level[g] = state->u[there + 3];
+        offset[g] = state->u[there + 3];
         memcpy(u[g], state->u + there, sizeof u[g]);
         memcpy(v[g], state->v + there, sizeof v[g]);
     }
@@ -156,7 +156,7 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .external = state->external,
                       .damped = state->damped,
                       .contact = state->contact,
-                      .hash = hash_state(state->step, level, (const node_vector *)u,
+                      .hash = hash_state(state->step, offset, (const node_vector *)u,
                                          (const node_vector *)v, nodes),
                       .tools = shape->tools,
                       .grasps = shape->grasps};
@@ -563,14 +563,14 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (!take_tools(&head, whole, &at, &found.tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
-    found.level = (const double *)(const void *)at;
-    found.u = (const node_vector *)(const void *)(found.level + nodes);
+    found.offset = (const double *)(const void *)at;
+    found.u = (const node_vector *)(const void *)(found.offset + nodes);
     found.v = found.u + nodes;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    if (!finite || !all_finite(found.level, 7 * nodes) || !none_negative(found.level, nodes) ||
+    if (!finite || !all_finite(found.offset, 7 * nodes) || !none_negative(found.offset, nodes) ||
         head.step > STEPS_MOST)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    if (head.hash != hash_state(head.step, found.level, found.u, found.v, (lar_gid)nodes))
+    if (head.hash != hash_state(head.step, found.offset, found.u, found.v, (lar_gid)nodes))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
     *checkpoint = found;
     return LAR_OK;
@@ -585,7 +585,7 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
     for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
         memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
-        state->u[there + 3] = checkpoint->level[g];
+        state->u[there + 3] = checkpoint->offset[g];
         memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
     }
     state->step = checkpoint->step;

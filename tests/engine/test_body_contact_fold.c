@@ -31,7 +31,7 @@ static lar_model *folding_bar(double shear, int layers) {
     return model;
 }
 
-static double level_of(const lar_simulation *s, int32_t node) {
+static double offset_of(const lar_simulation *s, int32_t node) {
     return lar_simulation_state(s)->u[4 * s->domain.layout.local[node] + 3];
 }
 
@@ -39,7 +39,7 @@ static double level_of(const lar_simulation *s, int32_t node) {
 static int stowaways(const lar_simulation *s) {
     int count = 0;
     for (int32_t n = 0; n < s->domain.model->mesh.node_count; n++)
-        count += level_of(s, n) > LAR_LEVEL_HOME;
+        count += offset_of(s, n) > LAR_OFFSET_RETURN;
     return count;
 }
 
@@ -172,32 +172,32 @@ static void a_node_is_pushed_from_where_it_appeared(void **unused) {
     lar_simulation *s = start(model);
     int32_t node, face;
     end_and_face(model, &node, &face);
-    /* From the side: only what it sinks deeper counts, and it takes the level out with it. */
+    /* From the side: only what it sinks deeper counts, and it takes the offset out with it. */
     assert_true(put(s, node, face, 1 * mm, 0) == 0);
-    assert_below(fabs(level_of(s, node) - 1 * mm), 1e-9);
+    assert_below(fabs(offset_of(s, node) - 1 * mm), 1e-9);
     double deeper = put(s, node, face, 1.5 * mm, 0);
     assert_true(deeper > 0);
-    assert_below(fabs(level_of(s, node) - 1 * mm), 1e-9);
+    assert_below(fabs(offset_of(s, node) - 1 * mm), 1e-9);
     assert_true(put(s, node, face, 0.5 * mm, 0) == 0);
-    assert_below(fabs(level_of(s, node) - 0.5 * mm), 1e-9);
+    assert_below(fabs(offset_of(s, node) - 0.5 * mm), 1e-9);
     assert_below(fabs(put(s, node, face, 1 * mm, 0) - deeper), 1e-6 * deeper);
     assert_true(put(s, node, face, -0.1 * mm, 0) == 0);
-    assert_true(level_of(s, node) == 0);
+    assert_true(offset_of(s, node) == 0);
     /* Through the face: all counts, also later. */
     assert_true(put(s, node, face, 0.1 * mm, 0.2 * mm) > 0);
-    assert_true(level_of(s, node) == LAR_LEVEL_FRONT);
+    assert_true(offset_of(s, node) == LAR_OFFSET_FRONT);
     assert_below(fabs(put(s, node, face, 0.5 * mm, 0) - deeper), 1e-6 * deeper);
-    assert_true(level_of(s, node) == LAR_LEVEL_FRONT);
+    assert_true(offset_of(s, node) == LAR_OFFSET_FRONT);
     /* Deeper than the layer it is lost, and comes back from the side. */
     assert_true(put(s, node, face, 6 * mm, 0) == 0);
-    assert_true(level_of(s, node) == 0);
+    assert_true(offset_of(s, node) == 0);
     assert_true(put(s, node, face, 4 * mm, 0) == 0);
-    assert_below(fabs(level_of(s, node) - 4 * mm), 1e-9);
+    assert_below(fabs(offset_of(s, node) - 4 * mm), 1e-9);
     finish(s, model);
 }
 
 /* Squeezed out through the back of a face, it is not caught there. */
-static void a_node_from_inside_may_go_home(void **unused) {
+static void a_node_from_inside_may_return(void **unused) {
     (void)unused;
     static const double mm = 1e-3;
     lar_model *model = folding_bar(1e3, 2);
@@ -206,20 +206,20 @@ static void a_node_from_inside_may_go_home(void **unused) {
     end_and_face(model, &node, &face);
     assert_true(put(s, node, face, 3 * mm, 0) == 0);
     assert_true(put(s, node, face, 0.1 * mm, 0) == 0);
-    assert_below(fabs(level_of(s, node) - 3 * mm), 1e-9);
+    assert_below(fabs(offset_of(s, node) - 3 * mm), 1e-9);
     assert_true(put(s, node, face, -0.1 * mm, 0) == 0);
-    assert_true(level_of(s, node) == LAR_LEVEL_OUT);
+    assert_true(offset_of(s, node) == LAR_OFFSET_OUT);
     assert_true(put(s, node, face, -30 * mm, 0) == 0); /* far from all faces */
-    assert_true(level_of(s, node) == LAR_LEVEL_OUT);
+    assert_true(offset_of(s, node) == LAR_OFFSET_OUT);
     assert_true(put(s, node, face, 0.1 * mm, 0.2 * mm) == 0);
-    assert_true(level_of(s, node) == LAR_LEVEL_HOME);
+    assert_true(offset_of(s, node) == LAR_OFFSET_RETURN);
     assert_true(put(s, node, face, 3 * mm, 0.2 * mm) == 0);
-    assert_true(level_of(s, node) == LAR_LEVEL_HOME);
+    assert_true(offset_of(s, node) == LAR_OFFSET_RETURN);
     assert_true(put(s, node, face, -0.1 * mm, 0) == 0);
-    assert_true(level_of(s, node) == LAR_LEVEL_OUT);
+    assert_true(offset_of(s, node) == LAR_OFFSET_OUT);
     assert_true(put(s, node, face, 0.1 * mm, 0.2 * mm) == 0);
     assert_true(put(s, node, face, 6 * mm, 0) == 0);
-    assert_true(level_of(s, node) == 0);
+    assert_true(offset_of(s, node) == 0);
     assert_true(put(s, node, face, 0.1 * mm, 0.2 * mm) > 0);
     finish(s, model);
 }
@@ -278,7 +278,7 @@ enum { MIDDLE = 700, END = 800 };
 
 #define PATH LAR_TEST_BUILD "/fold.checkpoint"
 
-/* Also who does not account for a node knows its level: the next search may need it there. */
+/* Also who does not account for a node knows its offset: the next search may need it there. */
 static void check_copies(const lar_simulation *s) {
     const lar_state *state = lar_simulation_state(s);
     for (int32_t i = 0; s->computer && i < s->computer->hosted; i++) {
@@ -359,7 +359,7 @@ static void nor_on_processes(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_node_is_pushed_from_where_it_appeared),
-        cmocka_unit_test(a_node_from_inside_may_go_home),
+        cmocka_unit_test(a_node_from_inside_may_return),
         cmocka_unit_test(a_crease_that_folds_shut_goes_on_to_rest),
         cmocka_unit_test(bits_do_not_depend_on_the_division),
         cmocka_unit_test(nor_on_processes),
