@@ -269,7 +269,7 @@ typedef struct lar_meshing_options {
     const char *title;        /* NULL: the only region's name, or the first file's */
     const char *fix;          /* where the starter scene holds it: "left", "right", "back", "front",
                                  "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
-                                 it, else "back", and pads that bear its weight */
+                                 it, else "back", and extra supports that bear its weight */
     lar_meshing_watch *watch; /* may be NULL */
     void *context;
 } lar_meshing_options;
@@ -296,8 +296,8 @@ typedef struct lar_meshing_info {
     int32_t added, removed; /* cells, so that none hang together by an edge or a corner only */
     int32_t cuts;           /* flat cuts, where the image ends in an organ */
     const char *fix;        /* the rule that holds the body, as in the options */
-    int32_t pads;           /* small places that hold it besides, because its weight asks for them;
-                               not when the options say what holds it */
+    int32_t extra_supports; /* small places that hold it besides, because its weight asks for them;
+                     not when the options say what holds it */
     int32_t fixed_nodes;
     int image;      /* not 0: made from a label image, which says how large it is */
     int32_t joined; /* nodes of a mesh that stood at the place of another one, and were joined */

@@ -189,14 +189,14 @@ static void put_fix(const lar_meshing *m, FILE *f) {
         fputs(
             "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
             f);
-    if (support->pads > 0)
+    if (support->extra_supports > 0)
         fputs("# Pads: small places of its underside, where its neighbours carry it in the patient "
               "and\n"
               "# without which it could not bear its weight. Without that line it hangs free.\n",
               f);
     if (support->held) fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
     any = support->held;
-    if (support->pads > 0) {
+    if (support->extra_supports > 0) {
         fprintf(f, "%s  - { nodes: pads, axes: xyz }\n", any ? "" : "fix:\n");
         any = true;
     }

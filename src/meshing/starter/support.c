@@ -18,12 +18,12 @@
 
 #include "base/union_find.h"
 #include "meshing/meshing.h"
-#include "meshing/starter/pads.h"
+#include "meshing/starter/extra_supports.h"
 
 static const double TENTH = 0.1;
 /* What the pull moves the handle by, as part of the body's length. Nothing else bounds it: what is
- * taken from the handle's own cross-section, or from that of pads near it, is another on every
- * mesh. */
+ * taken from the handle's own cross-section, or from that of extra supports near it, is another on
+ * every mesh. */
 static const double MOVES = 0.02;
 /* Where nothing holds the body, and so nothing says how far it would move: what the pull would
  * stretch a bar of the handle's cross-section by. */
@@ -324,18 +324,18 @@ static void choose_pull(choice *c, int side, const lar_motion *motion) {
 
 /* Marks per node that only exist while choosing. */
 typedef struct marks {
-    bool *handle, *opposed, *pad;
+    bool *handle, *opposed, *extra;
 } marks;
 
-/* Pads, where nobody said what holds it and its weight asks for them. */
-static lar_status add_pads(choice *c, int side, const marks *in, lar_motion *motion) {
+/* Extra supports, where nobody said what holds it and its weight asks for them. */
+static lar_status add_extra_supports(choice *c, int side, const marks *in, lar_motion *motion) {
     lar_support *support = &c->meshing->support;
     int32_t count = 0;
-    lar_status status =
-        lar_pads_choose(c->meshing, c->held, BACK / 2, -1, in->handle, side >= 0 ? side / 2 : 0,
-                        in->pad, &support->pads, &support->carried, motion, c->error);
-    if (!status) status = add_set(c, "pads", in->pad, &count);
-    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->pad[n];
+    lar_status status = lar_extra_supports_choose(
+        c->meshing, c->held, BACK / 2, -1, in->handle, side >= 0 ? side / 2 : 0, in->extra,
+        &support->extra_supports, &support->carried, motion, c->error);
+    if (!status) status = add_set(c, "pads", in->extra, &count);
+    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->extra[n];
     return status;
 }
 
@@ -350,7 +350,7 @@ static lar_status choose(choice *c, const char *rule, const marks *in) {
     if (!status && mean_shear(c->meshing) > 0) side = choose_handle(c, held_side, in->handle);
     if (!status && side >= 0 && held == 0)
         support->opposed = mark_handle(c, opposite(side), in->opposed) > 0;
-    if (!status && !rule) status = add_pads(c, side, in, &motion);
+    if (!status && !rule) status = add_extra_supports(c, side, in, &motion);
     if (!status && rule)
         status = lar_motion_estimate(c->meshing, support->opposed ? in->opposed : c->held,
                                      in->handle, side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
@@ -360,7 +360,7 @@ static lar_status choose(choice *c, const char *rule, const marks *in) {
     choose_pull(c, side, &motion);
     if (!support->handle) support->opposed = false;
     if (support->handle) status = add_set(c, "handle", in->handle, &count);
-    if (count == 0) support->handle = NULL; /* pads took it */
+    if (count == 0) support->handle = NULL; /* extra supports took it */
     if (!status && support->opposed) status = add_set(c, "handle_opposite", in->opposed, &count);
     return status;
 }
@@ -376,7 +376,7 @@ lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error 
     free(c.outer);
     free(mark);
     meshing->info.fix = meshing->support.rule;
-    meshing->info.pads = meshing->support.pads;
+    meshing->info.extra_supports = meshing->support.extra_supports;
     meshing->info.fixed_nodes = meshing->support.fixed_nodes;
     return status;
 }

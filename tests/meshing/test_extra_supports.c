@@ -1,20 +1,22 @@
-/* Pads carry what would sag, and nothing else gets one. */
+/* Extra supports carry what would sag, and nothing else gets one. */
 #include "bars.h"
 
-#include "meshing/starter/pads.h"
+#include "meshing/starter/extra_supports.h"
 
 static lar_error error;
-static bool held[BAR_NODES], handle[BAR_NODES], pad[BAR_NODES], all[BAR_NODES];
+static bool held[BAR_NODES], handle[BAR_NODES], extra[BAR_NODES], all[BAR_NODES];
 static double sag[BAR_NODES];
 
-/* Held at the left end, the right one is the handle; pads under it, at the lower end of y. */
-static lar_motion with_pads(const lar_meshing *m, int32_t *pads) {
+/* Held at the left end, the right one is the handle; extra supports under it, at the lower end of
+ * y. */
+static lar_motion with_extra_supports(const lar_meshing *m, int32_t *extra_supports) {
     lar_motion motion;
     bool carried;
-    memset(pad, 0, sizeof pad);
+    memset(extra, 0, sizeof extra);
     bar_mark(m, 0, held);
     bar_mark(m, BAR_LENGTH, handle);
-    if (lar_pads_choose(m, held, 1, -1, handle, 0, pad, pads, &carried, &motion, &error))
+    if (lar_extra_supports_choose(m, held, 1, -1, handle, 0, extra, extra_supports, &carried,
+                                  &motion, &error))
         fail_msg("%s", error.message);
     assert_true(carried);
     return motion;
@@ -24,18 +26,18 @@ static void a_soft_bar_is_carried(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
     lar_motion motion, again;
-    int32_t pads = 0, nodes = 0;
+    int32_t extra_supports = 0, nodes = 0;
     bar_mark(&m, 0, held);
     assert_int_equal(lar_motion_estimate(&m, held, handle, 0, &motion, sag, &error), LAR_OK);
     assert_true(sag[BAR_NODES - 1] > 0.25 * BAR_LENGTH);
     double slowest = motion.slowest;
-    motion = with_pads(&m, &pads);
-    assert_in_range(pads, 1, 8);
+    motion = with_extra_supports(&m, &extra_supports);
+    assert_in_range(extra_supports, 1, 8);
     assert_true(motion.slowest > 2 * slowest);
     for (int n = 0; n < BAR_NODES; n++) {
-        if (pad[n]) assert_true(m.mesh.position[n][1] == 0 && !held[n] && !handle[n]);
-        nodes += pad[n];
-        all[n] = held[n] || pad[n];
+        if (extra[n]) assert_true(m.mesh.position[n][1] == 0 && !held[n] && !handle[n]);
+        nodes += extra[n];
+        all[n] = held[n] || extra[n];
     }
     assert_in_range(nodes, 4, BAR_NODES / 10);
     assert_int_equal(lar_motion_estimate(&m, all, handle, 0, &again, sag, &error), LAR_OK);
@@ -43,21 +45,23 @@ static void a_soft_bar_is_carried(void **state) {
     for (int n = 0; n < BAR_NODES; n++) assert_true(sag[n] <= 0.15 * BAR_LENGTH);
 }
 
-/* A piece may lie in the handle as a whole: then pads are there, and the rest is pulled. */
+/* A piece may lie in the handle as a whole: then extra supports are there, and the rest is pulled.
+ */
 static void the_handle_gives_way_where_it_must(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
     lar_motion motion;
-    int32_t pads = 0, left = 0;
+    int32_t extra_supports = 0, left = 0;
     bool carried = false;
-    memset(pad, 0, sizeof pad);
+    memset(extra, 0, sizeof extra);
     bar_mark(&m, 0, held);
     for (int n = 0; n < BAR_NODES; n++) handle[n] = !held[n];
-    assert_int_equal(
-        lar_pads_choose(&m, held, 1, -1, handle, 0, pad, &pads, &carried, &motion, &error), LAR_OK);
-    assert_true(carried && pads > 0);
+    assert_int_equal(lar_extra_supports_choose(&m, held, 1, -1, handle, 0, extra, &extra_supports,
+                                               &carried, &motion, &error),
+                     LAR_OK);
+    assert_true(carried && extra_supports > 0);
     for (int n = 0; n < BAR_NODES; n++) {
-        assert_false(pad[n] && handle[n]);
+        assert_false(extra[n] && handle[n]);
         left += handle[n];
     }
     assert_true(left > BAR_NODES / 2);
@@ -66,12 +70,12 @@ static void the_handle_gives_way_where_it_must(void **state) {
 static void a_stiff_bar_needs_none(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
-    int32_t pads = 1;
+    int32_t extra_supports = 1;
     m.region[0].shear_modulus *= 1000;
     m.region[0].bulk_modulus *= 1000;
-    with_pads(&m, &pads);
-    assert_int_equal(pads, 0);
-    for (int n = 0; n < BAR_NODES; n++) assert_false(pad[n]);
+    with_extra_supports(&m, &extra_supports);
+    assert_int_equal(extra_supports, 0);
+    for (int n = 0; n < BAR_NODES; n++) assert_false(extra[n]);
 }
 
 int main(void) {

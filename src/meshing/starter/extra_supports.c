@@ -1,4 +1,4 @@
-#include "meshing/starter/pads.h"
+#include "meshing/starter/extra_supports.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,10 +7,10 @@
 #include "base/union_find.h"
 #include "base/vector.h"
 
-/* Of a piece's length: how far its weight may move it; how far pads are apart, at first; of that,
- * how large they are. */
+/* Of a piece's length: how far its weight may move it; how far extra supports are apart, at first;
+ * of that, how large they are. */
 static const double SAG_MOST = 0.15, APART = 0.5, RADIUS = 0.3;
-/* Pads this part of the limit do not need. */
+/* Extra supports this part of the limit do not need. */
 static const double WORTH_IT = 0.5;
 enum { ROUNDS = 4 };
 
@@ -22,7 +22,7 @@ typedef struct search {
     int32_t *piece;       /* [nodes] its least node */
     bool *sags;           /* [nodes] at that: the piece is not carried */
     bool *all;            /* [nodes] held, by whatever */
-    bool *handle;         /* [nodes] where no pad may be */
+    bool *handle;         /* [nodes] where no extra support may be */
     bool all_else_done;   /* but now it may */
 } search;
 
@@ -143,7 +143,7 @@ static int32_t lowest(const search *s) {
 }
 
 /* Holds the faces around a node that are within reach of it: those that it belongs to, at least. */
-static void put_pad(search *s, int32_t middle, double reach, bool *pad) {
+static void put_extra_support(search *s, int32_t middle, double reach, bool *extra) {
     const lar_mesh *mesh = &s->meshing->mesh;
     for (int32_t k = 0; k < s->faces; k++) {
         int32_t node[4];
@@ -156,27 +156,28 @@ static void put_pad(search *s, int32_t middle, double reach, bool *pad) {
         for (int a = 0; a < 4 && (near || inside); a++) {
             if (is_spared(s, node[a])) continue;
             s->handle[node[a]] = false;
-            pad[node[a]] |= !s->all[node[a]];
+            extra[node[a]] |= !s->all[node[a]];
             s->all[node[a]] = true;
         }
     }
 }
 
-/* Pads where it would sag most; what is near one needs none in this round. */
-static int32_t put_pads(search *s, double apart, bool *pad) {
+/* Extra supports where it would sag most; what is near one needs none in this round. */
+static int32_t put_extra_supports(search *s, double apart, bool *extra) {
     int32_t count = 0;
     for (int32_t n; (n = lowest(s)) >= 0; count++) {
         double reach = apart * s->length[n];
-        put_pad(s, n, RADIUS * reach, pad);
+        put_extra_support(s, n, RADIUS * reach, extra);
         for (int32_t m = 0; m < s->meshing->mesh.node_count; m++)
             if (distance(s, m, n) < reach) s->sag[m] = 0;
     }
     return count;
 }
 
-lar_status lar_pads_choose(const lar_meshing *meshing, const bool *held, int axis, int sign,
-                           bool *handle, int pulled, bool *pad, int32_t *count, bool *carried,
-                           lar_motion *motion, lar_error *error) {
+lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *held, int axis,
+                                     int sign, bool *handle, int pulled, bool *extra,
+                                     int32_t *count, bool *carried, lar_motion *motion,
+                                     lar_error *error) {
     search s;
     double apart = APART;
     int round = 0;
@@ -188,9 +189,9 @@ lar_status lar_pads_choose(const lar_meshing *meshing, const bool *held, int axi
         *carried = !status && is_carried(&s);
         put = 0;
         for (; !status && !*carried && put == 0 && round < ROUNDS; round++, apart /= 2) {
-            put = put_pads(&s, apart, pad);
+            put = put_extra_supports(&s, apart, extra);
             s.all_else_done = put == 0;
-            if (put == 0) put = put_pads(&s, apart, pad);
+            if (put == 0) put = put_extra_supports(&s, apart, extra);
             s.all_else_done = false;
         }
     }
