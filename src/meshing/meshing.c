@@ -1,5 +1,5 @@
 /* From label images, closed surfaces or other meshes to a hexahedral mesh: the public calls, and
- * the line of steps behind them (meshing/grid/lattice.h draws it). */
+ * the line of steps behind them (meshing/grid/voxel_grid.h draws it). */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "base/parallel_for.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit/fit.h"
-#include "meshing/grid/lattice_check.h"
+#include "meshing/grid/voxel_grid_check.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 
@@ -42,9 +42,9 @@ typedef struct work {
     lar_meshing_options options;
     lar_meshing *meshing;
     lar_image image;
-    lar_lattice lattice;
+    lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error *error;
 } work;
 
@@ -242,7 +242,7 @@ static lar_status make_boundary(work *w) {
 
 /* ---- from there to a mesh ------------------------------------------------------------------ */
 
-static lar_status fill_lattice(work *w) {
+static lar_status fill_voxel_grid(work *w) {
     const lar_meshing_options *o = &w->options;
     const lar_boundary *boundary = &w->meshing->boundary;
     int32_t elements = o->elements > 0 ? o->elements : ELEMENTS_DEFAULT;
@@ -252,22 +252,22 @@ static lar_status fill_lattice(work *w) {
                           "the image's own voxels lie along the image's axes, not the "
                           "body's; give a size or a number of elements with principal "
                           "axes");
-        return lar_lattice_from_image(&w->image, boundary, &w->lattice, w->error);
+        return lar_voxel_grid_from_image(&w->image, boundary, &w->voxel_grid, w->error);
     }
-    if (o->size > 0) return lar_lattice_fill(boundary, o->size, &w->lattice, w->error);
+    if (o->size > 0) return lar_voxel_grid_fill(boundary, o->size, &w->voxel_grid, w->error);
     lar_status status =
-        lar_lattice_check_thickness(boundary, &w->meshing->outer, elements, w->error);
+        lar_voxel_grid_check_thickness(boundary, &w->meshing->outer, elements, w->error);
     if (status) return status;
-    return lar_lattice_fill_count(boundary, elements, &w->lattice, w->error);
+    return lar_voxel_grid_fill_count(boundary, elements, &w->voxel_grid, w->error);
 }
 
 static lar_status check_count(const work *w) {
-    int32_t count = w->draft.mesh.element_count;
+    int32_t count = w->unfitted.mesh.element_count;
     if (count >= ELEMENTS_LEAST) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.200s: elements of %.3g m are too large: the body becomes %d of them, at "
                     "least %d are a mesh; ask for a smaller size (in metres) or for more elements",
-                    w->path[0], w->draft.size, (int)count, ELEMENTS_LEAST);
+                    w->path[0], w->unfitted.size, (int)count, ELEMENTS_LEAST);
 }
 
 static bool watch_fit(void *context, double part) {
@@ -279,18 +279,19 @@ static lar_status make_mesh(work *w) {
     lar_meshing *m = w->meshing;
     const lar_fit_options fit = {.watch = watch_fit, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
-    if (!status) status = fill_lattice(w);
+    if (!status) status = fill_voxel_grid(w);
     lar_image_clear(&w->image);
     if (!status) status = tell(w, "cleaning", 0);
-    if (!status) status = lar_lattice_clean(&w->lattice, &w->cleaning, w->error);
-    if (!status) status = lar_lattice_check_reach(&m->boundary, &m->outer, &w->lattice, w->error);
-    if (!status) status = lar_draft_create(&w->lattice, &m->boundary, &w->draft, w->error);
-    lar_lattice_clear(&w->lattice);
+    if (!status) status = lar_voxel_grid_clean(&w->voxel_grid, &w->cleaning, w->error);
+    if (!status)
+        status = lar_voxel_grid_check_reach(&m->boundary, &m->outer, &w->voxel_grid, w->error);
+    if (!status) status = lar_unfitted_create(&w->voxel_grid, &m->boundary, &w->unfitted, w->error);
+    lar_voxel_grid_clear(&w->voxel_grid);
     if (!status) status = check_count(w);
     m->fitted = !w->options.voxel;
-    if (!status && m->fitted) status = lar_fit(&m->boundary, &w->draft, &fit, w->error);
-    m->info.size = w->draft.size;
-    if (!status) status = lar_draft_finish(&w->draft, &m->boundary, &m->mesh, w->error);
+    if (!status && m->fitted) status = lar_fit(&m->boundary, &w->unfitted, &fit, w->error);
+    m->info.size = w->unfitted.size;
+    if (!status) status = lar_unfitted_finish(&w->unfitted, &m->boundary, &m->mesh, w->error);
     return status;
 }
 
@@ -403,8 +404,8 @@ lar_status lar_meshing_create(const char *const *paths, int32_t count,
     if (!status) status = make_mesh(&w);
     if (!status) status = describe(&w);
     lar_image_clear(&w.image);
-    lar_lattice_clear(&w.lattice);
-    lar_draft_clear(&w.draft);
+    lar_voxel_grid_clear(&w.voxel_grid);
+    lar_unfitted_clear(&w.unfitted);
     if (status)
         lar_meshing_destroy(w.meshing);
     else

@@ -2,7 +2,7 @@
 #include "divide/genetic.h"
 
 #include "divide/exchange.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 typedef struct organ {
@@ -90,7 +90,7 @@ static void any_grid(void **state) {
  * elements of an exchange often have nodes in common. */
 static void exchange_counts_right(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 4, 4);
+    lar_mesh mesh = brick_mesh(4, 4, 4);
     lar_grid grid = grid_of(2, 1, 2);
     lar_incidence incidence;
     lar_distribution d = {0};

@@ -1,5 +1,5 @@
 /* The grid of processors: places, distances, neighbours, and what it refuses. */
-#include "lattice.h"
+#include "brick_mesh.h"
 
 static void place_and_inverse(void **state) {
     (void)state;

@@ -2,7 +2,7 @@
 #include "divide/schedule/schedule.h"
 
 #include "divide/proof/schedule_proof.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 typedef struct divided {
@@ -13,7 +13,7 @@ typedef struct divided {
 
 /* gx x gy x gz cubes of n^3 elements, one for each processor. */
 static divided cubes(int n, int gx, int gy, int gz) {
-    divided d = {.mesh = lattice(n * gx, n * gy, n * gz)};
+    divided d = {.mesh = brick_mesh(n * gx, n * gy, n * gz)};
     lar_grid grid = grid_of(gx, gy, gz);
     assert_int_equal(lar_distribution_cut(&d.mesh, &grid, &d.distribution, NULL), LAR_OK);
     assert_int_equal(lar_incidence_build(&d.mesh, &d.incidence, NULL), LAR_OK);
@@ -349,7 +349,7 @@ static void something_flows_back(void **state) {
 /* Five bodies that do not touch, one for each processor, hear of each other all the same. */
 static void bodies_apart(void **state) {
     (void)state;
-    divided d = {.mesh = lattice(9, 1, 1)};
+    divided d = {.mesh = brick_mesh(9, 1, 1)};
     for (int i = 0; i < 5; i++)
         memcpy(d.mesh.element[i], d.mesh.element[2 * i], sizeof *d.mesh.element);
     d.mesh.element_count = 5;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 #include "model/triangles/tree.h"
 
 void lar_boundary_clear(lar_boundary *boundary) {
@@ -109,7 +109,7 @@ static lar_status find_volumes(const lar_triangles *surfaces, int32_t count, lar
     double low[3], high[3], volume[LAR_REGIONS_MOST + 1] = {0};
     find_box(&boundary->triangles, low, high);
     double widest = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
-    lar_status status = lar_lattice_measure(boundary, widest / CELLS_ACROSS, volume, error);
+    lar_status status = lar_voxel_grid_measure(boundary, widest / CELLS_ACROSS, volume, error);
     for (int32_t r = 1; r <= count && !status; r++) boundary->region[r].volume = volume[r];
     return status;
 }

@@ -7,11 +7,11 @@
 #include "meshing/fit/face_boxes.h"
 #include "meshing/fit/work.h"
 
-/* Outer faces shall not go through each other. The draft's do not. After each round all pairs are
- * looked at: where some cross, the round is gone back on and done again, and from then on nodes of
- * these faces and of those near them are watched: they move only as far as their faces stay clear
- * of all others. When some cross once more all nodes are watched, and none can. Most bodies have
- * none to watch, and nothing of the work. */
+/* Outer faces shall not go through each other. the unfitted mesh's do not. After each round all
+ * pairs are looked at: where some cross, the round is gone back on and done again, and from then on
+ * nodes of these faces and of those near them are watched: they move only as far as their faces
+ * stay clear of all others. When some cross once more all nodes are watched, and none can. Most
+ * bodies have none to watch, and nothing of the work. */
 
 /* Faces that share no node keep so far apart, so that no rounding in a file makes them cross; a
  * watched node moves no farther in a round, for which the faces near it are listed [cells]. */

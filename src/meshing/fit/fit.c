@@ -67,19 +67,19 @@ static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_er
     return LAR_OK;
 }
 
-lar_status lar_fit(const lar_boundary *boundary, lar_draft_mesh *draft,
+lar_status lar_fit(const lar_boundary *boundary, lar_unfitted_mesh *unfitted,
                    const lar_fit_options *options, lar_error *error) {
     lar_fit_work work = {
         .law = usual, .slot_law = lenient, .face_weight = FACE_WEIGHT, .node_weight = NODE_WEIGHT};
     if (options && options->floor > 0) work.law.floor = options->floor;
     if (options && options->aim > 0) work.law.aim = options->aim;
-    lar_status status = lar_fit_work_create(boundary, draft, &work, error);
+    lar_status status = lar_fit_work_create(boundary, unfitted, &work, error);
     if (status == LAR_OK) status = check_start(&work, error);
     if (status == LAR_OK) status = lar_fit_targets_create(&work, error);
     if (status == LAR_OK) status = run(&work, options, error);
-    for (int32_t n = 0; status == LAR_OK && n < draft->mesh.node_count; n++)
+    for (int32_t n = 0; status == LAR_OK && n < unfitted->mesh.node_count; n++)
         for (int i = 0; i < 3; i++)
-            draft->mesh.position[n][i] = work.origin[i] + work.size * work.x[n][i];
+            unfitted->mesh.position[n][i] = work.origin[i] + work.size * work.x[n][i];
     lar_fit_work_clear(&work);
     return status;
 }

@@ -1,5 +1,5 @@
-/* What fitting works on. Lengths are in cells, from the first node of the draft: everything is
- * near 1, and a weight means the same for a mouse and for a man.
+/* What fitting works on. Lengths are in cells, from the first node of the unfitted mesh: everything
+ * is near 1, and a weight means the same for a mouse and for a man.
  *
  *     fit.c          the order of things
  *     faces.c        which elements and faces are around each node
@@ -97,15 +97,15 @@ typedef struct lar_fit_work {
     lar_fit_pair *pair;
     lar_fit_region *region; /* [regions + 1] */
 
-    const int32_t (*slot)[4]; /* the draft's */
+    const int32_t (*slot)[4]; /* the unfitted mesh's */
     lar_fit_law law, slot_law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
     bool *awake;                     /* per node: worth moving */
     lar_fit_apart apart;
 } lar_fit_work;
 
-/* Fills a zeroed one. The draft and the boundary must outlive it. */
-lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
+/* Fills a zeroed one. The unfitted mesh and the boundary must outlive it. */
+lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_mesh *unfitted,
                                lar_fit_work *work, lar_error *error);
 void lar_fit_work_clear(lar_fit_work *work);
 

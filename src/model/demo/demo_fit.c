@@ -177,7 +177,7 @@ static double energy(const fit *f, const double *flat, double *flat_gradient) {
             gradient[p->node][c] += 2.0 * f->surface_weight * away * p->normal[c];
     }
     for (int a = 0; a < f->half->node_count; ++a)
-        if (f->half->lattice[a][0] == 0) gradient[a][0] = 0.0;
+        if (f->half->grid[a][0] == 0) gradient[a][0] = 0.0;
     return sum;
 }
 

@@ -13,7 +13,7 @@ enum { INTERFACES_MOST = 2048, NAME_MOST = 200 };
 static const double CUT_LEAN = 0.7;
 
 typedef struct finishing {
-    lar_draft_mesh *draft;
+    lar_unfitted_mesh *unfitted;
     const lar_boundary *boundary;
     int32_t *outer, outer_count;
     lar_error *error;
@@ -33,7 +33,7 @@ static void plain_name(const char *name, char plain[NAME_MOST]) {
 /* Adds a set; where another one has the name already a number follows it ("kidney_2"). */
 static lar_status add_set(finishing *work, const char *name, lar_set_kind kind,
                           const int32_t *index, int32_t count) {
-    lar_mesh *mesh = &work->draft->mesh;
+    lar_mesh *mesh = &work->unfitted->mesh;
     char unique[2 * NAME_MOST + 16];
     snprintf(unique, sizeof unique, "%s", name);
     for (int n = 2; lar_mesh_find_set(mesh, unique, kind); n++)
@@ -51,7 +51,7 @@ static void region_name(const finishing *work, int region, char plain[NAME_MOST]
 
 /* Elements by region, and their outer faces. */
 static lar_status add_regions(finishing *work, int32_t *index) {
-    const lar_mesh *mesh = &work->draft->mesh;
+    const lar_mesh *mesh = &work->unfitted->mesh;
     lar_status status = LAR_OK;
     for (int r = 1; !status && r <= work->boundary->region_count; r++) {
         char name[NAME_MOST], surface[NAME_MOST + 16];
@@ -83,16 +83,16 @@ static void face_normal(const lar_mesh *mesh, int32_t face, double normal[3]) {
     for (int d = 0; d < 3; d++) normal[d] /= length > 0 ? length : 1;
 }
 
-static bool node_meets(const lar_draft_mesh *draft, int32_t node, uint16_t number) {
-    for (int32_t m = draft->meet_start[node]; m < draft->meet_start[node + 1]; m++)
-        if (draft->meet[m][0] == number || draft->meet[m][1] == number) return true;
+static bool node_meets(const lar_unfitted_mesh *unfitted, int32_t node, uint16_t number) {
+    for (int32_t m = unfitted->meet_start[node]; m < unfitted->meet_start[node + 1]; m++)
+        if (unfitted->meet[m][0] == number || unfitted->meet[m][1] == number) return true;
     return false;
 }
 
 static bool is_on_cut(const finishing *work, int32_t face, int cut) {
-    const lar_mesh *mesh = &work->draft->mesh;
+    const lar_mesh *mesh = &work->unfitted->mesh;
     for (int a = 0; a < 4; a++)
-        if (!node_meets(work->draft, mesh->element[face / 6][lar_face_node[face % 6][a]],
+        if (!node_meets(work->unfitted, mesh->element[face / 6][lar_face_node[face % 6][a]],
                         (uint16_t)(LAR_REGION_CUT + cut)))
             return false;
     double normal[3];
@@ -129,7 +129,7 @@ static int compare_interface_faces(const void *x, const void *y) {
 }
 
 static lar_status find_interface_faces(finishing *work, interface_face **found, size_t *count) {
-    const lar_mesh *mesh = &work->draft->mesh;
+    const lar_mesh *mesh = &work->unfitted->mesh;
     lar_face_table table = {0};
     size_t capacity = 0;
     lar_status status = lar_face_table_build(mesh, &table, work->error);
@@ -196,13 +196,13 @@ static lar_status add_interfaces(finishing *work, int32_t *index) {
     return status;
 }
 
-lar_status lar_draft_finish(lar_draft_mesh *draft, const lar_boundary *boundary, lar_mesh *mesh,
-                            lar_error *error) {
-    finishing work = {.draft = draft, .boundary = boundary, .error = error};
-    const size_t faces = (size_t)draft->mesh.element_count * 6;
+lar_status lar_unfitted_finish(lar_unfitted_mesh *unfitted, const lar_boundary *boundary,
+                               lar_mesh *mesh, lar_error *error) {
+    finishing work = {.unfitted = unfitted, .boundary = boundary, .error = error};
+    const size_t faces = (size_t)unfitted->mesh.element_count * 6;
     int32_t *index = lar_calloc(faces, sizeof *index);
     if (!index) return lar_fail_memory(error, faces * sizeof *index, "the sets of the mesh");
-    lar_status status = lar_mesh_boundary(&draft->mesh, &work.outer, &work.outer_count, error);
+    lar_status status = lar_mesh_boundary(&unfitted->mesh, &work.outer, &work.outer_count, error);
     if (!status) status = add_set(&work, "surface", LAR_SET_FACES, work.outer, work.outer_count);
     if (!status) status = add_regions(&work, index);
     if (!status) status = add_cuts(&work, index);
@@ -210,9 +210,9 @@ lar_status lar_draft_finish(lar_draft_mesh *draft, const lar_boundary *boundary,
     free(work.outer);
     free(index);
     if (status) return status;
-    for (int32_t e = 0; e < draft->mesh.element_count; e++)
-        draft->mesh.element_tag[e] = boundary->region[draft->mesh.element_tag[e]].tag;
-    *mesh = draft->mesh;
-    draft->mesh = (lar_mesh){0};
+    for (int32_t e = 0; e < unfitted->mesh.element_count; e++)
+        unfitted->mesh.element_tag[e] = boundary->region[unfitted->mesh.element_tag[e]].tag;
+    *mesh = unfitted->mesh;
+    unfitted->mesh = (lar_mesh){0};
     return LAR_OK;
 }

@@ -16,10 +16,10 @@
  * touch the surface a second time nearly opposite: else the place lies at an edge or in a corner,
  * where balls are small too (the angle by which Foskey, Lin and Manocha 2003 prune a medial axis).
  */
-#ifndef LAR_MESHING_GRID_LATTICE_THIN_H
-#define LAR_MESHING_GRID_LATTICE_THIN_H
+#ifndef LAR_MESHING_GRID_VOXEL_GRID_THIN_H
+#define LAR_MESHING_GRID_VOXEL_GRID_THIN_H
 
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 
 /* A place on the outer surface where the body or the outside is thin. */
 typedef struct lar_thin_place {
@@ -56,14 +56,15 @@ typedef struct lar_thin_changes {
     size_t count;
 } lar_thin_changes;
 
-/* What widening changes of the cells of a lattice that has its place but no regions yet. */
+/* What widening changes of the cells of a grid that has its place but no regions yet. */
 lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
-                          const lar_lattice *lattice, lar_thin_changes *changes, lar_error *error);
+                          const lar_voxel_grid *voxel_grid, lar_thin_changes *changes,
+                          lar_error *error);
 void lar_thin_changes_clear(lar_thin_changes *changes);
 
-/* lar_lattice_fill; what is thin is looked for where `thin`, zeroed at first, does not serve: once
- * for all sizes that are tried, as it takes longer than the lattice. */
-lar_status lar_lattice_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
-                                 lar_lattice *lattice, lar_error *error);
+/* lar_voxel_grid_fill; what is thin is looked for where `thin`, zeroed at first, does not serve:
+ * once for all sizes that are tried, as it takes longer than the grid. */
+lar_status lar_voxel_grid_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
+                                    lar_voxel_grid *voxel_grid, lar_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "meshing/grid/draft_cuts.h"
+#include "meshing/grid/unfitted_cuts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,8 +31,8 @@ static void set_normals(const lar_boundary *boundary, double (*normal)[3]) {
     }
 }
 
-lar_status lar_draft_cuts_create(const lar_boundary *boundary, lar_draft_cuts *cuts,
-                                 lar_error *error) {
+lar_status lar_unfitted_cuts_create(const lar_boundary *boundary, lar_unfitted_cuts *cuts,
+                                    lar_error *error) {
     cuts->boundary = boundary;
     if (boundary->cut_count == 0) return LAR_OK;
     const int32_t count = boundary->triangles.triangle_count;
@@ -55,14 +55,14 @@ lar_status lar_draft_cuts_create(const lar_boundary *boundary, lar_draft_cuts *c
     return status;
 }
 
-void lar_draft_cuts_clear(lar_draft_cuts *cuts) {
+void lar_unfitted_cuts_clear(lar_unfitted_cuts *cuts) {
     for (int f = 0; f < 1 + LAR_CUTS; f++) lar_triangle_tree_destroy(cuts->tree[f]);
     free(cuts->normal);
-    *cuts = (lar_draft_cuts){0};
+    *cuts = (lar_unfitted_cuts){0};
 }
 
 /* Whether a cut's plane comes near a point: most faces are far from all. */
-static bool any_cut_near(const lar_draft_cuts *cuts, const double point[3], double reach) {
+static bool any_cut_near(const lar_unfitted_cuts *cuts, const double point[3], double reach) {
     for (int c = 0; c < LAR_CUTS; c++) {
         const lar_cut *cut = &cuts->boundary->cut[c];
         if (!cuts->tree[1 + c]) continue;
@@ -73,27 +73,27 @@ static bool any_cut_near(const lar_draft_cuts *cuts, const double point[3], doub
     return false;
 }
 
-uint16_t lar_draft_cuts_front(const lar_draft_cuts *cuts, const lar_lattice *lattice,
-                              const int cell[3], int face) {
+uint16_t lar_unfitted_cuts_front(const lar_unfitted_cuts *cuts, const lar_voxel_grid *voxel_grid,
+                                 const int cell[3], int face) {
     if (cuts->boundary->cut_count == 0) return 0;
-    const double *normal = lattice->axis[face / 2], sign = face % 2 ? 1 : -1;
+    const double *normal = voxel_grid->axis[face / 2], sign = face % 2 ? 1 : -1;
     double centre[3];
     for (int d = 0; d < 3; d++) {
-        centre[d] = lattice->origin[d] + 0.5 * sign * lattice->size * normal[d];
+        centre[d] = voxel_grid->origin[d] + 0.5 * sign * voxel_grid->size * normal[d];
         for (int a = 0; a < 3; a++)
-            centre[d] += (cell[a] + 0.5) * lattice->size * lattice->axis[a][d];
+            centre[d] += (cell[a] + 0.5) * voxel_grid->size * voxel_grid->axis[a][d];
     }
-    if (!any_cut_near(cuts, centre, REACH * lattice->size)) return 0;
+    if (!any_cut_near(cuts, centre, REACH * voxel_grid->size)) return 0;
 
     int front = 0;
     double least = INFINITY;
     for (int f = 0; f < 1 + LAR_CUTS; f++) {
         lar_nearest nearest;
-        if (!cuts->tree[f] ||
-            !lar_triangle_tree_nearest(cuts->tree[f], centre, 2 * REACH * lattice->size, &nearest))
+        if (!cuts->tree[f] || !lar_triangle_tree_nearest(cuts->tree[f], centre,
+                                                         2 * REACH * voxel_grid->size, &nearest))
             continue;
         const double along = sign * lar_dot(normal, cuts->normal[nearest.triangle]);
-        const double cost = nearest.distance / lattice->size + TURN_WEIGHT * (1 - along);
+        const double cost = nearest.distance / voxel_grid->size + TURN_WEIGHT * (1 - along);
         if (cost < least) {
             least = cost;
             front = f;

@@ -5,10 +5,10 @@
  * as many cells as its volume fills. A plate of half a cell's thickness has the cells along it
  * then, and fitting gives them its thickness.
  */
-#ifndef LAR_MESHING_GRID_LATTICE_VOTES_H
-#define LAR_MESHING_GRID_LATTICE_VOTES_H
+#ifndef LAR_MESHING_GRID_VOXEL_GRID_VOTES_H
+#define LAR_MESHING_GRID_VOXEL_GRID_VOTES_H
 
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 
 /* A region's part of a cell; those of a cell stand one after the other. Cells that one region fills
  * have none. */
@@ -28,9 +28,9 @@ typedef struct lar_votes {
 /* Adds what lies in a cell: region, its part of the cell (0..1). False: no memory. */
 bool lar_votes_add(lar_votes *votes, size_t cell, int region, double part);
 
-/* Gives the cells to regions: lattice->region, inner and share are written anew where there are
+/* Gives the cells to regions: grid->region, inner and share are written anew where there are
  * votes, share by weight as well, so that half of it decides whether a cell is inside. */
-void lar_votes_count(const lar_votes *votes, int32_t regions, lar_lattice *lattice);
+void lar_votes_count(const lar_votes *votes, int32_t regions, lar_voxel_grid *voxel_grid);
 
 void lar_votes_clear(lar_votes *votes);
 

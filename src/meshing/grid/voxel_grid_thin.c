@@ -1,4 +1,4 @@
-#include "meshing/grid/lattice_thin.h"
+#include "meshing/grid/voxel_grid_thin.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -220,8 +220,8 @@ typedef struct fine_cell {
 
 typedef struct widening {
     const lar_boundary *boundary;
-    const lar_lattice *lattice;
-    double origin[3]; /* along the lattice's axes */
+    const lar_voxel_grid *voxel_grid;
+    double origin[3]; /* along the grid's axes */
     int32_t *of;      /* [cells] */
     fine_cell *fine;
     size_t count, capacity;
@@ -248,26 +248,26 @@ static fine_cell *fine_cell_at(widening *w, size_t cell) {
 }
 
 static void fine_middle(const widening *w, const int at[3], double middle[3]) {
-    const lar_lattice *lattice = w->lattice;
-    memcpy(middle, lattice->origin, 3 * sizeof *middle);
+    const lar_voxel_grid *voxel_grid = w->voxel_grid;
+    memcpy(middle, voxel_grid->origin, 3 * sizeof *middle);
     for (int a = 0; a < 3; a++)
         for (int d = 0; d < 3; d++)
-            middle[d] += (at[a] + 0.5) / FINE * lattice->size * lattice->axis[a][d];
+            middle[d] += (at[a] + 0.5) / FINE * voxel_grid->size * voxel_grid->axis[a][d];
 }
 
-/* What of the half ball around a place, on the side that it moves to, lies in the lattice's cells
+/* What of the half ball around a place, on the side that it moves to, lies in the grid's cells
  * but the outermost ones. */
 static bool add_half_ball(widening *w, const lar_thin_place *place, double way) {
-    const lar_lattice *lattice = w->lattice;
+    const lar_voxel_grid *voxel_grid = w->voxel_grid;
     const double radius = FINE * fabs(way), side = way < 0 ? -1 : 1;
     double centre[3], normal[3];
     int low[3], high[3];
     for (int a = 0; a < 3; a++) {
-        const double along = lar_dot(lattice->axis[a], place->point) - w->origin[a];
-        centre[a] = FINE * along / lattice->size - 0.5;
-        normal[a] = side * lar_dot(lattice->axis[a], place->normal);
+        const double along = lar_dot(voxel_grid->axis[a], place->point) - w->origin[a];
+        centre[a] = FINE * along / voxel_grid->size - 0.5;
+        normal[a] = side * lar_dot(voxel_grid->axis[a], place->normal);
         low[a] = (int)fmax(FINE, ceil(centre[a] - radius));
-        high[a] = (int)fmin(FINE * (lattice->cells[a] - 1) - 1, floor(centre[a] + radius));
+        high[a] = (int)fmin(FINE * (voxel_grid->cells[a] - 1) - 1, floor(centre[a] + radius));
     }
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
@@ -278,7 +278,7 @@ static bool add_half_ball(widening *w, const lar_thin_place *place, double way) 
                 fine_middle(w, (const int[]){i, j, k}, middle);
                 if (way > 0 && beyond_cut(w->boundary, middle)) continue;
                 fine_cell *cell =
-                    fine_cell_at(w, lar_lattice_cell(lattice, i / FINE, j / FINE, k / FINE));
+                    fine_cell_at(w, lar_voxel_grid_cell(voxel_grid, i / FINE, j / FINE, k / FINE));
                 if (!cell) return false;
                 const int bit = i % FINE + FINE * (j % FINE) + FINE * FINE * (k % FINE);
                 *(way < 0 ? &cell->emptied : &cell->filled) |= UINT64_C(1) << bit;
@@ -318,19 +318,20 @@ void lar_thin_changes_clear(lar_thin_changes *changes) {
 }
 
 lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
-                          const lar_lattice *lattice, lar_thin_changes *changes, lar_error *error) {
+                          const lar_voxel_grid *voxel_grid, lar_thin_changes *changes,
+                          lar_error *error) {
     if (!thin || thin->count == 0) return LAR_OK;
     const double least = boundary->region_count > 1 ? SLOT_LEAST_REGIONS : SLOT_LEAST;
-    widening w = {.boundary = boundary, .lattice = lattice};
+    widening w = {.boundary = boundary, .voxel_grid = voxel_grid};
     const size_t cells =
-        (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
+        (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
     lar_status status = LAR_OK;
     w.of = lar_calloc(cells, sizeof *w.of);
     if (!w.of) return lar_fail_memory(error, cells * sizeof *w.of, "what is thin of the body");
     for (size_t c = 0; c < cells; c++) w.of[c] = -1;
-    for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(lattice->axis[a], lattice->origin);
+    for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(voxel_grid->axis[a], voxel_grid->origin);
     for (size_t p = 0; !status && p < thin->count; p++) {
-        const double way = way_of(&thin->place[p], least, lattice->size);
+        const double way = way_of(&thin->place[p], least, voxel_grid->size);
         if (way != 0 && !add_half_ball(&w, &thin->place[p], way))
             status =
                 lar_fail_memory(error, 2 * w.capacity * sizeof *w.fine, "what is thin of the body");

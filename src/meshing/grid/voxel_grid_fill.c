@@ -1,8 +1,8 @@
 /* Which region has how much of every cell. A line that does not come out of the body again takes no
  * part: the others of its row stand for it. */
-#include "meshing/grid/lattice_lines.h"
-#include "meshing/grid/lattice_thin.h"
-#include "meshing/grid/lattice_votes.h"
+#include "meshing/grid/voxel_grid_lines.h"
+#include "meshing/grid/voxel_grid_thin.h"
+#include "meshing/grid/voxel_grid_votes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ enum { LINES = LAR_LINES_PER_CELL, COUNTERS = LAR_REGIONS_MOST + 1 };
 
 typedef struct work {
     const lar_boundary *boundary;
-    lar_lattice *lattice;
+    lar_voxel_grid *voxel_grid;
     lar_lines lines;
     double *length; /* [regions + 1][cells along] parts of the cells of one row */
     bool met[COUNTERS];
@@ -23,7 +23,7 @@ typedef struct work {
     lar_votes votes; /* of several regions */
 } work;
 
-/* ---- where the lattice lies ----------------------------------------------------------------- */
+/* ---- where the grid lies ----------------------------------------------------------------- */
 
 /* Planes of flat cuts across an axis. */
 typedef struct ends {
@@ -111,45 +111,46 @@ static double cells_along(double extent, bool flat) {
     return !flat || filled >= FULL || cells < 3 ? cells : cells + 1;
 }
 
-static lar_status place_lattice(const lar_boundary *boundary, double size, lar_lattice *lattice,
-                                lar_error *error) {
+static lar_status place_voxel_grid(const lar_boundary *boundary, double size,
+                                   lar_voxel_grid *voxel_grid, lar_error *error) {
     ends end[3];
     double low[3], high[3], all = 1;
     find_ends(boundary, end);
     find_extent(boundary, low, high);
-    lattice->size = fitting_size(size, end, low, high);
-    memcpy(lattice->axis, boundary->axis, sizeof lattice->axis);
+    voxel_grid->size = fitting_size(size, end, low, high);
+    memcpy(voxel_grid->axis, boundary->axis, sizeof voxel_grid->axis);
     double corner[3];
     for (int a = 0; a < 3; a++) {
-        double extent = (high[a] - low[a]) / lattice->size;
+        double extent = (high[a] - low[a]) / voxel_grid->size;
         if (!isfinite(extent))
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: the body has no finite extent; look at its coordinates",
                             boundary->triangles.source ? boundary->triangles.source : "surface");
         bool cut = end[a].cut[0] || end[a].cut[1];
         double cells =
-            cells_along(extent, !cut && has_flat_ends(boundary, lattice->size, a, low, high));
+            cells_along(extent, !cut && has_flat_ends(boundary, voxel_grid->size, a, low, high));
         bool at_low = end[a].cut[0] && (!end[a].cut[1] || end[a].area[0] >= end[a].area[1]);
         if (at_low)
             corner[a] = low[a];
         else if (end[a].cut[1])
-            corner[a] = high[a] - cells * lattice->size;
+            corner[a] = high[a] - cells * voxel_grid->size;
         else
-            corner[a] = (low[a] + high[a] - cells * lattice->size) / 2;
-        corner[a] -= lattice->size;
+            corner[a] = (low[a] + high[a] - cells * voxel_grid->size) / 2;
+        corner[a] -= voxel_grid->size;
         all *= cells + 2;
-        if (!(all <= LAR_LATTICE_CELLS_MOST))
+        if (!(all <= LAR_VOXEL_GRID_CELLS_MOST))
             return lar_fail(
                 error, LAR_ERROR_ARGUMENT,
                 "cells of %.4g mm would be more than %d for a body of %.4g x %.4g x %.4g "
                 "mm; choose a larger size, or look at the surface's unit (--scale)",
-                1e3 * size, (int)LAR_LATTICE_CELLS_MOST, 1e3 * (high[0] - low[0]),
+                1e3 * size, (int)LAR_VOXEL_GRID_CELLS_MOST, 1e3 * (high[0] - low[0]),
                 1e3 * (high[1] - low[1]), 1e3 * (high[2] - low[2]));
-        lattice->cells[a] = (int32_t)cells + 2;
+        voxel_grid->cells[a] = (int32_t)cells + 2;
     }
     for (int b = 0; b < 3; b++)
-        lattice->origin[b] = corner[0] * lattice->axis[0][b] + corner[1] * lattice->axis[1][b] +
-                             corner[2] * lattice->axis[2][b];
+        voxel_grid->origin[b] = corner[0] * voxel_grid->axis[0][b] +
+                                corner[1] * voxel_grid->axis[1][b] +
+                                corner[2] * voxel_grid->axis[2][b];
     return LAR_OK;
 }
 
@@ -157,7 +158,7 @@ static lar_status place_lattice(const lar_boundary *boundary, double size, lar_l
 
 static void add_length(void *context, int region, double from, double to) {
     work *w = context;
-    int32_t cells = w->lattice->cells[0];
+    int32_t cells = w->voxel_grid->cells[0];
     double *length = &w->length[(size_t)region * (size_t)cells];
     w->met[region] = true;
     int32_t first = (int32_t)fmax(0, floor(from));
@@ -169,7 +170,7 @@ static void change_cell(work *w, size_t cell, int32_t i, int lines) {
     const int32_t index = w->changes.of ? w->changes.of[cell] : -1;
     if (index < 0) return;
     const lar_thin_change *change = &w->changes.one[index];
-    const size_t cells = (size_t)w->lattice->cells[0];
+    const size_t cells = (size_t)w->voxel_grid->cells[0];
     double inside = 0;
     for (int r = 1; r <= w->boundary->region_count; r++)
         inside += w->length[(size_t)r * cells + (size_t)i];
@@ -183,9 +184,9 @@ static void change_cell(work *w, size_t cell, int32_t i, int lines) {
 }
 
 static bool write_row(work *w, int32_t j, int32_t k, int lines) {
-    lar_lattice *lattice = w->lattice;
-    int32_t cells = lattice->cells[0];
-    size_t row = lar_lattice_cell(lattice, 0, j, k);
+    lar_voxel_grid *voxel_grid = w->voxel_grid;
+    int32_t cells = voxel_grid->cells[0];
+    size_t row = lar_voxel_grid_cell(voxel_grid, 0, j, k);
     bool kept = true;
     for (int32_t i = 0; i < cells && lines > 0; i++) {
         double inside = 0, largest = 0;
@@ -200,10 +201,10 @@ static bool write_row(work *w, int32_t j, int32_t k, int lines) {
             if (part > largest) largest = part, inner = r;
         }
         inside = fmin(1, inside / lines);
-        lattice->inner[row + (size_t)i] = (uint8_t)inner;
+        voxel_grid->inner[row + (size_t)i] = (uint8_t)inner;
         /* A body's flat side may lie in the middle of cells: rounding must not decide. */
-        lattice->region[row + (size_t)i] = inside >= 0.5 - 1e-6 ? (uint8_t)inner : 0;
-        lattice->share[row + (size_t)i] = (uint8_t)lround(255 * inside);
+        voxel_grid->region[row + (size_t)i] = inside >= 0.5 - 1e-6 ? (uint8_t)inner : 0;
+        voxel_grid->share[row + (size_t)i] = (uint8_t)lround(255 * inside);
     }
     for (int r = 1; r <= w->boundary->region_count; r++)
         if (w->met[r])
@@ -214,18 +215,18 @@ static bool write_row(work *w, int32_t j, int32_t k, int lines) {
 
 /* A row of which no line counts becomes like the nearest one before it, or else after it. */
 static void copy_rows(work *w) {
-    lar_lattice *lattice = w->lattice;
-    size_t cells = (size_t)lattice->cells[0];
-    size_t rows = (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
+    lar_voxel_grid *voxel_grid = w->voxel_grid;
+    size_t cells = (size_t)voxel_grid->cells[0];
+    size_t rows = (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
     for (size_t r = 0; r < rows; r++) {
         if (w->row_lines[r]) continue;
         size_t from = r;
         while (from > 0 && !w->row_lines[from]) from--;
         for (; from < rows && !w->row_lines[from];) from++;
         if (from == rows) return;
-        memcpy(&lattice->region[r * cells], &lattice->region[from * cells], cells);
-        memcpy(&lattice->inner[r * cells], &lattice->inner[from * cells], cells);
-        memcpy(&lattice->share[r * cells], &lattice->share[from * cells], cells);
+        memcpy(&voxel_grid->region[r * cells], &voxel_grid->region[from * cells], cells);
+        memcpy(&voxel_grid->inner[r * cells], &voxel_grid->inner[from * cells], cells);
+        memcpy(&voxel_grid->share[r * cells], &voxel_grid->share[from * cells], cells);
     }
 }
 
@@ -234,22 +235,22 @@ static void copy_rows(work *w) {
 static void limit_votes(work *w) {
     const double MOST_OFF = 0.15;
     for (int r = 1; r <= w->boundary->region_count; r++) {
-        const double volume = w->boundary->region[r].volume / pow(w->lattice->size, 3);
+        const double volume = w->boundary->region[r].volume / pow(w->voxel_grid->size, 3);
         w->votes.volume[r] =
             fmin(fmax(w->votes.volume[r], (1 - MOST_OFF) * volume), (1 + MOST_OFF) * volume);
     }
 }
 
 static lar_status follow_lines(work *w, lar_error *error) {
-    lar_lattice *lattice = w->lattice;
-    size_t lengths = (size_t)(w->boundary->region_count + 1) * (size_t)lattice->cells[0];
-    size_t rows = (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
+    lar_voxel_grid *voxel_grid = w->voxel_grid;
+    size_t lengths = (size_t)(w->boundary->region_count + 1) * (size_t)voxel_grid->cells[0];
+    size_t rows = (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
     w->length = lar_calloc(lengths, sizeof *w->length);
     w->row_lines = lar_calloc(rows, 1);
     if (!w->length || !w->row_lines)
         return lar_fail_memory(error, 8 * lengths + rows, "the rows of the grid");
-    for (int32_t k = 0; k < lattice->cells[2]; k++)
-        for (int32_t j = 0; j < lattice->cells[1]; j++) {
+    for (int32_t k = 0; k < voxel_grid->cells[2]; k++)
+        for (int32_t j = 0; j < voxel_grid->cells[1]; j++) {
             int good = 0;
             for (int line = 0; line < LINES * LINES; line++) {
                 size_t across = (size_t)(LINES * j + line % LINES);
@@ -257,52 +258,52 @@ static lar_status follow_lines(work *w, lar_error *error) {
                 good += lar_lines_follow(&w->lines, up * (size_t)w->lines.count[0] + across,
                                          add_length, w);
             }
-            lattice->repaired += LINES * LINES - good;
-            w->row_lines[(size_t)k * (size_t)lattice->cells[1] + (size_t)j] = (uint8_t)good;
+            voxel_grid->repaired += LINES * LINES - good;
+            w->row_lines[(size_t)k * (size_t)voxel_grid->cells[1] + (size_t)j] = (uint8_t)good;
             if (!write_row(w, j, k, good))
                 return lar_fail_memory(error, 2 * w->votes.capacity * sizeof *w->votes.vote,
                                        "the regions' parts of cells");
         }
     if (w->boundary->region_count > 1) {
         limit_votes(w);
-        lar_votes_count(&w->votes, w->boundary->region_count, lattice);
+        lar_votes_count(&w->votes, w->boundary->region_count, voxel_grid);
     }
-    if (lattice->repaired) copy_rows(w);
+    if (voxel_grid->repaired) copy_rows(w);
     return LAR_OK;
 }
 
 /* ---- all of it ------------------------------------------------------------------------------ */
 
 static lar_status fill(work *w, const lar_thin *thin, lar_error *error) {
-    lar_lattice *lattice = w->lattice;
+    lar_voxel_grid *voxel_grid = w->voxel_grid;
     size_t cells =
-        (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
-    lattice->region = lar_calloc(cells, 1);
-    lattice->inner = lar_calloc(cells, 1);
-    lattice->share = lar_calloc(cells, 1);
-    if (!lattice->region || !lattice->inner || !lattice->share)
+        (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
+    voxel_grid->region = lar_calloc(cells, 1);
+    voxel_grid->inner = lar_calloc(cells, 1);
+    voxel_grid->share = lar_calloc(cells, 1);
+    if (!voxel_grid->region || !voxel_grid->inner || !voxel_grid->share)
         return lar_fail_memory(error, 3 * cells, "the grid of cells");
-    lar_status status = lar_lines_create(w->boundary, lattice, &w->lines, error);
-    if (!status) status = lar_thin_widen(thin, w->boundary, lattice, &w->changes, error);
+    lar_status status = lar_lines_create(w->boundary, voxel_grid, &w->lines, error);
+    if (!status) status = lar_thin_widen(thin, w->boundary, voxel_grid, &w->changes, error);
     if (!status) status = follow_lines(w, error);
     if (status) return status;
     for (size_t c = 0; c < cells; c++)
-        if (lattice->region[c]) return LAR_OK;
+        if (voxel_grid->region[c]) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "no cell of %.4g mm is half full: the body is smaller or thinner than that; "
                     "choose a smaller size or more elements",
-                    1e3 * lattice->size);
+                    1e3 * voxel_grid->size);
 }
 
-lar_status lar_lattice_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
-                                 lar_lattice *lattice, lar_error *error) {
+lar_status lar_voxel_grid_fill_thin(const lar_boundary *boundary, lar_thin *thin, double size,
+                                    lar_voxel_grid *voxel_grid, lar_error *error) {
     if (!(size > 0 && isfinite(size)))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a size of %g m is none; choose the edge of an element", size);
-    lar_lattice made = {0};
-    lar_status status = place_lattice(boundary, size, &made, error);
+    lar_voxel_grid made = {0};
+    lar_status status = place_voxel_grid(boundary, size, &made, error);
     if (!status) {
-        work w = {.boundary = boundary, .lattice = &made};
+        work w = {.boundary = boundary, .voxel_grid = &made};
         const double room = 1.15; /* for other sizes that are tried */
         if (made.size > thin->size || made.size < LAR_THIN_SMALLEST * thin->size)
             status = lar_thin_find(boundary, room * made.size, thin, error);
@@ -314,9 +315,9 @@ lar_status lar_lattice_fill_thin(const lar_boundary *boundary, lar_thin *thin, d
         lar_votes_clear(&w.votes);
     }
     if (status)
-        lar_lattice_clear(&made);
+        lar_voxel_grid_clear(&made);
     else
-        *lattice = made;
+        *voxel_grid = made;
     return status;
 }
 
@@ -324,18 +325,18 @@ static void add_stretch(void *context, int region, double from, double to) {
     ((double *)context)[region] += to - from;
 }
 
-lar_status lar_lattice_measure(const lar_boundary *boundary, double size, double *volume,
-                               lar_error *error) {
-    lar_lattice lattice = {0};
+lar_status lar_voxel_grid_measure(const lar_boundary *boundary, double size, double *volume,
+                                  lar_error *error) {
+    lar_voxel_grid voxel_grid = {0};
     lar_lines lines = {0};
-    lar_status status = place_lattice(boundary, size, &lattice, error);
-    if (!status) status = lar_lines_create(boundary, &lattice, &lines, error);
+    lar_status status = place_voxel_grid(boundary, size, &voxel_grid, error);
+    if (!status) status = lar_lines_create(boundary, &voxel_grid, &lines, error);
     if (status) return status;
     for (int32_t r = 0; r <= boundary->region_count; r++) volume[r] = 0;
     size_t count = (size_t)lines.count[0] * (size_t)lines.count[1];
     for (size_t line = 0; line < count; line++) lar_lines_follow(&lines, line, add_stretch, volume);
     for (int32_t r = 0; r <= boundary->region_count; r++)
-        volume[r] *= pow(lattice.size, 3) / (LINES * LINES);
+        volume[r] *= pow(voxel_grid.size, 3) / (LINES * LINES);
     lar_lines_clear(&lines);
     return LAR_OK;
 }

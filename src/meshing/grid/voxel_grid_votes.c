@@ -1,4 +1,4 @@
-#include "meshing/grid/lattice_votes.h"
+#include "meshing/grid/voxel_grid_votes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,7 +100,7 @@ static double distance_of(const lar_votes *votes, int32_t regions, const ballot 
     return sum;
 }
 
-void lar_votes_count(const lar_votes *votes, int32_t regions, lar_lattice *lattice) {
+void lar_votes_count(const lar_votes *votes, int32_t regions, lar_voxel_grid *voxel_grid) {
     ballot now = {.step = {0}};
     for (int32_t r = 0; r <= LAR_REGIONS_MOST; r++) now.weight[r] = 1, now.step[r] = STEP_FIRST;
     ballot best = now;
@@ -111,12 +111,12 @@ void lar_votes_count(const lar_votes *votes, int32_t regions, lar_lattice *latti
         if (distance < least) least = distance, best = now;
         if (!change_weights(votes, regions, &now)) break;
     }
-    for (int32_t r = 1; r <= regions; r++) lattice->wanted[r] = votes->volume[r];
+    for (int32_t r = 1; r <= regions; r++) voxel_grid->wanted[r] = votes->volume[r];
     for (size_t v = 0; v < votes->count;) {
         const size_t cell = (size_t)votes->vote[v].cell;
         const choice made = choose(votes, best.weight, v, &v);
-        lattice->region[cell] = made.region;
-        lattice->inner[cell] = made.inner;
-        lattice->share[cell] = made.share;
+        voxel_grid->region[cell] = made.region;
+        voxel_grid->inner[cell] = made.inner;
+        voxel_grid->share[cell] = made.share;
     }
 }

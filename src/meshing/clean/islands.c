@@ -3,7 +3,7 @@
 
 #include "meshing/clean/clean.h"
 
-/* Limits of islands and pinholes, lattice.h. */
+/* Limits of islands and pinholes, voxel_grid.h. */
 static const double ISLAND_PART = 0.05, SPECK_PART = 0.0005, PINHOLE_PART = 0.01;
 enum { PINHOLE_CELLS = 27 };
 /* An island goes to its neighbours when these have at least this part of its outer faces. */
@@ -24,11 +24,11 @@ typedef struct surroundings {
     int32_t faces[LAR_REGIONS_MOST + 1]; /* by region */
 } surroundings;
 
-int lar_clean_neighbours(const lar_lattice *lattice, size_t cell, size_t found[6]) {
+int lar_clean_neighbours(const lar_voxel_grid *voxel_grid, size_t cell, size_t found[6]) {
     size_t step = 1, rest = cell;
     int count = 0;
     for (int d = 0; d < 3; d++) {
-        const size_t length = (size_t)lattice->cells[d], at = rest % length;
+        const size_t length = (size_t)voxel_grid->cells[d], at = rest % length;
         if (at > 0) found[count++] = cell - step;
         if (at + 1 < length) found[count++] = cell + step;
         rest /= length;
@@ -42,8 +42,8 @@ int lar_clean_neighbours(const lar_lattice *lattice, size_t cell, size_t found[6
  */
 static lar_status visit(lar_cleaner *cleaner, size_t start, uint8_t mark, int label, int32_t *size,
                         surroundings *around) {
-    lar_lattice *lattice = cleaner->lattice;
-    const uint8_t region = lattice->region[start];
+    lar_voxel_grid *voxel_grid = cleaner->voxel_grid;
+    const uint8_t region = voxel_grid->region[start];
     size_t waiting = 0;
     *size = 0;
     if (!LAR_GROW(cleaner->stack, cleaner->stack_capacity, waiting))
@@ -53,13 +53,13 @@ static lar_status visit(lar_cleaner *cleaner, size_t start, uint8_t mark, int la
     while (waiting > 0) {
         const size_t cell = (size_t)cleaner->stack[--waiting];
         size_t next[6];
-        const int count = lar_clean_neighbours(lattice, cell, next);
+        const int count = lar_clean_neighbours(voxel_grid, cell, next);
         (*size)++;
         for (int n = 0; n < count; n++) {
             /* Looked at first: cells with the mark may have another region already. */
             if (cleaner->mark[next[n]] == mark) continue;
-            if (lattice->region[next[n]] != region) {
-                if (around) around->faces[lattice->region[next[n]]]++;
+            if (voxel_grid->region[next[n]] != region) {
+                if (around) around->faces[voxel_grid->region[next[n]]]++;
                 continue;
             }
             if (!LAR_GROW(cleaner->stack, cleaner->stack_capacity, waiting))
@@ -69,24 +69,24 @@ static lar_status visit(lar_cleaner *cleaner, size_t start, uint8_t mark, int la
             cleaner->stack[waiting++] = (int32_t)next[n];
         }
         if (label < 0) continue;
-        const bool fill = region == 0 && lattice->inner[cell] != 0;
-        lattice->region[cell] = fill ? lattice->inner[cell] : (uint8_t)label;
-        cleaner->before[cell] = lattice->region[cell];
+        const bool fill = region == 0 && voxel_grid->inner[cell] != 0;
+        voxel_grid->region[cell] = fill ? voxel_grid->inner[cell] : (uint8_t)label;
+        cleaner->before[cell] = voxel_grid->region[cell];
     }
     return LAR_OK;
 }
 
 /* All pieces, by first cell: the first one is what lies around the body. */
-static lar_status find_pieces(lar_cleaner *cleaner, piece **pieces, size_t *count) {
+static lar_status find_islands(lar_cleaner *cleaner, piece **islands, size_t *count) {
     size_t capacity = 0;
     memset(cleaner->mark, 0, cleaner->cells);
     for (size_t c = 0; c < cleaner->cells; c++) {
         if (cleaner->mark[c]) continue;
-        if (!LAR_GROW(*pieces, capacity, *count))
-            return lar_fail_memory(cleaner->error, 2 * capacity * sizeof **pieces,
+        if (!LAR_GROW(*islands, capacity, *count))
+            return lar_fail_memory(cleaner->error, 2 * capacity * sizeof **islands,
                                    "the pieces of the grid");
-        piece *found = &(*pieces)[(*count)++];
-        *found = (piece){.start = c, .region = cleaner->lattice->region[c]};
+        piece *found = &(*islands)[(*count)++];
+        *found = (piece){.start = c, .region = cleaner->voxel_grid->region[c]};
         lar_status status = visit(cleaner, c, OTHER, -1, &found->size, NULL);
         if (status) return status;
     }
@@ -111,7 +111,7 @@ static lar_status open_piece(lar_cleaner *cleaner, const piece *one, surrounding
                              bool *same) {
     int32_t size;
     lar_status status = visit(cleaner, one->start, OWN, -1, &size, around);
-    *same = size == one->size && cleaner->lattice->region[one->start] == one->region;
+    *same = size == one->size && cleaner->voxel_grid->region[one->start] == one->region;
     return status;
 }
 
@@ -153,20 +153,21 @@ static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole, bool 
     return close_piece(cleaner, pinhole, heir_of(&around, 0));
 }
 
-lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
-    piece *pieces = NULL;
+lar_status lar_clean_islands(lar_cleaner *cleaner, bool *changed) {
+    piece *islands = NULL;
     size_t count = 0;
     int64_t body = 0;
     int32_t largest[LAR_REGIONS_MOST + 1] = {0};
-    lar_status status = find_pieces(cleaner, &pieces, &count);
+    lar_status status = find_islands(cleaner, &islands, &count);
     for (size_t p = 0; !status && p < count; p++) {
-        if (pieces[p].region != 0) body += pieces[p].size;
-        if (pieces[p].size > largest[pieces[p].region]) largest[pieces[p].region] = pieces[p].size;
+        if (islands[p].region != 0) body += islands[p].size;
+        if (islands[p].size > largest[islands[p].region])
+            largest[islands[p].region] = islands[p].size;
     }
     *changed = false;
     /* The first piece is the outermost layer and all outside cells that it reaches. */
     for (size_t p = 1; !status && p < count; p++) {
-        const piece *one = &pieces[p];
+        const piece *one = &islands[p];
         if (one->region == 0) {
             const double limit = PINHOLE_PART * (double)body;
             if (one->size > PINHOLE_CELLS || (one->size > 1 && one->size >= limit)) continue;
@@ -177,6 +178,6 @@ lar_status lar_clean_pieces(lar_cleaner *cleaner, bool *changed) {
             status = take_island(cleaner, one, most, changed);
         }
     }
-    free(pieces);
+    free(islands);
     return status;
 }

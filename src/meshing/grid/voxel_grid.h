@@ -1,61 +1,61 @@
 /* A grid of cubes laid over the true boundary, each with the region that has the most of it.
  *
- *     boundary + size --lattice.c--> regions and shares --clean.c--> a manifold solid --draft.c-->
- *     hexahedra on the grid --fit.c--> hexahedra on the boundary
+ *     boundary + size --voxel_grid.c--> regions and shares --clean.c--> a manifold solid
+ * --unfitted.c--> hexahedra on the grid --fit.c--> hexahedra on the boundary
  *
  * Cells are numbered i fastest; there is a ring of empty cells around the body.
  */
-#ifndef LAR_MESHING_GRID_LATTICE_H
-#define LAR_MESHING_GRID_LATTICE_H
+#ifndef LAR_MESHING_GRID_VOXEL_GRID_H
+#define LAR_MESHING_GRID_VOXEL_GRID_H
 
 #include "meshing/boundary/boundary.h"
 
-enum { LAR_LATTICE_CELLS_MOST = 1 << 27 };
+enum { LAR_VOXEL_GRID_CELLS_MOST = 1 << 27 };
 
-typedef struct lar_lattice {
+typedef struct lar_voxel_grid {
     int32_t cells[3];
     double origin[3];  /* corner of cell 0 [m] */
     double axis[3][3]; /* rows: unit directions of i, j, k; right-handed */
     double size;       /* edge of a cell [m] */
     uint8_t *region;   /* [cells] 0: outside. Regions by majority: 0 when less than half of the cell
                           is inside, else the region with the largest part. Of several regions parts
-                          are weighted, lattice_votes.h */
+                          are weighted, voxel_grid_votes.h */
     uint8_t *inner;    /* [cells] the region with the largest part, whatever is outside; 0: none */
     uint8_t *share; /* [cells] part of the cell that is inside any region, by weight, 0..255, with
-                       slots and thin parts widened (lattice_thin.h) */
+                       slots and thin parts widened (voxel_grid_thin.h) */
     double wanted[LAR_REGIONS_MOST + 1]; /* cells that each region shall have, where there are
                                             several: those that it fills, see share; 0: unknown */
     int32_t repaired; /* lines that did not come out of the body again and took no part */
-} lar_lattice;
+} lar_voxel_grid;
 
-static inline size_t lar_lattice_cell(const lar_lattice *lattice, int i, int j, int k) {
-    return ((size_t)k * (size_t)lattice->cells[1] + (size_t)j) * (size_t)lattice->cells[0] +
+static inline size_t lar_voxel_grid_cell(const lar_voxel_grid *voxel_grid, int i, int j, int k) {
+    return ((size_t)k * (size_t)voxel_grid->cells[1] + (size_t)j) * (size_t)voxel_grid->cells[0] +
            (size_t)i;
 }
 
-/* Fills a zeroed lattice along boundary->axis with cells of `size`: regions are sampled on 4 x 4
+/* Fills a zeroed grid along boundary->axis with cells of `size`: regions are sampled on 4 x 4
  * lines per cell by counting crossings (exact along the line). Flat cuts across an axis lie between
  * cells; where both ends are cut, the size is changed by up to 1 % for it, or the larger cut is
- * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_LATTICE_CELLS_MOST cells,
+ * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_VOXEL_GRID_CELLS_MOST cells,
  * LAR_ERROR_MODEL when no cell is half full, with slots and thin parts widened. */
-lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
-                            lar_error *error);
+lar_status lar_voxel_grid_fill(const lar_boundary *boundary, double size,
+                               lar_voxel_grid *voxel_grid, lar_error *error);
 
 /* The same with the size that gives about `elements` cells inside (within 2 % where the body lets
  * it). */
-lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements,
-                                  lar_lattice *lattice, lar_error *error);
+lar_status lar_voxel_grid_fill_count(const lar_boundary *boundary, int32_t elements,
+                                     lar_voxel_grid *voxel_grid, lar_error *error);
 
-/* The image's own voxels as a lattice, when they are cubes within 0.1 % (option --voxel without a
+/* The image's own voxels as a grid, when they are cubes within 0.1 % (option --voxel without a
  * size); LAR_ERROR_MODEL otherwise. */
-lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *boundary,
-                                  lar_lattice *lattice, lar_error *error);
+lar_status lar_voxel_grid_from_image(const lar_image *image, const lar_boundary *boundary,
+                                     lar_voxel_grid *voxel_grid, lar_error *error);
 
-void lar_lattice_clear(lar_lattice *lattice);
+void lar_voxel_grid_clear(lar_voxel_grid *voxel_grid);
 
 /* Volume of every region [region_count + 1, by the caller] by the same lines. */
-lar_status lar_lattice_measure(const lar_boundary *boundary, double size, double *volume,
-                               lar_error *error);
+lar_status lar_voxel_grid_measure(const lar_boundary *boundary, double size, double *volume,
+                                  lar_error *error);
 
 /* What cleaning did, to be told. */
 typedef struct lar_cleaning {
@@ -73,6 +73,7 @@ typedef struct lar_cleaning {
  * enclosed outside pieces of less than 1 % of the body's cells, at most 27. Cells flip in favour of
  * their share. Bumps and dents, which fitting would squash, are levelled; sheets and bars, and
  * slots and tubes, of one cell's width stay (clean.h). */
-lar_status lar_lattice_clean(lar_lattice *lattice, lar_cleaning *cleaning, lar_error *error);
+lar_status lar_voxel_grid_clean(lar_voxel_grid *voxel_grid, lar_cleaning *cleaning,
+                                lar_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "meshing/grid/lattice_check.h"
+#include "meshing/grid/voxel_grid_check.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,11 +9,11 @@ static const char *name_of(const lar_boundary *boundary) {
     return boundary->triangles.source ? boundary->triangles.source : "the body";
 }
 
-/* A sheet of thickness t has cells of t / THINNEST at most (lattice_thin.c leaves out what is
+/* A sheet of thickness t has cells of t / THINNEST at most (voxel_grid_thin.c leaves out what is
  * thinner), so it takes half its area over their square. A body with thick parts too takes less:
  * hence the tenfold. */
-lar_status lar_lattice_check_thickness(const lar_boundary *boundary, const lar_triangles *outer,
-                                       int32_t elements, lar_error *error) {
+lar_status lar_voxel_grid_check_thickness(const lar_boundary *boundary, const lar_triangles *outer,
+                                          int32_t elements, lar_error *error) {
     static const double THINNEST = 0.15, SURELY = 10;
     double volume = 0, area = lar_triangles_area(outer);
     for (int32_t r = 1; r <= boundary->region_count; r++) volume += boundary->region[r].volume;
@@ -32,29 +32,29 @@ lar_status lar_lattice_check_thickness(const lar_boundary *boundary, const lar_t
 /* ---- what the cells are near to ---------------------------------------------------------------
  */
 
-static bool cell_is_near(const lar_lattice *lattice, const double point[3]) {
+static bool cell_is_near(const lar_voxel_grid *voxel_grid, const double point[3]) {
     enum { NEAR = 2 };
     int low[3], high[3];
     for (int a = 0; a < 3; a++) {
         double away[3];
-        lar_minus(point, lattice->origin, away);
-        const double at = floor(lar_dot(lattice->axis[a], away) / lattice->size);
-        if (!(at >= 0 && at < lattice->cells[a])) return false;
+        lar_minus(point, voxel_grid->origin, away);
+        const double at = floor(lar_dot(voxel_grid->axis[a], away) / voxel_grid->size);
+        if (!(at >= 0 && at < voxel_grid->cells[a])) return false;
         low[a] = at > NEAR ? (int)at - NEAR : 0;
-        high[a] = at + NEAR < lattice->cells[a] ? (int)at + NEAR : lattice->cells[a] - 1;
+        high[a] = at + NEAR < voxel_grid->cells[a] ? (int)at + NEAR : voxel_grid->cells[a] - 1;
     }
     for (int k = low[2]; k <= high[2]; k++)
         for (int j = low[1]; j <= high[1]; j++)
             for (int i = low[0]; i <= high[0]; i++)
-                if (lattice->region[lar_lattice_cell(lattice, i, j, k)]) return true;
+                if (voxel_grid->region[lar_voxel_grid_cell(voxel_grid, i, j, k)]) return true;
     return false;
 }
 
 /* The part of a triangle without a cell near it, at places about a cell apart. */
-static double lost_part(const lar_lattice *lattice, const lar_triangles *outer, int32_t t,
+static double lost_part(const lar_voxel_grid *voxel_grid, const lar_triangles *outer, int32_t t,
                         double area) {
     enum { CUTS_MOST = 64 };
-    const int cuts = (int)fmin(fmax(1, ceil(sqrt(2 * area) / lattice->size)), CUTS_MOST);
+    const int cuts = (int)fmin(fmax(1, ceil(sqrt(2 * area) / voxel_grid->size)), CUTS_MOST);
     const double *x[3];
     int lost = 0;
     for (int c = 0; c < 3; c++) x[c] = outer->vertex[outer->corner[t][c]];
@@ -64,25 +64,25 @@ static double lost_part(const lar_lattice *lattice, const lar_triangles *outer, 
             if (a + b > 1) a = 1 - a, b = 1 - b;
             for (int d = 0; d < 3; d++)
                 point[d] = x[0][d] + a * (x[1][d] - x[0][d]) + b * (x[2][d] - x[0][d]);
-            lost += !cell_is_near(lattice, point);
+            lost += !cell_is_near(voxel_grid, point);
         }
     return (double)lost / (cuts * cuts);
 }
 
-lar_status lar_lattice_check_reach(const lar_boundary *boundary, const lar_triangles *outer,
-                                   const lar_lattice *lattice, lar_error *error) {
+lar_status lar_voxel_grid_check_reach(const lar_boundary *boundary, const lar_triangles *outer,
+                                      const lar_voxel_grid *voxel_grid, lar_error *error) {
     double all = 0, lost = 0;
     for (int32_t t = 0; t < outer->triangle_count; t++) {
         double normal[3];
         lar_triangles_normal(outer, t, normal);
         const double area = lar_length(normal) / 2;
         all += area;
-        lost += area * lost_part(lattice, outer, t, area);
+        lost += area * lost_part(voxel_grid, outer, t, area);
     }
-    if (!(lost > LAR_LATTICE_LOST_MOST * all)) return LAR_OK;
+    if (!(lost > LAR_VOXEL_GRID_LOST_MOST * all)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%.300s: %.0f %% of the surface would have no element near it: the body is "
                     "thinner there than elements of %.3g mm can be; make it thicker, or ask for "
                     "more elements or a smaller size",
-                    name_of(boundary), 100 * lost / all, 1e3 * lattice->size);
+                    name_of(boundary), 100 * lost / all, 1e3 * voxel_grid->size);
 }

@@ -22,7 +22,7 @@ static const struct brick {
 };
 enum { BRICKS = sizeof bricks / sizeof bricks[0] };
 
-/* Number of the node at lattice point (I, J, K), -1 where there is none. */
+/* Number of the node at grid point (I, J, K), -1 where there is none. */
 typedef int node_table[LAR_DEMO_K_END + 1][LAR_DEMO_J_NODES][LAR_DEMO_I_END + 1];
 
 static int *node_at(node_table table, int i, int j, int k) {
@@ -30,7 +30,7 @@ static int *node_at(node_table table, int i, int j, int k) {
 }
 
 void lar_demo_half_clear(lar_demo_half *half) {
-    free(half->lattice);
+    free(half->grid);
     free(half->position);
     free(half->corner);
     free(half->cell);
@@ -50,7 +50,7 @@ static void add_cell(lar_demo_half *half, node_table table, int i, int j, int k,
         int *node = node_at(table, at[0], at[1], at[2]);
         if (*node < 0) {
             *node = half->node_count++;
-            for (int c = 0; c < 3; ++c) half->lattice[*node][c] = at[c];
+            for (int c = 0; c < 3; ++c) half->grid[*node][c] = at[c];
         }
         half->corner[e][a] = *node;
     }
@@ -155,18 +155,18 @@ static void guess(const int at[3], double p[3]) {
     p[1] += lar_demo_sweep(p[0]);
 }
 
-lar_status lar_demo_lattice(lar_demo_half *half, lar_error *error) {
+lar_status lar_demo_grid(lar_demo_half *half, lar_error *error) {
     int cells = 0;
     for (int b = 0; b < BRICKS; ++b)
         cells += (bricks[b].i1 - bricks[b].i0) * (bricks[b].j1 - bricks[b].j0) *
                  (bricks[b].k1 - bricks[b].k0);
     const size_t most_nodes = sizeof(node_table) / sizeof(int);
-    half->lattice = lar_calloc(most_nodes, sizeof *half->lattice);
+    half->grid = lar_calloc(most_nodes, sizeof *half->grid);
     half->position = lar_calloc(most_nodes, sizeof *half->position);
     half->corner = lar_calloc((size_t)cells, sizeof *half->corner);
     half->cell = lar_calloc((size_t)cells, sizeof *half->cell);
     half->part = lar_calloc((size_t)cells, sizeof *half->part);
-    if (!half->lattice || !half->position || !half->corner || !half->cell || !half->part)
+    if (!half->grid || !half->position || !half->corner || !half->cell || !half->part)
         return lar_fail_memory(error, most_nodes * sizeof *half->position,
                                "the demonstration organ");
     node_table table;
@@ -176,6 +176,6 @@ lar_status lar_demo_lattice(lar_demo_half *half, lar_error *error) {
             for (int j = bricks[b].j0; j < bricks[b].j1; ++j)
                 for (int i = bricks[b].i0; i < bricks[b].i1; ++i)
                     add_cell(half, table, i, j, k, bricks[b].part);
-    for (int a = 0; a < half->node_count; ++a) guess(half->lattice[a], half->position[a]);
+    for (int a = 0; a < half->node_count; ++a) guess(half->grid[a], half->position[a]);
     return LAR_OK;
 }

@@ -1,6 +1,6 @@
 /* A block of unit cubes in memory, nx x ny x nz elements, x running fastest. */
-#ifndef LAR_TESTS_LATTICE_H
-#define LAR_TESTS_LATTICE_H
+#ifndef LAR_TESTS_BRICK_MESH_H
+#define LAR_TESTS_BRICK_MESH_H
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@
 #include "divide/distribution.h"
 #include "model/mesh/mesh.h"
 
-static inline lar_mesh lattice(int nx, int ny, int nz) {
+static inline lar_mesh brick_mesh(int nx, int ny, int nz) {
     lar_mesh mesh = {.source = lar_strdup("lattice"),
                      .node_count = (nx + 1) * (ny + 1) * (nz + 1),
                      .element_count = nx * ny * nz};

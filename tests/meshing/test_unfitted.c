@@ -4,25 +4,26 @@
 
 #include "base/vector.h"
 
-/* A lattice of which only the regions matter. */
-static lar_lattice lattice_of(int ni, int nj, int nk, const uint8_t *inside) {
-    lar_lattice lattice = {
+/* A grid of which only the regions matter. */
+static lar_voxel_grid voxel_grid_of(int ni, int nj, int nk, const uint8_t *inside) {
+    lar_voxel_grid voxel_grid = {
         .cells = {ni + 2, nj + 2, nk + 2}, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .size = 1};
     const size_t cells = (size_t)(ni + 2) * (size_t)(nj + 2) * (size_t)(nk + 2);
-    for (int d = 0; d < 3; d++) lattice.origin[d] = -1;
-    lattice.region = lar_calloc(cells, 1);
-    lattice.inner = lar_calloc(cells, 1);
-    lattice.share = lar_calloc(cells, 1);
+    for (int d = 0; d < 3; d++) voxel_grid.origin[d] = -1;
+    voxel_grid.region = lar_calloc(cells, 1);
+    voxel_grid.inner = lar_calloc(cells, 1);
+    voxel_grid.share = lar_calloc(cells, 1);
     for (int k = 0; k < nk; k++)
         for (int j = 0; j < nj; j++)
             for (int i = 0; i < ni; i++)
-                lattice.region[lar_lattice_cell(&lattice, i + 1, j + 1, k + 1)] = *inside++;
-    return lattice;
+                voxel_grid.region[lar_voxel_grid_cell(&voxel_grid, i + 1, j + 1, k + 1)] =
+                    *inside++;
+    return voxel_grid;
 }
 
-static bool meets(const lar_draft_mesh *draft, int32_t n, int a, int b) {
-    for (int32_t m = draft->meet_start[n]; m < draft->meet_start[n + 1]; m++)
-        if (draft->meet[m][0] == a && draft->meet[m][1] == b) return true;
+static bool meets(const lar_unfitted_mesh *unfitted, int32_t n, int a, int b) {
+    for (int32_t m = unfitted->meet_start[n]; m < unfitted->meet_start[n + 1]; m++)
+        if (unfitted->meet[m][0] == a && unfitted->meet[m][1] == b) return true;
     return false;
 }
 
@@ -34,8 +35,8 @@ static int32_t node_at(const lar_mesh *mesh, double x, double y, double z) {
     return -1;
 }
 
-static int32_t meeting(const lar_draft_mesh *draft, int32_t n) {
-    return draft->meet_start[n + 1] - draft->meet_start[n];
+static int32_t meeting(const lar_unfitted_mesh *unfitted, int32_t n) {
+    return unfitted->meet_start[n + 1] - unfitted->meet_start[n];
 }
 
 static void cubes_of_two_regions(void **state) {
@@ -43,15 +44,15 @@ static void cubes_of_two_regions(void **state) {
     /* Two layers of 3 x 2 x 3 cells: region 1 left, 2 right. */
     uint8_t inside[18];
     for (int c = 0; c < 18; c++) inside[c] = c % 3 < 2 ? 1 : 2;
-    lar_lattice lattice = lattice_of(3, 2, 3, inside);
+    lar_voxel_grid voxel_grid = voxel_grid_of(3, 2, 3, inside);
     lar_boundary boundary = {0};
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error error;
-    assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_OK);
-    const lar_mesh *mesh = &draft.mesh;
+    assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error), LAR_OK);
+    const lar_mesh *mesh = &unfitted.mesh;
     assert_int_equal(mesh->node_count, 48);
     assert_int_equal(mesh->element_count, 18);
-    assert_true(draft.size == 1);
+    assert_true(unfitted.size == 1);
     if (lar_mesh_check(mesh, &error)) fail_msg("%s", error.message);
     for (int32_t n = 0; n < 48; n++) {
         assert_int_equal(mesh->node_id[n], n + 1);
@@ -65,36 +66,36 @@ static void cubes_of_two_regions(void **state) {
         for (int d = 0; d < 3; d++)
             assert_true(corner[0][d] == (d == 0 ? e % 3 : d == 1 ? e / 3 % 2 : e / 6));
     }
-    assert_int_equal(meeting(&draft, node_at(mesh, 1, 1, 1)), 0);
+    assert_int_equal(meeting(&unfitted, node_at(mesh, 1, 1, 1)), 0);
     const int32_t middle = node_at(mesh, 2, 1, 1), edge = node_at(mesh, 2, 0, 1);
-    assert_int_equal(meeting(&draft, middle), 1);
-    assert_true(meets(&draft, middle, 1, 2));
-    assert_int_equal(meeting(&draft, edge), 3);
-    assert_true(meets(&draft, edge, 0, 1) && meets(&draft, edge, 0, 2) &&
-                meets(&draft, edge, 1, 2));
-    assert_int_equal(meeting(&draft, node_at(mesh, 3, 2, 3)), 1);
-    lar_draft_clear(&draft);
-    lar_lattice_clear(&lattice);
+    assert_int_equal(meeting(&unfitted, middle), 1);
+    assert_true(meets(&unfitted, middle, 1, 2));
+    assert_int_equal(meeting(&unfitted, edge), 3);
+    assert_true(meets(&unfitted, edge, 0, 1) && meets(&unfitted, edge, 0, 2) &&
+                meets(&unfitted, edge, 1, 2));
+    assert_int_equal(meeting(&unfitted, node_at(mesh, 3, 2, 3)), 1);
+    lar_unfitted_clear(&unfitted);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 /* Corners across of cells i k, a 1 for each that is inside, one deep along j. */
 static int32_t slots_of(int ni, int nk, const uint8_t *inside) {
-    lar_lattice lattice = lattice_of(ni, 1, nk, inside);
+    lar_voxel_grid voxel_grid = voxel_grid_of(ni, 1, nk, inside);
     lar_boundary boundary = {0};
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error error;
-    assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_OK);
-    for (int32_t s = 0; s < draft.slot_count; s++) {
+    assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error), LAR_OK);
+    for (int32_t s = 0; s < unfitted.slot_count; s++) {
         double edge[3][3], across[3];
         for (int e = 0; e < 3; e++)
-            lar_minus(draft.mesh.position[draft.slot[s][e]], draft.mesh.position[draft.slot[s][3]],
-                      edge[e]);
+            lar_minus(unfitted.mesh.position[unfitted.slot[s][e]],
+                      unfitted.mesh.position[unfitted.slot[s][3]], edge[e]);
         lar_cross(edge[0], edge[1], across);
         assert_true(fabs(lar_dot(across, edge[2]) - 1) < 1e-9); /* right-handed, of a cell */
     }
-    const int32_t slots = draft.slot_count;
-    lar_draft_clear(&draft);
-    lar_lattice_clear(&lattice);
+    const int32_t slots = unfitted.slot_count;
+    lar_unfitted_clear(&unfitted);
+    lar_voxel_grid_clear(&voxel_grid);
     return slots;
 }
 
@@ -120,17 +121,17 @@ static void sets_of_the_mesh(void **state) {
     (void)state;
     uint8_t inside[18];
     for (int c = 0; c < 18; c++) inside[c] = c % 3 < 2 ? 1 : 2;
-    lar_lattice lattice = lattice_of(3, 2, 3, inside);
+    lar_voxel_grid voxel_grid = voxel_grid_of(3, 2, 3, inside);
     lar_region region[4] = {{0},
                             {.name = "Left lobe", .tag = 7},
                             {.name = "Left-lobe", .tag = 5},
                             {.name = "absent", .tag = 9}};
     lar_boundary boundary = {.region_count = 3, .region = region};
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_mesh mesh = {0};
     lar_error error;
-    assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_OK);
-    assert_int_equal(lar_draft_finish(&draft, &boundary, &mesh, &error), LAR_OK);
+    assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error), LAR_OK);
+    assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, &mesh, &error), LAR_OK);
     assert_int_equal(mesh.element_tag[0], 7);
     assert_int_equal(mesh.element_tag[2], 5);
     assert_int_equal(set_count(&mesh, "surface", LAR_SET_FACES), 42);
@@ -146,10 +147,10 @@ static void sets_of_the_mesh(void **state) {
         assert_int_equal(mesh.element_tag[interface->index[f] / 6], 7);
         assert_int_equal(interface->index[f] % 6, 1);
     }
-    assert_int_equal(draft.mesh.element_count, 0);
-    lar_draft_clear(&draft);
+    assert_int_equal(unfitted.mesh.element_count, 0);
+    lar_unfitted_clear(&unfitted);
     lar_mesh_clear(&mesh);
-    lar_lattice_clear(&lattice);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 /* A box whose top is a flat cut: the nodes and the faces there know it, those of its sides do not,
@@ -175,48 +176,49 @@ static void the_cut_has_its_number(void **state) {
             const double axis[3][3] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
             memcpy(boundary.axis, axis, sizeof axis);
         }
-        lar_lattice lattice = {0};
+        lar_voxel_grid voxel_grid = {0};
         lar_cleaning cleaning;
-        lar_draft_mesh draft;
+        lar_unfitted_mesh unfitted;
         lar_mesh mesh = {0};
         lar_error error;
-        assert_int_equal(lar_lattice_fill(&boundary, 1, &lattice, &error), LAR_OK);
-        assert_int_equal(lar_lattice_clean(&lattice, &cleaning, &error), LAR_OK);
-        assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_OK);
-        for (int32_t n = 0; n < draft.mesh.node_count; n++) {
-            const double height = draft.mesh.position[n][2] - 8;
+        assert_int_equal(lar_voxel_grid_fill(&boundary, 1, &voxel_grid, &error), LAR_OK);
+        assert_int_equal(lar_voxel_grid_clean(&voxel_grid, &cleaning, &error), LAR_OK);
+        assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error), LAR_OK);
+        for (int32_t n = 0; n < unfitted.mesh.node_count; n++) {
+            const double height = unfitted.mesh.position[n][2] - 8;
             /* Staircases reach down to the cell below. */
-            if (fabs(height) > 1.6) assert_false(meets(&draft, n, 1, LAR_REGION_CUT + 5));
-            const double *x = draft.mesh.position[n];
+            if (fabs(height) > 1.6) assert_false(meets(&unfitted, n, 1, LAR_REGION_CUT + 5));
+            const double *x = unfitted.mesh.position[n];
             const bool away = fabs(x[0] - 4) < 2 && fabs(x[1] - 4) < 2;
             if (height > -0.4 && away) {
-                assert_true(meets(&draft, n, 1, LAR_REGION_CUT + 5));
-                assert_false(meets(&draft, n, 0, 1));
+                assert_true(meets(&unfitted, n, 1, LAR_REGION_CUT + 5));
+                assert_false(meets(&unfitted, n, 0, 1));
             }
         }
-        assert_int_equal(lar_draft_finish(&draft, &boundary, &mesh, &error), LAR_OK);
+        assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, &mesh, &error), LAR_OK);
         const int32_t faces = set_count(&mesh, "cut_top", LAR_SET_FACES);
         if (oblique)
             assert_in_range(faces, 30, 90);
         else
             assert_int_equal(faces, 64);
-        lar_draft_clear(&draft);
+        lar_unfitted_clear(&unfitted);
         lar_mesh_clear(&mesh);
-        lar_lattice_clear(&lattice);
+        lar_voxel_grid_clear(&voxel_grid);
         lar_boundary_clear(&boundary);
     }
 }
 
-static void an_empty_lattice_is_refused(void **state) {
+static void an_empty_voxel_grid_is_refused(void **state) {
     (void)state;
     const uint8_t inside[8] = {0};
-    lar_lattice lattice = lattice_of(2, 2, 2, inside);
+    lar_voxel_grid voxel_grid = voxel_grid_of(2, 2, 2, inside);
     lar_boundary boundary = {0};
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error error;
-    assert_int_equal(lar_draft_create(&lattice, &boundary, &draft, &error), LAR_ERROR_MODEL);
-    lar_draft_clear(&draft);
-    lar_lattice_clear(&lattice);
+    assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error),
+                     LAR_ERROR_MODEL);
+    lar_unfitted_clear(&unfitted);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 int main(void) {
@@ -225,7 +227,7 @@ int main(void) {
         cmocka_unit_test(corners_across_slots),
         cmocka_unit_test(sets_of_the_mesh),
         cmocka_unit_test(the_cut_has_its_number),
-        cmocka_unit_test(an_empty_lattice_is_refused),
+        cmocka_unit_test(an_empty_voxel_grid_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "meshing/grid/lattice_lines.h"
+#include "meshing/grid/voxel_grid_lines.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ void lar_lines_clear(lar_lines *lines) {
 
 /* ---- triangles onto lines ------------------------------------------------------------------- */
 
-static lar_status place_vertices(work *w, const lar_lattice *lattice, lar_error *error) {
+static lar_status place_vertices(work *w, const lar_voxel_grid *voxel_grid, lar_error *error) {
     const lar_triangles *triangles = &w->lines->boundary->triangles;
     size_t vertices = (size_t)triangles->vertex_count;
     w->place = lar_calloc(vertices, sizeof *w->place);
@@ -33,17 +33,17 @@ static lar_status place_vertices(work *w, const lar_lattice *lattice, lar_error 
     if (!w->place || !w->grid) return lar_fail_memory(error, 40 * vertices, "the lines' vertices");
     int32_t widest = 1;
     for (int b = 0; b < 2; b++) {
-        w->lines->count[b] = LAR_LINES_PER_CELL * lattice->cells[b + 1];
+        w->lines->count[b] = LAR_LINES_PER_CELL * voxel_grid->cells[b + 1];
         if (w->lines->count[b] > widest) widest = w->lines->count[b];
     }
     /* Numbers below 2^30, so that products of two differences stay below 2^62. */
     for (w->pitch = 16; w->pitch * 2 * widest <= 1 << 30;) w->pitch *= 2;
     double origin[3];
-    for (int a = 0; a < 3; a++) origin[a] = lar_dot(lattice->axis[a], lattice->origin);
+    for (int a = 0; a < 3; a++) origin[a] = lar_dot(voxel_grid->axis[a], voxel_grid->origin);
     for (size_t v = 0; v < vertices; v++) {
         for (int a = 0; a < 3; a++)
             w->place[v][a] =
-                (lar_dot(lattice->axis[a], triangles->vertex[v]) - origin[a]) / lattice->size;
+                (lar_dot(voxel_grid->axis[a], triangles->vertex[v]) - origin[a]) / voxel_grid->size;
         for (int b = 0; b < 2; b++) {
             double unit = (double)w->pitch * LAR_LINES_PER_CELL / 2;
             w->grid[v][b] = 2 * (int64_t)llround(w->place[v][b + 1] * unit);
@@ -149,11 +149,11 @@ static lar_status sort_crossings(work *w, lar_error *error) {
     return LAR_OK;
 }
 
-lar_status lar_lines_create(const lar_boundary *boundary, const lar_lattice *lattice,
+lar_status lar_lines_create(const lar_boundary *boundary, const lar_voxel_grid *voxel_grid,
                             lar_lines *lines, lar_error *error) {
     *lines = (lar_lines){.boundary = boundary};
     work w = {.lines = lines};
-    lar_status status = place_vertices(&w, lattice, error);
+    lar_status status = place_vertices(&w, voxel_grid, error);
     if (!status) status = cross_lines(&w, error);
     if (!status) status = sort_crossings(&w, error);
     free(w.place);

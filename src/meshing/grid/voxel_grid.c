@@ -1,26 +1,26 @@
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
-#include "meshing/grid/lattice_thin.h"
+#include "meshing/grid/voxel_grid_thin.h"
 
-void lar_lattice_clear(lar_lattice *lattice) {
-    free(lattice->region);
-    free(lattice->inner);
-    free(lattice->share);
-    *lattice = (lar_lattice){0};
+void lar_voxel_grid_clear(lar_voxel_grid *voxel_grid) {
+    free(voxel_grid->region);
+    free(voxel_grid->inner);
+    free(voxel_grid->share);
+    *voxel_grid = (lar_voxel_grid){0};
 }
 
 /* ---- a size for a number of cells --------------------------------------------------------- */
 
-static int32_t count_inside(const lar_lattice *lattice) {
+static int32_t count_inside(const lar_voxel_grid *voxel_grid) {
     size_t cells =
-        (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
+        (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
     int32_t inside = 0;
-    for (size_t c = 0; c < cells; c++) inside += lattice->region[c] != 0;
+    for (size_t c = 0; c < cells; c++) inside += voxel_grid->region[c] != 0;
     return inside;
 }
 
@@ -41,16 +41,16 @@ static void propose(search *state, int32_t inside, int32_t wanted) {
     state->size = next;
 }
 
-lar_status lar_lattice_fill(const lar_boundary *boundary, double size, lar_lattice *lattice,
-                            lar_error *error) {
+lar_status lar_voxel_grid_fill(const lar_boundary *boundary, double size,
+                               lar_voxel_grid *voxel_grid, lar_error *error) {
     lar_thin thin = {0};
-    lar_status status = lar_lattice_fill_thin(boundary, &thin, size, lattice, error);
+    lar_status status = lar_voxel_grid_fill_thin(boundary, &thin, size, voxel_grid, error);
     lar_thin_clear(&thin);
     return status;
 }
 
-lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements,
-                                  lar_lattice *lattice, lar_error *error) {
+lar_status lar_voxel_grid_fill_count(const lar_boundary *boundary, int32_t elements,
+                                     lar_voxel_grid *voxel_grid, lar_error *error) {
     enum { TRIES = 10 };
     double volume = 0;
     for (int32_t r = 1; r <= boundary->region_count; r++) volume += boundary->region[r].volume;
@@ -61,27 +61,27 @@ lar_status lar_lattice_fill_count(const lar_boundary *boundary, int32_t elements
         return lar_fail(error, LAR_ERROR_MODEL,
                         "the body encloses no volume; look at its surface's orientation and unit");
     search state = {.size = cbrt(volume / elements)};
-    lar_lattice best = {0};
+    lar_voxel_grid best = {0};
     lar_thin thin = {0};
     int32_t off = INT32_MAX;
     lar_status status = LAR_OK;
     for (int i = 0; i < TRIES && off > elements / 100; i++) {
-        lar_lattice tried = {0};
-        status = lar_lattice_fill_thin(boundary, &thin, state.size, &tried, error);
+        lar_voxel_grid tried = {0};
+        status = lar_voxel_grid_fill_thin(boundary, &thin, state.size, &tried, error);
         if (status && status != LAR_ERROR_MODEL) break;
         int32_t inside = status ? 0 : count_inside(&tried);
         if (!status && abs(inside - elements) < off) {
             off = abs(inside - elements);
-            lar_lattice swap = best;
+            lar_voxel_grid swap = best;
             best = tried;
             tried = swap;
         }
-        lar_lattice_clear(&tried);
+        lar_voxel_grid_clear(&tried);
         propose(&state, inside, elements);
     }
     lar_thin_clear(&thin);
     if (off == INT32_MAX) return status;
-    *lattice = best;
+    *voxel_grid = best;
     return LAR_OK;
 }
 
@@ -117,8 +117,8 @@ static bool find_voxels(const lar_image *image, const uint8_t *region_of, int32_
     return high[0] > low[0];
 }
 
-lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *boundary,
-                                  lar_lattice *lattice, lar_error *error) {
+lar_status lar_voxel_grid_from_image(const lar_image *image, const lar_boundary *boundary,
+                                     lar_voxel_grid *voxel_grid, lar_error *error) {
     double step[3][3];
     if (!voxels_are_cubes(image, step))
         return lar_fail(
@@ -131,8 +131,8 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
     if (!boundary->region_of_label || !find_voxels(image, boundary->region_of_label, low, high))
         return lar_fail(error, LAR_ERROR_MODEL, "%s: none of the chosen labels has a voxel",
                         image->source);
-    lar_lattice made = {.size = cbrt(lar_image_voxel_volume(image))};
-    bool turned[3]; /* axes that the lattice follows backwards, to be right-handed */
+    lar_voxel_grid made = {.size = cbrt(lar_image_voxel_volume(image))};
+    bool turned[3]; /* axes that the grid follows backwards, to be right-handed */
     for (int a = 0; a < 3; a++) {
         made.cells[a] = high[a] - low[a] + 2;
         memcpy(made.axis[a], boundary->axis[a], sizeof made.axis[a]);
@@ -145,16 +145,16 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
                               made.size * made.axis[b][a];
     }
     size_t cells = (size_t)made.cells[0] * (size_t)made.cells[1] * (size_t)made.cells[2];
-    if (cells > LAR_LATTICE_CELLS_MOST)
+    if (cells > LAR_VOXEL_GRID_CELLS_MOST)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: %zu voxels around the body are more than the %d that a grid may have; "
                         "name a size",
-                        image->source, cells, (int)LAR_LATTICE_CELLS_MOST);
+                        image->source, cells, (int)LAR_VOXEL_GRID_CELLS_MOST);
     made.region = lar_calloc(cells, 1);
     made.inner = lar_calloc(cells, 1);
     made.share = lar_calloc(cells, 1);
     if (!made.region || !made.inner || !made.share) {
-        lar_lattice_clear(&made);
+        lar_voxel_grid_clear(&made);
         return lar_fail_memory(error, 3 * cells, "the grid of cells");
     }
     for (int32_t k = low[2]; k < high[2]; k++)
@@ -166,11 +166,11 @@ lar_status lar_lattice_from_image(const lar_image *image, const lar_boundary *bo
                 int32_t at[3] = {i, j, k};
                 for (int a = 0; a < 3; a++)
                     at[a] = 1 + (turned[a] ? high[a] - 1 - at[a] : at[a] - low[a]);
-                size_t cell = lar_lattice_cell(&made, at[0], at[1], at[2]);
+                size_t cell = lar_voxel_grid_cell(&made, at[0], at[1], at[2]);
                 made.region[cell] = boundary->region_of_label[image->label[voxel]];
                 made.inner[cell] = made.region[cell];
                 made.share[cell] = made.region[cell] ? 255 : 0;
             }
-    *lattice = made;
+    *voxel_grid = made;
     return LAR_OK;
 }
