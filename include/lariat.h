@@ -239,7 +239,7 @@ typedef struct lar_mesh_quality {
     double volume, true_volume; /* of the mesh and inside the true surface [m^3]; 0: unknown */
     double deviation_mean;      /* between both surfaces, both ways, by area [m] */
     double deviation_95;        /* 95 % of the area is nearer [m] */
-    double deviation_most;      /* the largest: Hausdorff distance [m] */
+    double deviation_max;       /* the largest: Hausdorff distance [m] */
     int32_t crossings;          /* pairs of outer faces that go through each other */
     double crossing_depth;      /* of the deepest of them [m]; 0: there is none */
 } lar_mesh_quality;
@@ -310,8 +310,8 @@ typedef struct lar_region_info {
     double volume, true_volume;  /* in the mesh, and in the image, surface or other mesh [m^3] */
     const char *tissue, *source; /* of the starter scene's material: which, from where */
     double shear_modulus, bulk_modulus, density;
-    int held;          /* not 0: bone, which the starter scene holds where it is */
-    double usual_most; /* more than such organs hold in anybody [m^3]; 0: not known */
+    int held;         /* not 0: bone, which the starter scene holds where it is */
+    double usual_max; /* more than such organs hold in anybody [m^3]; 0: not known */
 } lar_region_info;
 
 LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
@@ -510,8 +510,8 @@ LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_
  * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
 LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
- * (`most`; may be NULL). Going back, loading and a reset do not change these. */
-LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most);
+ * (`max`; may be NULL). Going back, loading and a reset do not change these. */
+LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max);
 
 /* What the search for contact did since the start, in pairs of a node and a face. */
 typedef struct lar_contact_info {
@@ -807,7 +807,7 @@ typedef struct lar_session_status {
                                           seconds that were computed [s] */
     int32_t step_parts;                /* lar_simulation_step_parts at the end of the last tick */
     uint64_t divided_steps;            /* steps that were divided, since the session was opened */
-    double step_least; /* the least processor time of a step in the last second [s]; 0: none */
+    double step_min; /* the least processor time of a step in the last second [s]; 0: none */
     lar_slow_cause slow_cause; /* of the slow motion that is now */
     char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */
 } lar_session_status;
@@ -836,10 +836,10 @@ LAR_API lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snap
                                         double seconds, lar_error *error);
 
 /* Forces on a tool, one entry per tick: copies those after tick `after` (0: from the oldest that is
- * kept), at most `most`, oldest first; the last 8192 ticks are kept. *last is the number of the
+ * kept), at most `max`, oldest first; the last 8192 ticks are kept. *last is the number of the
  * last one copied (`after` when there is none). Returns how many. */
 LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
-                                          int32_t most, float (*force)[3], uint64_t *last);
+                                          int32_t max, float (*force)[3], uint64_t *last);
 
 /* ---- recordings ----------------------------------------------------------------------------- */
 
@@ -901,8 +901,8 @@ typedef struct lar_server_options {
                                 NULL: none */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
-    double save_most;        /* bytes of states and recordings that there may be in it, those from
-                                before included; 0: 4e9. One recording under way is ended there */
+    double save_max;         /* bytes of states and recordings that there may be in it, those from
+                                 before included; 0: 4e9. One recording under way is ended there */
 } lar_server_options;
 
 /* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be

@@ -5,7 +5,7 @@
  *                              after due 2: a miss
  *
  * Work begins when it is due, or at once when the one before was late: so lost time is made up for,
- * as fast as the machine can. What is more than LAR_LAG_MOST behind is given up. A session's ticks
+ * as fast as the machine can. What is more than LAR_LAG_MAX behind is given up. A session's ticks
  * keep to this, and `lariat bench jitter` measures how well a machine can.
  *
  * `now` is base/clock.h's, as a number that the caller gives: a test can play every lateness.
@@ -18,7 +18,7 @@
 
 #include "base/clock.h"
 
-#define LAR_LAG_MOST 0.1 /* [s] */
+#define LAR_LAG_MAX 0.1 /* [s] */
 
 /* How long before it is due sleeping ends and polling begins [ns]: about as much as a timer is late
  * on an idle machine. */
@@ -40,9 +40,9 @@ static inline void lar_deadline_clock_wait(const lar_deadline_clock *deadline) {
     lar_clock_wait_until(deadline->due, LAR_WAKE_EARLY);
 }
 
-/* Puts off what cannot be made up for within LAR_LAG_MOST: returns how much that is [ns], or 0. */
+/* Puts off what cannot be made up for within LAR_LAG_MAX: returns how much that is [ns], or 0. */
 static inline int64_t lar_deadline_clock_give_up(lar_deadline_clock *deadline, int64_t now) {
-    int64_t excess = now - deadline->due - (int64_t)(1e9 * LAR_LAG_MOST);
+    int64_t excess = now - deadline->due - (int64_t)(1e9 * LAR_LAG_MAX);
     if (excess <= 0) return 0;
     deadline->due += excess;
     return excess;

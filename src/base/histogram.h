@@ -16,7 +16,7 @@ enum { LAR_HISTOGRAM_SPLIT = 64, LAR_HISTOGRAM_OCTAVES = 40 };
 
 /* A zeroed histogram is empty. */
 typedef struct lar_histogram {
-    uint64_t count, sum, least, most; /* of the values [ns] */
+    uint64_t count, sum, min, max; /* of the values [ns] */
     uint64_t bin[LAR_HISTOGRAM_SPLIT * LAR_HISTOGRAM_OCTAVES];
 } lar_histogram;
 

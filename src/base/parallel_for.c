@@ -4,7 +4,7 @@
 
 #include "base/thread.h"
 
-enum { THREADS_MOST = 16 };
+enum { THREADS_MAX = 16 };
 
 typedef struct task {
     lar_parallel_for_work *work;
@@ -38,11 +38,11 @@ int32_t lar_usable_cores(void) {
 
 void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context) {
     task shared = {work, context, count, portion, 0};
-    pthread_t thread[THREADS_MOST];
+    pthread_t thread[THREADS_MAX];
     const int64_t portions = ((int64_t)count + portion - 1) / portion;
-    const int32_t most = portions > 1 ? lar_usable_cores() : 1;
+    const int32_t max = portions > 1 ? lar_usable_cores() : 1;
     int started = 0;
-    while (started + 1 < most && started + 1 < portions && started < THREADS_MOST &&
+    while (started + 1 < max && started + 1 < portions && started < THREADS_MAX &&
            !lar_thread_start(&thread[started], help, &shared))
         started++;
     take_portions(&shared);

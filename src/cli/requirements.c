@@ -19,7 +19,7 @@ static int report_model(const char *path, lar_requirements_options *wanted, bool
     int status = cli_open_model(&cli_requirements, path, &model);
     if (status) return status;
     if (isatty(STDERR_FILENO)) wanted->watch = show_progress;
-    lar_requirements found = {.elements_most = 0};
+    lar_requirements found = {.elements_max = 0};
     lar_model_info info;
     lar_error error;
     bool failed = lar_model_inspect(model, &info, &error) ||

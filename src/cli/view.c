@@ -20,7 +20,7 @@ typedef struct view_settings {
         *scan;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
-    double pace, seconds, time_step, save_most;
+    double pace, seconds, time_step, save_max;
     int isa;
     bool paused, open, json, force;
     cli_parallel parallel;
@@ -138,7 +138,7 @@ static int open_server(view *v) {
                                   .scan = s->scan,
                                   .folder = s->viewer,
                                   .save_folder = s->save_folder,
-                                  .save_most = 1e9 * s->save_most};
+                                  .save_max = 1e9 * s->save_max};
     lar_error error, first;
     lar_status status = lar_server_open(v->session, v->model, &options, &v->server, &first);
     error = first;
@@ -333,7 +333,7 @@ static void look_after(view *v) {
         nanosleep(&nap, NULL);
         lar_session_status_get(v->session, &status);
         int32_t viewers = lar_server_viewers(v->server);
-        if (viewers > v->report.viewers_most) v->report.viewers_most = viewers;
+        if (viewers > v->report.viewers_max) v->report.viewers_max = viewers;
         announce(v, &status, now());
         show_progress(v, &status, now());
         if (v->browser && waitpid(v->browser, NULL, WNOHANG)) v->browser = 0;
@@ -411,7 +411,7 @@ static int view_main(int argc, char **argv) {
                        .argv = argv,
                        .port = 8000,
                        .pace = 1,
-                       .save_most = 4};
+                       .save_max = 4};
     const cli_option options[] = {
         CLI_COUNT("--port", "N",
                   "where the viewer is served (8000; when it is taken the next\none that is free); "
@@ -444,7 +444,7 @@ static int view_main(int argc, char **argv) {
                  &s.save_folder),
         CLI_REAL("--save-most", "GB",
                  "how much states and recordings may take there, those from\nbefore included (4)",
-                 &s.save_most, 1e-3, 1e6),
+                 &s.save_max, 1e-3, 1e6),
         CLI_TEXT(
             "--scan", "IMAGE",
             "the segmented image that the scene was meshed from: its\nslices can be seen beside "

@@ -65,9 +65,9 @@ bool lar_comm_is_local(const lar_comm *comm) {
 
 static lar_status check_options(const lar_comm_options *o, const lar_comm_backend *backend,
                                 lar_error *error) {
-    if (o->count < 1 || o->count > LAR_COMM_PROCESSORS_MOST)
+    if (o->count < 1 || o->count > LAR_COMM_PROCESSORS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d processors; take 1 to %d", (int)o->count,
-                        LAR_COMM_PROCESSORS_MOST);
+                        LAR_COMM_PROCESSORS_MAX);
     if (o->self < 0 || o->self >= o->count)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "processor %d of %d; they count from 0",
                         (int)o->self, (int)o->count);
@@ -320,8 +320,8 @@ static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *t
     /* [s] Longer than from one tick of a session to the next (1 ms): commands follow each other,
      * and who sleeps hears them late. */
     static const double POLLING = 2.5e-3;
-    enum { SLEEP_LEAST = 50000, SLEEP_MOST = 1000000 /* [ns] */ };
-    struct timespec sleep = {.tv_nsec = SLEEP_LEAST};
+    enum { SLEEP_MIN = 50000, SLEEP_MAX = 1000000 /* [ns] */ };
+    struct timespec sleep = {.tv_nsec = SLEEP_MIN};
     const lar_comm_backend *backend = comm->backend;
     double until = lar_comm_now() + POLLING;
     for (;;) {
@@ -337,7 +337,7 @@ static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *t
             continue;
         }
         nanosleep(&sleep, NULL);
-        sleep.tv_nsec = 2 * sleep.tv_nsec < SLEEP_MOST ? 2 * sleep.tv_nsec : SLEEP_MOST;
+        sleep.tv_nsec = 2 * sleep.tv_nsec < SLEEP_MAX ? 2 * sleep.tv_nsec : SLEEP_MAX;
     }
 }
 

@@ -41,7 +41,7 @@
 
 #include "base/error.h"
 
-enum { LAR_COMM_PROCESSORS_MOST = 4096, LAR_COMM_ADDRESS_TEXT = 80 };
+enum { LAR_COMM_PROCESSORS_MAX = 4096, LAR_COMM_ADDRESS_TEXT = 80 };
 
 /* One processor's end of the parallel computer. */
 typedef struct lar_comm lar_comm;

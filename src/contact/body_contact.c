@@ -79,9 +79,9 @@ typedef struct survey {
     double reach; /* of the faces for the node [m] */
     double fade;  /* by how much others than the closest may be farther away and still count [m] */
     int32_t count;
-    int32_t entry[LAR_GROUP_FACES_MOST]; /* ascending */
-    double distance[LAR_GROUP_FACES_MOST];
-    double least;         /* of those within reach; INFINITY: none is */
+    int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
+    double distance[LAR_GROUP_FACES_MAX];
+    double min;           /* of those within reach; INFINITY: none is */
     int32_t at;           /* the entry that it belongs to, */
     lar_face_point point; /* and where */
     double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
@@ -105,13 +105,13 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, con
     double corner[4][3], tie = tie_of(contact, f);
     corners_of(contact, state, f, corner, NULL);
     double distance = nearest_possible(x, (const double(*)[3])corner);
-    if (distance <= s->least + s->fade + tie && distance <= s->reach + tie) {
+    if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
         lar_face_point point;
         contact->info.tested++;
         lar_face_closest(x, (const double(*)[3])corner, tie, &point);
         distance = point.distance;
-        if (distance <= s->reach && distance < s->least) {
-            s->least = distance;
+        if (distance <= s->reach && distance < s->min) {
+            s->min = distance;
             s->at = i;
             s->point = point;
         }
@@ -124,8 +124,8 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, con
  * farther away than the closest, whose distance changes as well. */
 static double away_until(double travel, double distance, double tie, const survey *s) {
     double reach = (distance - tie - s->reach) / APPROACH;
-    double least = (distance - 8 * tie - s->fade - s->least) / (2 * APPROACH);
-    return travel + 0.999 * (reach > least ? reach : least);
+    double min = (distance - 8 * tie - s->fade - s->min) / (2 * APPROACH);
+    return travel + 0.999 * (reach > min ? reach : min);
 }
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
@@ -138,7 +138,7 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
                                  &contact->surface->face[face[0]]);
     s->fade = fade_of(contact, group->node, face[0]);
-    s->least = s->gap = s->next = INFINITY;
+    s->min = s->gap = s->next = INFINITY;
     s->count = 0;
     double distance_of_first = survey_face(contact, state, x, face[first], first, s);
     for (int32_t i = 0; i < group->count; i++) {
@@ -165,7 +165,7 @@ static int32_t choose_face(const lar_body_contact *contact, const lar_state *sta
         int32_t i = s->entry[k], f = contact->list.face[group->first + i];
         double corner[4][3], tie = tie_of(contact, f);
         lar_face_point other = s->point;
-        if (!(s->distance[k] <= s->least + tie) || s->distance[k] > s->reach + tie) continue;
+        if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
         if (i != s->at) {
             corners_of(contact, state, f, corner, NULL);
             lar_face_closest(x, (const double(*)[3])corner, tie, &other);
@@ -269,16 +269,16 @@ static void blend(const lar_body_contact *contact, const lar_state *state, int32
     /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
      * smoothly. */
     double upright = 1 - 50 * (1 - closest->height / closest->distance);
-    double fade = upright > 0 ? fmin(s->fade, 0.5 * s->least) * fmin(upright, 1) : 0, all = 0;
+    double fade = upright > 0 ? fmin(s->fade, 0.5 * s->min) * fmin(upright, 1) : 0, all = 0;
     touching blended = {.fading = -1};
     for (int32_t k = 0; k < s->count && fade > 0; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
         double corner[4][3], sum[4] = {0};
-        if (!(s->distance[k] < s->least + fade) ||
+        if (!(s->distance[k] < s->min + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
         corners_of(contact, state, f, corner, NULL);
-        double counts = lar_face_blend(x, (const double(*)[3])corner, s->least, fade, sum);
+        double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum);
         if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
         all += counts;
         blended.face[blended.count] = f;
@@ -313,16 +313,16 @@ static double outward(const double x[3], const contact_point *point, double sign
  * while it keeps the contact distance. */
 static double softness(const lar_body_contact *contact, double standoff) {
     static const double SPEED = 3; /* [m/s] */
-    double most = SPEED / standoff;
-    return most * most < contact->law.stiffness ? most * most / contact->law.stiffness : 1;
+    double max = SPEED / standoff;
+    return max * max < contact->law.stiffness ? max * max / contact->law.stiffness : 1;
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
 static double full_of(const lar_body_contact *contact, int32_t node, int32_t face) {
-    static const double LEAST = 0.25; /* of the reach */
+    static const double MIN = 0.25; /* of the reach */
     const lar_contact_surface *s = contact->surface;
     double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
-    return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), LEAST * reach);
+    return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), MIN * reach);
 }
 
 /* The force of a spring on a sharp edge, and what it stores: it acts later, and is the harder for
@@ -338,9 +338,9 @@ static double late_force(const lar_contact_law *law, double mass, double full, d
     return is_full ? force : steep * force;
 }
 
-/* The part of five forces that is no larger than `most`: of a face that is crushed slopes have no
+/* The part of five forces that is no larger than `max`: of a face that is crushed slopes have no
  * bound. */
-static double within_force(double most, const double force[5][3]) {
+static double within_force(double max, const double force[5][3]) {
     double largest = 0;
     for (int a = 0; a < 5; a++) {
         double square = 0;
@@ -348,7 +348,7 @@ static double within_force(double most, const double force[5][3]) {
         largest = fmax(largest, square);
     }
     largest = sqrt(largest);
-    return largest <= most ? 1 : most / largest;
+    return largest <= max ? 1 : max / largest;
 }
 
 /* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
@@ -423,7 +423,7 @@ static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_
     survey_group(contact, state, g, x, s);
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
-    if (!(s->least < INFINITY)) return -1;
+    if (!(s->min < INFINITY)) return -1;
     int32_t chosen = choose_face(contact, state, g, x, s, point);
     if (chosen < 0) return -1;
     contact->last[g] = chosen;
@@ -494,20 +494,20 @@ static void add_to_face(lar_body_contact *contact, const lar_condition_context *
  * numbers as who adds the others. */
 static void add_forces(lar_body_contact *contact, const lar_condition_context *context,
                        lar_state *state, int32_t node, const touching *t) {
-    static const double MOST = 0x1p58; /* of a force in force units */
+    static const double MAX = 0x1p58; /* of a force in force units */
     lar_body_contact_part *part = &contact->part[contact->part_count];
     int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
-        if (!(fabs(force) < MOST)) return;
+        if (!(fabs(force) < MAX)) return;
         for (int a = 0; a < 4 * t->count; a++) {
             corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
             sum[i] -= corner[a][i];
         }
         for (int a = 0; a < 4 && t->fading >= 0; a++) {
             double along = t->fade[a][i] * context->scale;
-            if (!(fabs(along) < MOST)) return;
+            if (!(fabs(along) < MAX)) return;
             slope[a][i] = -llrint(along);
             sum[i] -= slope[a][i];
         }

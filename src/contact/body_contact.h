@@ -49,8 +49,8 @@
 #include "mechanics/contact.h"
 
 /* The larger of two ways or speeds. What is not a number stays: nothing is larger. */
-static inline double lar_most(double most, double other) {
-    return other <= most || isnan(most) ? most : other;
+static inline double lar_larger(double max, double other) {
+    return other <= max || isnan(max) ? max : other;
 }
 
 /* Of a contact node in the exchange buffer: place, velocity, offset. */
@@ -90,14 +90,14 @@ typedef struct lar_penetration_offset {
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_body_contact_motion {
     lar_contact_search *search;
-    double (*x)[3];               /* [contact nodes] places at the search under way [m] */
-    double (*searched)[3];        /* and at the last one */
-    double since;                 /* what has moved since the search under way began [m] */
-    double skin_least, skin_most; /* [m] */
-    uint64_t next;                /* the round that follows the last one */
-    bool searching;               /* a search is under way */
-    bool valid;                   /* the list belongs to the state */
-    bool always;                  /* search in every step */
+    double (*x)[3];            /* [contact nodes] places at the search under way [m] */
+    double (*searched)[3];     /* and at the last one */
+    double since;              /* what has moved since the search under way began [m] */
+    double skin_min, skin_max; /* [m] */
+    uint64_t next;             /* the round that follows the last one */
+    bool searching;            /* a search is under way */
+    bool valid;                /* the list belongs to the state */
+    bool always;               /* search in every step */
 } lar_body_contact_motion;
 
 typedef struct lar_body_contact {

@@ -14,19 +14,19 @@ enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
 /* Fetches the places; returns how far the farthest has moved since the search. */
 static double fetch_places(lar_body_contact *contact, const lar_state *state) {
     lar_body_contact_motion *motion = contact->motion;
-    double most = 0;
+    double max = 0;
     for (int32_t n = 0; n < contact->surface->node_count; n++) {
         const double *u = state->u + contact->view.value[n];
         for (int i = 0; i < 3; i++) {
             motion->x[n][i] = contact->surface->rest[n][i] + u[i];
-            most = lar_most(most, fabs(motion->x[n][i] - motion->searched[n][i]));
+            max = lar_larger(max, fabs(motion->x[n][i] - motion->searched[n][i]));
         }
     }
-    return most;
+    return max;
 }
 
 static double skin_for(const lar_body_contact_motion *motion, double way) {
-    return fmin(fmax(2 * way * SEARCH_STEPS, motion->skin_least), motion->skin_most);
+    return fmin(fmax(2 * way * SEARCH_STEPS, motion->skin_min), motion->skin_max);
 }
 
 /* A search is done; `moved` says what has moved since its places. */
@@ -161,8 +161,8 @@ lar_status lar_body_contact_create(const lar_model *model, const double *mass, c
     contact->time_step = time_step;
     contact->list = motion->search->list;
     motion->always = search_always;
-    motion->skin_least = 0.25 * surface->reach;
-    motion->skin_most = 2 * surface->reach_most;
+    motion->skin_min = 0.25 * surface->reach;
+    motion->skin_max = 2 * surface->reach_max;
     status = allocate(contact, local, error);
     if (status)
         lar_body_contact_destroy(contact);

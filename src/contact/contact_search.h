@@ -23,7 +23,7 @@
 
 #include "contact/contact_surface.h"
 
-enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MOST = 128 };
+enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MAX = 128 };
 
 /* A node and faces of one body: entries first .. first + count - 1 of lar_contact_list.face. */
 typedef struct lar_contact_group {

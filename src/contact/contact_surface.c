@@ -81,11 +81,11 @@ static lar_status add_passes(draft *d, lar_error *error) {
     for (int i = 0; i < model->contact_count; i++) {
         const lar_contact *c = &model->contact[i];
         if (c->kind == LAR_CONTACT_PLANE) continue;
-        if (used > LAR_CONTACT_PASSES_MOST - 2)
+        if (used > LAR_CONTACT_PASSES_MAX - 2)
             return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                             "%s: there are more than %d contacts of bodies; put surfaces together "
                             "in one contact of a set with itself",
-                            lar_model_source(model), LAR_CONTACT_PASSES_MOST / 2);
+                            lar_model_source(model), LAR_CONTACT_PASSES_MAX / 2);
         bool self = c->kind == LAR_CONTACT_SELF;
         const int32_t *against = self ? c->face : c->against;
         int32_t count = self ? c->face_count : c->against_count;
@@ -129,16 +129,16 @@ static double thickness(const lar_mesh *mesh, int32_t face) {
 }
 
 static double size_of(const lar_mesh *mesh, const int32_t corner[4]) {
-    double most = 0;
+    double max = 0;
     for (int a = 0; a < 2; a++) {
         double square = 0;
         for (int i = 0; i < 3; i++) {
             double d = mesh->position[corner[a]][i] - mesh->position[corner[a + 2]][i];
             square += d * d;
         }
-        most = fmax(most, sqrt(square));
+        max = fmax(max, sqrt(square));
     }
-    return most;
+    return max;
 }
 
 static lar_status list_nodes(draft *d, const double *mass, const int32_t *local, lar_error *error) {
@@ -208,8 +208,7 @@ static lar_status number_bodies(draft *d, lar_error *error) {
     s->reach = INFINITY;
     for (int32_t b = 0; b < s->body_count; b++) {
         s->reach = fmin(s->reach, s->body[b].reach[0]);
-        if (s->body[b].reach[1] < INFINITY)
-            s->reach_most = fmax(s->reach_most, s->body[b].reach[1]);
+        if (s->body[b].reach[1] < INFINITY) s->reach_max = fmax(s->reach_max, s->body[b].reach[1]);
     }
     return LAR_OK;
 }
@@ -228,8 +227,8 @@ static lar_status list_all(draft *d, const double *mass, const int32_t *local, l
 }
 
 static void count_possible(lar_contact_surface *s) {
-    uint64_t nodes[LAR_CONTACT_PASSES_MOST] = {0}, faces[LAR_CONTACT_PASSES_MOST] = {0};
-    for (int pass = 0; pass < LAR_CONTACT_PASSES_MOST; pass++) {
+    uint64_t nodes[LAR_CONTACT_PASSES_MAX] = {0}, faces[LAR_CONTACT_PASSES_MAX] = {0};
+    for (int pass = 0; pass < LAR_CONTACT_PASSES_MAX; pass++) {
         for (int32_t n = 0; n < s->node_count; n++) nodes[pass] += s->node[n].passes >> pass & 1;
         for (int32_t f = 0; f < s->face_count; f++) faces[pass] += s->face[f].active >> pass & 1;
         s->possible += nodes[pass] * faces[pass];
@@ -243,7 +242,7 @@ static void count_possible(lar_contact_surface *s) {
 static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
                              lar_contact_surface *s, lar_error *error) {
     const lar_mesh *mesh = &model->mesh;
-    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), most = 0;
+    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), max = 0;
     if (!fastest) return lar_fail_memory(error, 8 * (size_t)mesh->node_count, "springs of contact");
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
@@ -252,7 +251,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, material, &hex8);
         double frequency = lar_hex8_frequency(&hex8, material);
-        most = fmax(most, frequency);
+        max = fmax(max, frequency);
         for (int a = 0; a < 8; a++) {
             double *of = &fastest[mesh->element[e][a]];
             *of = fmax(*of, frequency);
@@ -260,7 +259,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
     }
     double body = lar_contact_law_for(time_step, stable_step).stiffness;
     for (int32_t n = 0; n < s->node_count; n++) {
-        double stable = stable_step * most / fastest[s->node[n].node];
+        double stable = stable_step * max / fastest[s->node[n].node];
         s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
     }
     lar_contact_edges_fit(s);
@@ -275,8 +274,8 @@ lar_status lar_contact_surface_fit(const lar_model *model, double time_step, dou
     static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
     for (int32_t b = 0; b < s->body_count; b++) {
         lar_contact_body *body = &s->body[b];
-        double least = NEAREST * body->reach[1], most = FARTHEST * body->reach[1];
-        double wanted = fmin(fmax(SPEED * time_step, least), most);
+        double min = NEAREST * body->reach[1], max = FARTHEST * body->reach[1];
+        double wanted = fmin(fmax(SPEED * time_step, min), max);
         body->standoff = fmin(wanted, body->clear);
     }
     return fit_masses(model, time_step, stable_step, s, error);

@@ -64,22 +64,21 @@ lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local
                                     const lar_condition_share *share,
                                     lar_plane_contact *plane_contact, lar_error *error) {
     *plane_contact = (lar_plane_contact){0};
-    size_t most = 0, ways = 0;
+    size_t max = 0, ways = 0;
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE) {
-            most += 4 * (size_t)model->contact[i].face_count;
+            max += 4 * (size_t)model->contact[i].face_count;
             ways += LAR_AXIS_ALL; /* one for each choice of held axes, but not for all three */
         }
-    if (most == 0) return LAR_OK;
+    if (max == 0) return LAR_OK;
     uint8_t *held = lar_calloc((size_t)model->mesh.node_count, sizeof *held);
-    plane_contact->node = lar_calloc(most, sizeof *plane_contact->node);
-    plane_contact->near = lar_calloc(most, sizeof *plane_contact->near);
+    plane_contact->node = lar_calloc(max, sizeof *plane_contact->node);
+    plane_contact->near = lar_calloc(max, sizeof *plane_contact->near);
     plane_contact->way = lar_calloc(ways, sizeof *plane_contact->way);
     if (!held || !plane_contact->node || !plane_contact->near || !plane_contact->way) {
         free(held);
         lar_plane_contact_destroy(plane_contact);
-        return lar_fail_memory(error, most * sizeof *plane_contact->near,
-                               "the nodes before planes");
+        return lar_fail_memory(error, max * sizeof *plane_contact->near, "the nodes before planes");
     }
     mark_held(model, held);
     for (int i = 0; i < model->contact_count; i++)
@@ -158,7 +157,7 @@ void lar_plane_contact_observe(lar_plane_contact *plane_contact,
  * was not greater than that, turned around: the mean of the two points into the plane or is zero,
  * and the plane takes energy or none. (The larger of a height and zero, without a branch: of
  * resting nodes the height is rounding, and its sign cannot be guessed.) */
-static inline double least_velocity(double height, double rate) {
+static inline double min_velocity(double height, double rate) {
     return -0.5 * rate * (height + fabs(height));
 }
 
@@ -173,7 +172,7 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
     double height = near->node.offset + dot(way->normal, u);
     if (height >= 0) return;
     double speed = dot(way->normal, v);
-    double change = least_velocity(height - dt * speed, rate) - speed;
+    double change = min_velocity(height - dt * speed, rate) - speed;
     if (change > 0) {
         double mean[3], free[3];
         for (int i = 0; i < 3; i++) {
@@ -230,8 +229,8 @@ int32_t lar_plane_contact_ahead(const lar_plane_contact *plane_contact,
         const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
         double height = plane_contact->node[entry].offset + dot(way->normal, state->u + value);
         double speed = dot(way->normal, ahead);
-        double least = least_velocity(height, 1 / dt);
-        for (int i = 0; i < 3 && speed < least; i++) ahead[i] += way->slide[i] * (least - speed);
+        double min = min_velocity(height, 1 / dt);
+        for (int i = 0; i < 3 && speed < min; i++) ahead[i] += way->slide[i] * (min - speed);
     }
     return entry;
 }

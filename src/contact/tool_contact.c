@@ -110,7 +110,7 @@ lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
 
 void lar_tool_contact_destroy(lar_tool_contact *contact) {
     lar_plane_contact_destroy(&contact->plane_contact);
-    for (int t = 0; t < LAR_TOOLS_MOST; t++) {
+    for (int t = 0; t < LAR_TOOLS_MAX; t++) {
         free(contact->watch[t].near);
         free(contact->watch[t].look);
     }
@@ -133,7 +133,7 @@ void lar_tool_contact_forget(lar_tool_contact *contact) {
     contact->plane_contact.known = false;
     contact->moved = UINT64_MAX;
     forget_groups(contact);
-    for (int t = 0; t < LAR_TOOLS_MOST; t++)
+    for (int t = 0; t < LAR_TOOLS_MAX; t++)
         contact->watch[t].known = contact->watch[t].rests = false;
 }
 
@@ -309,8 +309,8 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
     lar_face_mean((const double(*)[3])x, grasp->weight, point);
     lar_face_mean((const double(*)[3])v, grasp->weight, speed);
-    double most = lar_grasp_stiffness_limit(face, tool->radius, law, context->mass);
-    double stiffness = fmin(grasp->stiffness, most), damping = sqrt(stiffness * most) * dt;
+    double max = lar_grasp_stiffness_limit(face, tool->radius, law, context->mass);
+    double stiffness = fmin(grasp->stiffness, max), damping = sqrt(stiffness * max) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
         length += pull[i] * pull[i];
@@ -326,8 +326,8 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
 
 static void apply_grasps(lar_tool_contact *contact, const lar_condition_context *context,
                          const lar_state *state, const lar_contact_law *law) {
-    lar_grasp_motion motion[LAR_TOOLS_MOST];
-    for (int t = 0; t < LAR_TOOLS_MOST; t++) motion[t].known = false;
+    lar_grasp_motion motion[LAR_TOOLS_MAX];
+    for (int t = 0; t < LAR_TOOLS_MAX; t++) motion[t].known = false;
     for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
         const lar_grasp *grasp = &contact->tools->grasps[i];
         if (contact->face_of[grasp->face] < 0) continue;

@@ -89,7 +89,7 @@ typedef struct lar_tool_watch {
 typedef struct lar_tool_contact {
     const lar_tool_list *list; /* NULL: no tools */
     const lar_tools *tools;
-    lar_tool_sum sum[LAR_TOOLS_MOST];
+    lar_tool_sum sum[LAR_TOOLS_MAX];
     lar_contact_info seen; /* counters since the start; `touching`, `deepest` of the last step */
     bool always;           /* search in every step */
     lar_plane_contact plane_contact;
@@ -100,7 +100,7 @@ typedef struct lar_tool_contact {
     int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
     lar_tool_contact_force *loaded;
     lar_point_weights *weights; /* NULL: no faces */
-    lar_tool_watch watch[LAR_TOOLS_MOST];
+    lar_tool_watch watch[LAR_TOOLS_MAX];
     double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
@@ -119,7 +119,7 @@ void lar_tool_contact_forget(lar_tool_contact *contact);
 
 /* Before a stretch of steps: the deepest points are asked for stretch by stretch. */
 static inline void lar_tool_contact_forget_depths(lar_tool_contact *contact) {
-    for (int i = 0; i < LAR_TOOLS_MOST; i++) contact->sum[i].depth = 0;
+    for (int i = 0; i < LAR_TOOLS_MAX; i++) contact->sum[i].depth = 0;
 }
 
 /* Adds the forces at the state's step to state->force. Asks for no memory. */
@@ -140,7 +140,7 @@ void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_contex
 /* What a look at the forces must not change: lar_tool_contact_apply once more in the same step, for
  * energies, is not felt twice. */
 typedef struct lar_tool_contact_saved {
-    lar_tool_sum sum[LAR_TOOLS_MOST];
+    lar_tool_sum sum[LAR_TOOLS_MAX];
     lar_contact_info seen;
 } lar_tool_contact_saved;
 

@@ -18,9 +18,9 @@ void lar_tool_contact_weights(int point, int n, double weight[4]) {
 }
 
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
-    double least = INFINITY;
-    for (int a = 0; a < 4; a++) least = fmin(least, mass[face->value[a] / 4] * face->share[a]);
-    return 4 * least / (n * n);
+    double min = INFINITY;
+    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->value[a] / 4] * face->share[a]);
+    return 4 * min / (n * n);
 }
 
 double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
@@ -83,7 +83,7 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
     for (int32_t s = 0; s < patch->body->count; s++) {
         const lar_segment *segment = &patch->body->now[s];
         double square = lar_segment_away(segment, &axis[s], x, normal, &along);
-        if (square < patch->least[s]) patch->least[s] = square;
+        if (square < patch->min[s]) patch->min[s] = square;
         if (!(square < within)) continue;
         double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
         if (!(depth > 0)) continue;
@@ -101,10 +101,10 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
  * its mass: the row sums of theory.md, with one point instead of many. */
 static double wall_mass(const lar_tool_contact_face *face, const double *mass,
                         const double weight[4]) {
-    double most = INFINITY;
+    double max = INFINITY;
     for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) most = fmin(most, mass[face->value[a] / 4] * face->share[a] / weight[a]);
-    return most;
+        if (weight[a] > 0) max = fmin(max, mass[face->value[a] / 4] * face->share[a] / weight[a]);
+    return max;
 }
 
 /* The wall of one segment. Returns how far the face is from where it begins. */
@@ -145,7 +145,7 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
                           const double *mass, int n) {
     double free_share = 1 - patch->covered / (n * n), between = spacing(patch, n), gap = INFINITY;
     for (int32_t s = 0; s < patch->body->count; s++) {
-        double distance = sqrt(patch->least[s]) - patch->radius;
+        double distance = sqrt(patch->min[s]) - patch->radius;
         double own = distance - between + WALL * patch->radius;
         if (own < 0)
             own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
@@ -170,10 +170,10 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
     for (int32_t s = 0; s < body->count; s++) {
         axis[s] = lar_segment_axis_of(&body->now[s]);
-        patch->least[s] = INFINITY;
+        patch->min[s] = INFINITY;
     }
     for (int i = 0; i < n * n; i++) touch_point(patch, law, axis, weights->of[n][i]);
     patch->closest = touch_walls(patch, law, mass, n);
     for (int32_t s = 0; s < body->count; s++)
-        patch->closest = fmin(patch->closest, sqrt(patch->least[s]) - patch->radius);
+        patch->closest = fmin(patch->closest, sqrt(patch->min[s]) - patch->radius);
 }

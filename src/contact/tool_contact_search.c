@@ -80,10 +80,10 @@ static void halve(lar_tool_contact *contact, int32_t first, int32_t count) {
 }
 
 lar_status lar_tool_contact_group_faces(lar_tool_contact *contact, lar_error *error) {
-    size_t most = (size_t)contact->face_count / (GROUP / 2) + 1;
-    contact->group = lar_calloc(most, sizeof *contact->group);
+    size_t max = (size_t)contact->face_count / (GROUP / 2) + 1;
+    contact->group = lar_calloc(max, sizeof *contact->group);
     if (!contact->group)
-        return lar_fail_memory(error, most * sizeof *contact->group, "the groups of faces");
+        return lar_fail_memory(error, max * sizeof *contact->group, "the groups of faces");
     halve(contact, 0, contact->face_count);
     return LAR_OK;
 }

@@ -19,7 +19,7 @@
 
 #include "model/settings.h"
 
-enum { LAR_SPARES_MOST = 4, LAR_TOOLS_MOST = 16 + LAR_SPARES_MOST, LAR_GRASPS_MOST = 256 };
+enum { LAR_SPARES_MAX = 4, LAR_TOOLS_MAX = 16 + LAR_SPARES_MAX, LAR_GRASPS_MAX = 256 };
 
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
@@ -91,10 +91,10 @@ typedef struct lar_tools {
     int32_t count, grasp_count;
     lar_step_division division;
     lar_settings settings;
-    lar_spare_tool spare[LAR_SPARES_MOST];
-    lar_tool_motion motion[LAR_TOOLS_MOST]; /* where tools really go */
-    lar_grasp grasps[LAR_GRASPS_MOST];
-    lar_tool_follower follower[LAR_TOOLS_MOST]; /* of processor zero only */
+    lar_spare_tool spare[LAR_SPARES_MAX];
+    lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
+    lar_grasp grasps[LAR_GRASPS_MAX];
+    lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only */
 } lar_tools;
 
 /* What a tool may bear before it stays behind its hand, and how it then moves. */
@@ -112,9 +112,9 @@ typedef struct lar_tool_limits {
  * for the spares, which follow lar_tools.spare. */
 typedef struct lar_tool_list {
     int32_t count, spares;
-    lar_tool tool[LAR_TOOLS_MOST]; /* names are borrowed from the model, static, or `name` */
-    lar_tool_limits limits[LAR_TOOLS_MOST];
-    char name[LAR_SPARES_MOST][LAR_TOOL_HAND][LAR_TOOL_NAME_MOST + 1]; /* by place and shape */
+    lar_tool tool[LAR_TOOLS_MAX]; /* names are borrowed from the model, static, or `name` */
+    lar_tool_limits limits[LAR_TOOLS_MAX];
+    char name[LAR_SPARES_MAX][LAR_TOOL_HAND][LAR_TOOL_NAME_MAX + 1]; /* by place and shape */
 } lar_tool_list;
 
 /* The model's tools, so many hands and so many spares; too many are an error. */

@@ -76,7 +76,7 @@ typedef struct lar_block_run {
 
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
-    double least_volume;     /* det F must stay above this */
+    double min_volume;       /* det F must stay above this */
     double stress_square;    /* the stress sum of law.h, scaled as `modulus`, must stay below */
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;

@@ -10,7 +10,7 @@
  *     w = kappa V/8 START^2 (1/x + x - 2)/2,   dw/dj = -kappa V/8 START/2 (1/x^2 - 1)
  *
  * a barrier as in incremental potential contact (Li and others 2020), with a rational function that
- * needs no library and has the second derivative kappa V/8 / x^3. Below x = LEAST it goes on as a
+ * needs no library and has the second derivative kappa V/8 / x^3. Below x = MIN it goes on as a
  * parabola: a corner that is inside out all the same is pushed back as well (invertible elements:
  * Irving, Teran, Fedkiw 2004). Above START it is zero, exactly; a body whose corners keep START of
  * their volume has the same bits with and without it.
@@ -30,7 +30,7 @@
 #define LAR_GUARD_START 0.3
 
 typedef struct lar_guard {
-    double least;     /* the least j of the corners */
+    double min;       /* the least j of the corners */
     double energy;    /* [J] */
     double taken;     /* power of the damping, at most 0 [W] */
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */

@@ -165,15 +165,15 @@ LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_reco
     }
     lar_lane stress = law(record->F, P, J, I1, p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
-    unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->least_volume)) |
+    unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->min_volume)) |
                       lar_lane_not_greater(lar_lane_set(limits->stress_square), stress);
     if (limit) {
         lar_lane sum = lar_lane_set(0);
         UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
             sum = lar_lane_fma(record->cq[m][i], record->cq[m][i], sum);
         beyond |= lar_lane_not_greater(lar_lane_set(limits->hourglass_square), sum);
-        lar_lane most = lar_lane_set(STRAINED_CORNER) * lar_lane_load(limit);
-        *strained |= lar_lane_not_greater(most, sum);
+        lar_lane max = lar_lane_set(STRAINED_CORNER) * lar_lane_load(limit);
+        *strained |= lar_lane_not_greater(max, sum);
     }
     return beyond;
 }
@@ -437,7 +437,7 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
                               const double *mass, double *damped, double *fastest) {
     const lar_lane keep = lar_lane_set(motion->keep), dt = lar_lane_set(motion->dt);
     const lar_lane speed = lar_lane_set(motion->speed), factor = lar_lane_set(motion->push);
-    lar_lane sum = lar_lane_set(0), most = lar_lane_set(0);
+    lar_lane sum = lar_lane_set(0), max = lar_lane_set(0);
     unsigned beyond = 0;
     for (int64_t k = 4 * first; k < 4 * end; k += LAR_LANES) {
         lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
@@ -450,7 +450,7 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_ilane_store(force + k, (lar_ilane){0});
         lar_lane size = lar_lane_abs(after);
         beyond |= lar_lane_not_greater(speed, size);
-        most = lar_lane_max(most, size);
+        max = lar_lane_max(max, size);
         if (mass) {
             lar_lane twice = before + after;
             sum = lar_lane_fma(lar_lane_per_node(mass, k) * twice, twice, sum);
@@ -461,7 +461,7 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_lane_store(values, sum);
         for (int i = 0; i < LAR_LANES; i++) *damped += values[i];
     }
-    lar_lane_store(values, most);
+    lar_lane_store(values, max);
     for (int i = 0; i < LAR_LANES; i++)
         if (values[i] > *fastest) *fastest = values[i];
     return beyond == 0;

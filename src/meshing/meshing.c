@@ -14,7 +14,7 @@
 #include "model/format/mesh_io.h"
 
 /* The mesh that is made when nothing is said, and the smallest that is one. */
-enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8 };
+enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_MIN = 8 };
 
 lar_meshing_options lar_meshing_options_default(void) {
     return (lar_meshing_options){.elements = ELEMENTS_DEFAULT, .scale = 1};
@@ -139,9 +139,9 @@ static char *name_of_file(const char *path) {
 
 /* As a file's name that needs no quotes anywhere. */
 static char *stem_of(const char *title) {
-    enum { MOST = 100 }; /* with an ending it is still a name that every file system takes */
+    enum { MAX = 100 }; /* with an ending it is still a name that every file system takes */
     char *stem = lar_strdup(title);
-    if (stem && strlen(stem) > MOST) stem[MOST] = 0;
+    if (stem && strlen(stem) > MAX) stem[MAX] = 0;
     for (char *c = stem; c && *c; c++) {
         bool plain = (unsigned char)*c < 128 && isalnum((unsigned char)*c);
         if (!plain && *c != '-' && *c != '.') *c = '_';
@@ -263,11 +263,11 @@ static lar_status fill_voxel_grid(work *w) {
 
 static lar_status check_count(const work *w) {
     int32_t count = w->unfitted.mesh.element_count;
-    if (count >= ELEMENTS_LEAST) return LAR_OK;
+    if (count >= ELEMENTS_MIN) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.200s: elements of %.3g m are too large: the body becomes %d of them, at "
                     "least %d are a mesh; ask for a smaller size (in metres) or for more elements",
-                    w->path[0], w->unfitted.size, (int)count, ELEMENTS_LEAST);
+                    w->path[0], w->unfitted.size, (int)count, ELEMENTS_MIN);
 }
 
 static bool watch_fit(void *context, double part) {
@@ -312,7 +312,7 @@ static void count_regions(lar_meshing *m) {
                                     .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
                                     .density = tissue->density,
                                     .held = tissue->rigid,
-                                    .usual_most = tissue->most};
+                                    .usual_max = tissue->max};
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -336,9 +336,9 @@ static lar_status measure(const work *w, lar_error *error) {
  */
 static lar_status check_volume(const work *w) {
     const lar_mesh_quality *quality = &w->meshing->info.quality;
-    const double most = w->meshing->fitted ? 0.2 : 0.5;
+    const double max = w->meshing->fitted ? 0.2 : 0.5;
     const double off = quality->volume / quality->true_volume - 1;
-    if (!(quality->true_volume > 0) || fabs(off) <= most) return LAR_OK;
+    if (!(quality->true_volume > 0) || fabs(off) <= max) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "
                     "are thinner than an element of %.3g mm; ask for more elements or a smaller "

@@ -24,8 +24,8 @@ static lar_status measure_deviation(const lar_mesh *mesh, const int32_t *face, i
     lar_status status = lar_deviation_measure(mesh, face, count, surface, &deviation, error);
     if (status) return status;
     quality->deviation_mean = deviation.mean;
-    quality->deviation_95 = deviation.most_95;
-    quality->deviation_most = deviation.hausdorff;
+    quality->deviation_95 = deviation.max_95;
+    quality->deviation_max = deviation.hausdorff;
     return LAR_OK;
 }
 

@@ -124,14 +124,14 @@ bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {
     static const char hand[] = "hand";
     size_t length = strlen(name), word = sizeof hand - 1;
     bool reserved = strncmp(name, hand, word) == 0 && (name[word] == '\0' || name[word] == ' ');
-    if (length > 0 && length <= LAR_TOOL_NAME_MOST && !reserved) return false;
+    if (length > 0 && length <= LAR_TOOL_NAME_MAX && !reserved) return false;
     if (reserved)
         snprintf(problem, LAR_PROBLEM_SIZE,
                  "\"%.40s\" is the name of the hand that pulls with the mouse; choose another name",
                  name);
     else
         snprintf(problem, LAR_PROBLEM_SIZE,
-                 "the name of a tool has 1 to %d bytes, this one has %zu", LAR_TOOL_NAME_MOST,
+                 "the name of a tool has 1 to %d bytes, this one has %zu", LAR_TOOL_NAME_MAX,
                  length);
     return true;
 }

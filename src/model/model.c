@@ -302,9 +302,9 @@ static lar_status check_contacts(const lar_model *model, lar_error *error) {
 
 static lar_status check_tools(const lar_model *model, lar_error *error) {
     char problem[LAR_PROBLEM_SIZE];
-    if (model->tool_count > LAR_MODEL_TOOLS_MOST)
+    if (model->tool_count > LAR_MODEL_TOOLS_MAX)
         return lar_fail(error, LAR_ERROR_MODEL, "%s: %d tools; there can be %d",
-                        lar_model_source(model), model->tool_count, LAR_MODEL_TOOLS_MOST);
+                        lar_model_source(model), model->tool_count, LAR_MODEL_TOOLS_MAX);
     for (int i = 0; i < model->tool_count; i++) {
         const lar_tool *tool = &model->tool[i];
         bool wrong = lar_tool_name_problem(tool->name ? tool->name : "", problem);

@@ -68,7 +68,7 @@ typedef struct lar_contact {
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
-enum { LAR_MODEL_TOOLS_MOST = 12, LAR_TOOL_NAME_MOST = 63 };
+enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
 
 /* A tool: something hard that a device moves. */
 typedef struct lar_tool {

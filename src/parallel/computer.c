@@ -29,11 +29,11 @@ static int consequence(const lar_computer *computer, int32_t number) {
 
 static lar_status first_failure(lar_computer *computer, lar_error *error) {
     const lar_thread_result *chosen = NULL;
-    int least = 3;
+    int min = 3;
     for (int32_t i = 0; i < all_threads(computer); i++) {
-        if (!computer->result[i].status || consequence(computer, i) >= least) continue;
+        if (!computer->result[i].status || consequence(computer, i) >= min) continue;
         chosen = &computer->result[i];
-        least = consequence(computer, i);
+        min = consequence(computer, i);
     }
     if (!chosen) return LAR_OK;
     computer->broken = true;
@@ -253,8 +253,8 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
         int32_t other = computer->first + i;
         uint64_t theirs = __atomic_load_n(&computer->clock[other], __ATOMIC_ACQUIRE);
         uint64_t apart = theirs > round ? theirs - round : round - theirs;
-        int32_t most = computer->division.distance[self * computer->division.grid.count + other];
-        assert(apart <= (uint64_t)most + (computer->threads > 1));
+        int32_t max = computer->division.distance[self * computer->division.grid.count + other];
+        assert(apart <= (uint64_t)max + (computer->threads > 1));
     }
 #else
     (void)computer, (void)self, (void)round;
@@ -450,7 +450,7 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     int32_t count = tools->count;
     memcpy(tools, payload, bytes);
     bool fits = tools->count == count && tools->grasp_count >= 0 &&
-                tools->grasp_count <= LAR_GRASPS_MOST && lar_tools_bytes(tools) == bytes &&
+                tools->grasp_count <= LAR_GRASPS_MAX && lar_tools_bytes(tools) == bytes &&
                 grasps_fit(computer, tools) &&
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_spares_good(tools->spare, computer->list->spares);

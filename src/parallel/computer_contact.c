@@ -7,7 +7,7 @@
 #include "parallel/computer.h"
 
 /* Steps that a search should last, and those that it must last besides the way of a stop. */
-enum { SEARCH_STEPS = 200, LEAST_STEPS = 16 };
+enum { SEARCH_STEPS = 200, MIN_STEPS = 16 };
 
 /* What is sent: the groups of the list and its faces follow. */
 typedef struct list_head {
@@ -95,8 +95,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
         values_of(computer, n, &u, &v);
         for (int i = 0; i < 3; i++) {
             contact->x[n][i] = surface->rest[n][i] + u[i];
-            farthest = lar_most(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
-            fastest = lar_most(fastest, fabs(v[i]));
+            farthest = lar_larger(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
+            fastest = lar_larger(fastest, fabs(v[i]));
         }
     }
     *moved = farthest;
@@ -107,8 +107,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
 /* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
  * little more. */
 static double reserve(const lar_computer *computer, double way) {
-    double most = fmax(2 * way, LAR_CONTACT_SPEED * computer->whole->time_step);
-    return (computer->division.spread + 3) * most + LEAST_STEPS * way;
+    double max = fmax(2 * way, LAR_CONTACT_SPEED * computer->whole->time_step);
+    return (computer->division.spread + 3) * max + MIN_STEPS * way;
 }
 
 /* ---- handing out ----------------------------------------------------------------------------- */
@@ -159,7 +159,7 @@ static bool list_fits(const lar_contact_surface *surface, const lar_contact_list
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         if (group->node < 0 || group->node >= surface->point_count || group->first != from ||
-            group->count < 1 || group->count > LAR_GROUP_FACES_MOST)
+            group->count < 1 || group->count > LAR_GROUP_FACES_MAX)
             return false;
         from += group->count;
     }
@@ -202,7 +202,7 @@ lar_status lar_contact_execute(lar_computer *computer, const void *payload, size
 static lar_status search(lar_computer *computer, double way, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     const lar_contact_surface *surface = contact->map.surface;
-    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_most);
+    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_max);
     double skin = 2 * (reserve(computer, way) + room);
     if (!lar_contact_search_run(contact->search, (const double(*)[3])contact->x, skin)) {
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS,

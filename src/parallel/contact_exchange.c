@@ -14,9 +14,9 @@ static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_e
 
 /* ---- the exchange buffer --------------------------------------------------------------------- */
 
-static double fastest_of(const double place[LAR_PLACE_VALUES], double most) {
-    for (int i = 3; i < 6; i++) most = lar_most(most, fabs(place[i]));
-    return most;
+static double fastest_of(const double place[LAR_PLACE_VALUES], double max) {
+    for (int i = 3; i < 6; i++) max = lar_larger(max, fabs(place[i]));
+    return max;
 }
 
 void lar_contact_publish(lar_worker *worker, uint64_t round) {
@@ -25,7 +25,7 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
     const lar_publish_list *publish = &exchange->publish[worker->thread];
     lar_contact_sequence *sequence = &exchange->sequence[worker->thread];
     const lar_state *state = &worker->state;
-    double(*place)[LAR_PLACE_VALUES] = exchange->place[round & 1], most = 0;
+    double(*place)[LAR_PLACE_VALUES] = exchange->place[round & 1], max = 0;
     for (int32_t i = 0; i < publish->count; i++) {
         const double *rest = exchange->map->surface->rest[publish->node[i]];
         double *to = place[publish->slot[i]];
@@ -35,9 +35,9 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
             to[3 + k] = state->v[value + k];
         }
         to[6] = state->u[value + 3];
-        most = fastest_of(to, most);
+        max = fastest_of(to, max);
     }
-    sequence->speed[round & 1] = most;
+    sequence->speed[round & 1] = max;
     __atomic_store_n(&sequence->round, round, __ATOMIC_RELEASE);
 }
 
@@ -79,7 +79,7 @@ lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error
 /* Thread 0: what the others have sent goes into the exchange buffer. */
 static lar_status receive_places(const lar_processor *p, uint64_t round, lar_error *error) {
     lar_contact_exchange *exchange = p->exchange;
-    double most = 0;
+    double max = 0;
     for (int32_t i = 0; i < exchange->peer_count; i++) {
         const lar_contact_peer *peer = &exchange->peer[i];
         size_t bytes;
@@ -93,10 +93,10 @@ static lar_status receive_places(const lar_processor *p, uint64_t round, lar_err
             double *to = exchange->place[round & 1][peer->receive[k]];
             memcpy(to, (const char *)payload + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
                    sizeof(double[LAR_PLACE_VALUES]));
-            most = fastest_of(to, most);
+            max = fastest_of(to, max);
         }
     }
-    exchange->arrived.speed[round & 1] = most;
+    exchange->arrived.speed[round & 1] = max;
     __atomic_store_n(&exchange->arrived.round, round, __ATOMIC_RELEASE);
     return LAR_OK;
 }
@@ -114,7 +114,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     if (status) return status;
     double speed = exchange->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)
-        speed = lar_most(speed, exchange->sequence[t].speed[round & 1]);
+        speed = lar_larger(speed, exchange->sequence[t].speed[round & 1]);
     contact->view.place = (const double(*)[LAR_PLACE_VALUES])exchange->place[round & 1];
     /* What stands in the exchange buffer has come here in the last step with this speed. */
     contact->travel += speed * worker->context.whole_step;

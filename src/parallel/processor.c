@@ -72,7 +72,7 @@ static lar_status assign(const lar_schedule *schedule, const lar_processor_setti
  * tail is the end of the whole layout's order: one region. */
 static void recover_in_one_sweep(const lar_layout *whole, const lar_mesh *mesh, assignment *a) {
     enum { CACHED_ELEMENTS = 3000, TAIL = 1024 };
-    int32_t own[LAR_THREADS_MOST] = {0}, kept[LAR_THREADS_MOST] = {0};
+    int32_t own[LAR_THREADS_MAX] = {0}, kept[LAR_THREADS_MAX] = {0};
     for (int32_t e = 0; e < mesh->element_count; e++)
         if (a->thread[e] >= 0) own[a->thread[e]]++;
     for (int32_t b = whole->block_count - 1; b >= 0; b--)
@@ -176,7 +176,7 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
                                             layout->first_node[thread + 1]);
     if (setting->delays)
         worker->random = setting->delays * 0x9e3779b97f4a7c15u +
-                         (uint64_t)(p->self * LAR_THREADS_MOST + thread + 1);
+                         (uint64_t)(p->self * LAR_THREADS_MAX + thread + 1);
     int32_t moving = 0;
     size_t largest = 64;
     for (int32_t b = worker->batch_first; b < worker->batch_end; b++) {

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert(LAR_THREADS_MOST <= 16, "node_use has a bit for each thread");
-_Static_assert((int)LAR_LAYOUT_THREADS >= (int)LAR_THREADS_MOST, "a layout takes all threads");
+_Static_assert(LAR_THREADS_MAX <= 16, "node_use has a bit for each thread");
+_Static_assert((int)LAR_LAYOUT_THREADS >= (int)LAR_THREADS_MAX, "a layout takes all threads");
 
 /* known[b * threads + t]: the last batch of thread t that is finished when batch b has waited, -1:
  * none. What a batch that is waited for knew is known too. */

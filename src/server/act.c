@@ -82,7 +82,7 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_comman
             sentence, sizeof sentence,
             "saved states and recordings take %.3g GB, as much as they may; move some away, or "
             "start the engine with a larger --save-most",
-            1e-9 * server->save_most);
+            1e-9 * server->save_max);
         lar_viewer_note(server, viewer, sentence);
         return false;
     }

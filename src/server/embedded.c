@@ -8,7 +8,7 @@
 bool lar_embedded_is_too_large(const lar_model *model) {
     lar_embedded_info info;
     if (!lar_model_embedded(model, &info)) return false;
-    return info.triangles > LAR_EMBEDDED_MOST || info.vertices > LAR_EMBEDDED_MOST;
+    return info.triangles > LAR_EMBEDDED_MAX || info.vertices > LAR_EMBEDDED_MAX;
 }
 
 /* Marks the nodes of elements that carry vertices. */

@@ -10,7 +10,7 @@
 #include "server/blob.h"
 
 /* More than a browser moves thirty times a second. */
-enum { LAR_EMBEDDED_MOST = 1000000 };
+enum { LAR_EMBEDDED_MAX = 1000000 };
 
 /* The nodes that frames carry, by index in the model: those of the surface, and behind them what a
  * embedded surface needs besides. */

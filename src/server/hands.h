@@ -52,9 +52,9 @@ typedef struct lar_hands {
     lar_hand_news *tell;
     void *context;
     int32_t count; /* of hands */
-    lar_hand hand[LAR_TOOLS_MOST];
-    lar_owner owner[LAR_TOOLS_MOST]; /* by tool */
-    uint64_t placed;                 /* lar_session_status.placed, as last seen */
+    lar_hand hand[LAR_TOOLS_MAX];
+    lar_owner owner[LAR_TOOLS_MAX]; /* by tool */
+    uint64_t placed;                /* lar_session_status.placed, as last seen */
 } lar_hands;
 
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context);

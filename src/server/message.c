@@ -60,8 +60,8 @@ typedef enum key_kind { IS_STRING, IS_WHOLE, IS_REAL, IS_BOOLEAN, IS_VECTOR } ke
 typedef struct key_row {
     const char *name;
     key_kind kind;
-    double least, most; /* of numbers */
-    int count;          /* of a vector's numbers */
+    double min, max; /* of numbers */
+    int count;       /* of a vector's numbers */
 } key_row;
 
 /* Whole numbers stay below 2^53, where every one is a double. */
@@ -127,7 +127,7 @@ enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 typedef struct reader {
     const char *at, *end;
     uint32_t seen; /* keys, as bits */
-    char text[KEYS][LAR_NAME_MOST + 1];
+    char text[KEYS][LAR_NAME_MAX + 1];
     double number[KEYS][4];
     lar_close close;
     char *reason;
@@ -187,18 +187,18 @@ static bool read_escape(reader *r, char *out) {
     return true;
 }
 
-/* A string of at most LAR_NAME_MOST characters; longer ones can be nothing we know. */
-static bool read_string(reader *r, char text[LAR_NAME_MOST + 1]) {
+/* A string of at most LAR_NAME_MAX characters; longer ones can be nothing we know. */
+static bool read_string(reader *r, char text[LAR_NAME_MAX + 1]) {
     size_t length = 0;
     if (!take(r, '"')) return false;
     while (r->at < r->end && *r->at != '"') {
         char c = *r->at++;
         if ((unsigned char)c < 0x20) return false;
         if (c == '\\' && !read_escape(r, &c)) return false;
-        if (length < LAR_NAME_MOST)
+        if (length < LAR_NAME_MAX)
             text[length++] = c;
         else
-            text[LAR_NAME_MOST - 1] = 0x7f;
+            text[LAR_NAME_MAX - 1] = 0x7f;
     }
     text[length] = '\0';
     return take(r, '"');
@@ -253,9 +253,9 @@ static bool read_numbers(reader *r, const key_row *row, double *value) {
         if ((i > 0 && !take(r, ',')) || !read_number(r, &value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be %s%.0d number%s", row->name,
                           vector ? "an array of " : "a", vector ? count : 0, vector ? "s" : "");
-        if (value[i] < row->least || value[i] > row->most)
-            return refuse(r, LAR_CLOSE_POLICY, "%s must lie between %g and %g", row->name,
-                          row->least, row->most);
+        if (value[i] < row->min || value[i] > row->max)
+            return refuse(r, LAR_CLOSE_POLICY, "%s must lie between %g and %g", row->name, row->min,
+                          row->max);
         if (row->kind == IS_WHOLE && value[i] != floor(value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be a whole number", row->name);
     }
@@ -279,7 +279,7 @@ static bool read_value(reader *r, key_id key) {
 }
 
 static bool read_member(reader *r) {
-    char name[LAR_NAME_MOST + 1];
+    char name[LAR_NAME_MAX + 1];
     if (!read_string(r, name)) return refuse(r, LAR_CLOSE_POLICY, "a key must be a string");
     key_id key = 0;
     while (key < KEYS && strcmp(key_table[key].name, name) != 0) key++;
@@ -402,8 +402,8 @@ lar_close lar_command_read(const char *text, size_t length, int32_t tools, lar_c
                            char reason[LAR_REASON_BYTES]) {
     reader r = {.at = text, .end = text + length, .reason = reason};
     lar_command found = {0};
-    if (length > LAR_MESSAGE_MOST)
-        refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MOST);
+    if (length > LAR_MESSAGE_MAX)
+        refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MAX);
     for (size_t i = 0; i < length && r.close == LAR_CLOSE_NOT;) {
         int bytes = lar_utf8_length((const unsigned char *)text + i, length - i);
         if (bytes == 0) refuse(&r, LAR_CLOSE_TEXT, "a message must be UTF-8");

@@ -14,10 +14,10 @@
 #include "lariat.h"
 
 enum {
-    LAR_MESSAGE_MOST = 1024, /* bytes */
-    LAR_NAME_MOST = 64,      /* of a saved state's name */
-    LAR_REASON_BYTES = 124,  /* a close frame has room for 123 and no zero */
-    LAR_VIEWER_HANDS = 4     /* that one viewer may have */
+    LAR_MESSAGE_MAX = 1024, /* bytes */
+    LAR_NAME_MAX = 64,      /* of a saved state's name */
+    LAR_REASON_BYTES = 124, /* a close frame has room for 123 and no zero */
+    LAR_VIEWER_HANDS = 4    /* that one viewer may have */
 };
 
 /* Why a connection is closed (RFC 6455, 7.4). */
@@ -82,7 +82,7 @@ typedef struct lar_command {
     bool energy;          /* inspect */
     lar_tool_shape shape; /* add_tool, as the next two [m] */
     double radius, length;
-    char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
+    char name[LAR_NAME_MAX + 1]; /* load; "": the last one; replay; "": ends */
 } lar_command;
 
 /* Reads `length` bytes. Returns LAR_CLOSE_NOT, or why the connection must end, with a sentence in

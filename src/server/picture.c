@@ -216,7 +216,7 @@ typedef struct frame_head {
     double time;
     uint64_t hash;
     uint32_t positions[2], field, values;
-    double least, most;
+    double min, max;
     uint32_t tools, zero;
 } frame_head;
 _Static_assert(sizeof(frame_head) == LAR_FRAME_HEADER, "the header of a frame has no gaps");
@@ -246,8 +246,8 @@ static lar_status write_frame(lar_painter *painter, int field, const float *posi
                        .positions = {hash[0], hash[1]},
                        .field = lar_field_names[field].field,
                        .values = field > 0 ? (uint32_t)n : 0,
-                       .least = range[0],
-                       .most = range[1],
+                       .min = range[0],
+                       .max = range[1],
                        .tools = (uint32_t)painter->session->tools};
     memcpy(out, &head, sizeof head);
     frame->length = frame_bytes(painter, field > 0);

@@ -290,7 +290,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
 
 void lar_viewer_text(lar_viewer *viewer, char *text) {
     if (!text) return;
-    if (viewer->notes == LAR_NOTES_MOST) {
+    if (viewer->notes == LAR_NOTES_MAX) {
         free(viewer->note[0]);
         viewer->notes--;
         memmove(viewer->note, viewer->note + 1, (size_t)viewer->notes * sizeof *viewer->note);

@@ -26,11 +26,11 @@ static const int64_t STILL = LAR_SECOND_NS / 4;
  * took both threads, so that they leave most of a core to others. */
 static const int64_t PAINT_EVERY = LAR_SECOND_NS / 125;
 enum { PAINT_SHARE = 4 };
-static const double SAVE_MOST = 4e9; /* [bytes] */
+static const double SAVE_MAX = 4e9; /* [bytes] */
 /* A viewer that takes nothing for so long is closed. */
 static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
-static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST + 8.0);
+static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MAX + 8.0);
 
 /* ---- the timer ---------------------------------------------------------------------------------
  */
@@ -179,7 +179,7 @@ static const lws_retry_bo_t idle_policy = {.secs_since_valid_ping = 5,
 
 static const struct lws_protocols protocol_table[] = {
     {"http", lar_server_http, sizeof(lar_download), 0, 0, NULL, 0},
-    {LAR_PROTOCOL, lar_server_socket, sizeof(lar_viewer), LAR_MESSAGE_MOST + 1, 0, NULL, 0},
+    {LAR_PROTOCOL, lar_server_socket, sizeof(lar_viewer), LAR_MESSAGE_MAX + 1, 0, NULL, 0},
     {NULL, NULL, 0, 0, 0, NULL, 0}};
 
 static lar_status make_context(lar_server *server, lar_error *error) {
@@ -189,7 +189,7 @@ static lar_status make_context(lar_server *server, lar_error *error) {
                                              .timeout_secs = 5,
                                              .keepalive_timeout = 5,
                                              .retry_and_idle_policy = &idle_policy,
-                                             .fd_limit_per_thread = LAR_CONNECTIONS_MOST + 64,
+                                             .fd_limit_per_thread = LAR_CONNECTIONS_MAX + 64,
                                              .options = LWS_SERVER_OPTION_NO_LWS_SYSTEM_STATES,
                                              .user = server};
     info.gid = (gid_t)-1;
@@ -338,7 +338,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->session = session;
     server->model = model;
     server->listener = server->spare = -1;
-    server->save_most = asked.save_most > 0 ? asked.save_most : SAVE_MOST;
+    server->save_max = asked.save_max > 0 ? asked.save_max : SAVE_MAX;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);

@@ -57,7 +57,7 @@ static void welcome(lar_server *server, lar_viewer *viewer) {
     char sentence[160];
     snprintf(sentence, sizeof sentence,
              "The scene's fine surface is not drawn: it has more than %d triangles or vertices.",
-             LAR_EMBEDDED_MOST);
+             LAR_EMBEDDED_MAX);
     lar_viewer_note(server, viewer, sentence);
 }
 
@@ -77,7 +77,7 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
     if (!viewer->token_is_right)
         lar_viewer_close(viewer, LAR_CLOSE_TOKEN,
                          "the token is missing or wrong; open the address that the engine printed");
-    else if (others >= LAR_VIEWERS_MOST)
+    else if (others >= LAR_VIEWERS_MAX)
         lar_viewer_close(viewer, LAR_CLOSE_FULL, "too many viewers; close another one first");
     else
         welcome(server, viewer);
@@ -127,7 +127,7 @@ static void receive(lar_server *server, lar_viewer *viewer, const char *data, si
         return;
     }
     size_t more = length + lws_remaining_packet_payload(viewer->wsi);
-    if (viewer->in_length + more > LAR_MESSAGE_MOST) {
+    if (viewer->in_length + more > LAR_MESSAGE_MAX) {
         lar_viewer_close(viewer, LAR_CLOSE_SIZE, "a message has at most 1024 bytes");
         return;
     }

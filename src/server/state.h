@@ -26,12 +26,12 @@
 _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
 
 enum {
-    LAR_VIEWERS_MOST = 64,
-    LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
-    LAR_STRANGERS_MOST = 64,    /* of them: those that are no viewers */
-    LAR_NOTES_MOST = 8,         /* that wait for a viewer */
+    LAR_VIEWERS_MAX = 64,
+    LAR_CONNECTIONS_MAX = 192, /* viewers and others, also half open ones */
+    LAR_STRANGERS_MAX = 64,    /* of them: those that are no viewers */
+    LAR_NOTES_MAX = 8,         /* that wait for a viewer */
     LAR_SAVE_NUMBERS = 1000,
-    LAR_SAVES_MOST = 64, /* of a kind, that can be named */
+    LAR_SAVES_MAX = 64, /* of a kind, that can be named */
     LAR_HOST_BYTES = 96,
     LAR_MESSAGES_A_SECOND = 300
 };
@@ -41,7 +41,7 @@ enum {
 
 /* Names of files in the folder for saved states, oldest first. */
 typedef struct lar_saved_list {
-    char name[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
+    char name[LAR_SAVES_MAX][LAR_NAME_MAX + 1];
     int count;
 } lar_saved_list;
 
@@ -82,10 +82,10 @@ typedef struct lar_viewer {
     int32_t forces_tool;
     uint64_t forces_after;
 
-    char *note[LAR_NOTES_MOST]; /* JSON */
+    char *note[LAR_NOTES_MAX]; /* JSON */
     int notes;
 
-    char in[LAR_MESSAGE_MOST + 1];
+    char in[LAR_MESSAGE_MAX + 1];
     size_t in_length;
     double allowance; /* messages that it may send now */
     int64_t allowed_at;
@@ -116,7 +116,7 @@ struct lar_server {
         int64_t since;
         bool viewer;
         bool leaves; /* it has been shown the door */
-    } connection[LAR_CONNECTIONS_MOST];
+    } connection[LAR_CONNECTIONS_MAX];
 
     /* The server's thread's. */
     lar_viewer *first;
@@ -135,15 +135,15 @@ struct lar_server {
         lar_tool_info info;
         lar_tool_pose pose;
         lar_tool_force force;
-    } tool[LAR_TOOLS_MOST];
+    } tool[LAR_TOOLS_MAX];
     double pace;
     lar_saved_list states, recordings;
     int saved_number;
     int64_t saved_at;
-    double save_most;                  /* [bytes] */
-    bool recording_ends;               /* it is asked for */
-    char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
-    char played[LAR_NAME_MOST + 1];
+    double save_max;                  /* [bytes] */
+    bool recording_ends;              /* it is asked for */
+    char recording[LAR_NAME_MAX + 1]; /* that is being made, and that is played */
+    char played[LAR_NAME_MAX + 1];
     lws_sorted_usec_list_t timer;
     bool reading; /* a viewer's values are being read */
     int64_t status_at, watched_at, paint_begun, paint_cost;
@@ -202,7 +202,7 @@ void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t
 
 /* What lies in the folder for saved states, and can be taken up or played here. */
 void lar_server_list_saved(lar_server *server);
-/* Whether what lies there has reached server->save_most. Looks at the disk. */
+/* Whether what lies there has reached server->save_max. Looks at the disk. */
 bool lar_server_saves_full(const lar_server *server);
 void lar_saved_add(lar_saved_list *list, const char *name);
 /* The name, or the last one for ""; NULL: it is not in the list. */

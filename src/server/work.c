@@ -83,7 +83,7 @@ static void next_job(lar_work *work) {
     pthread_mutex_unlock(&work->lock);
     do_job(work, &end);
     pthread_mutex_lock(&work->lock);
-    if (work->ends == LAR_JOBS_MOST) { /* nobody collects them: the oldest goes */
+    if (work->ends == LAR_JOBS_MAX) { /* nobody collects them: the oldest goes */
         work->ends--;
         memmove(work->end, work->end + 1, (size_t)work->ends * sizeof *work->end);
     }
@@ -178,7 +178,7 @@ bool lar_work_want(lar_work *work, unsigned fields) {
 
 bool lar_work_ask(lar_work *work, const lar_job *job) {
     pthread_mutex_lock(&work->lock);
-    bool room = work->jobs < LAR_JOBS_MOST;
+    bool room = work->jobs < LAR_JOBS_MAX;
     if (room) {
         work->job[work->jobs++] = *job;
         pthread_cond_signal(&work->bell);

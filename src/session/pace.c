@@ -93,14 +93,14 @@ void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
 void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy) {
     if (steps == 0) steps = 1;
     lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / steps);
-    double least = 1e-9 * (double)busy / (double)steps;
-    if (pace->total.least == 0 || least < pace->total.least) pace->total.least = least;
+    double min = 1e-9 * (double)busy / (double)steps;
+    if (pace->total.min == 0 || min < pace->total.min) pace->total.min = min;
     pace->total.steps += steps;
 }
 
-void lar_pace_forget_least(lar_pace *pace) {
-    for (int i = 0; i < pace->moments; i++) pace->window[i].least = 0;
-    pace->total.least = 0;
+void lar_pace_forget_min(lar_pace *pace) {
+    for (int i = 0; i < pace->moments; i++) pace->window[i].min = 0;
+    pace->total.min = 0;
 }
 
 void lar_pace_answered(lar_pace *pace, int64_t now) {
@@ -127,24 +127,24 @@ bool lar_pace_look(lar_pace *pace, int64_t now) {
     }
     lar_pace_moment *moment = &pace->window[pace->moments++];
     *moment = pace->total;
-    pace->total.least = 0;
+    pace->total.min = 0;
     moment->at = now;
     moment->played = played(pace, now);
     return true;
 }
 
-static void report_least(const lar_pace *pace, lar_session_status *status) {
-    double least = 0;
+static void report_min(const lar_pace *pace, lar_session_status *status) {
+    double min = 0;
     for (int i = 0; i < pace->moments; i++)
-        if (pace->window[i].least > 0 && (least == 0 || pace->window[i].least < least))
-            least = pace->window[i].least;
-    status->step_least = least;
+        if (pace->window[i].min > 0 && (min == 0 || pace->window[i].min < min))
+            min = pace->window[i].min;
+    status->step_min = min;
 }
 
 static void report_rates(const lar_pace *pace, lar_session_status *status) {
     status->engine_rate = status->haptic_rate = status->snapshot_rate = 0;
     status->real_time_factor_now = 0;
-    report_least(pace, status);
+    report_min(pace, status);
     if (pace->moments < 2) return;
     const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
     double seconds = 1e-9 * (double)(last->at - first->at);
@@ -182,8 +182,8 @@ void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
                       ? 1e-9 * (double)(now - pace->deadline.due)
                       : 0;
     status->slow_motion = is_slow(pace, now);
-    status->step_max = 1e-9 * (double)pace->steps.most;
-    status->tick_max = 1e-9 * (double)pace->ticks.most;
+    status->step_max = 1e-9 * (double)pace->steps.max;
+    status->tick_max = 1e-9 * (double)pace->ticks.max;
     if (!quantiles) return;
     report_rates(pace, status);
     report_quantiles(pace, status);

@@ -163,7 +163,7 @@ static lar_status keep_spares(lar_session *session, const lar_spare_tool *wanted
 
 /* A replay does not go back by itself: the recording says where to. */
 static lar_status go_back(lar_session *session, lar_kept_state *kept, lar_error *error) {
-    lar_spare_tool spare[LAR_SPARES_MOST];
+    lar_spare_tool spare[LAR_SPARES_MAX];
     lar_status status;
     memcpy(spare, session->simulation->tools.spare, sizeof spare);
     if (!kept) {

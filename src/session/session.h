@@ -35,8 +35,8 @@
 /* What the engine tells in every tick. */
 typedef struct lar_session_view {
     lar_session_status status;
-    double gravity[3], damping;      /* [m/s^2] [1/s] */
-    double factor[LAR_FACTORS_MOST]; /* of the stiffness of materials */
+    double gravity[3], damping;     /* [m/s^2] [1/s] */
+    double factor[LAR_FACTORS_MAX]; /* of the stiffness of materials */
     struct {
         lar_tool_info info;
         int32_t serial; /* of a spare: one more for each that was added there */
@@ -44,7 +44,7 @@ typedef struct lar_session_view {
         lar_tool_force force;
         lar_tool_load load;
         lar_device_status device; /* summed up from time to time only */
-    } tool[LAR_TOOLS_MOST];
+    } tool[LAR_TOOLS_MAX];
 } lar_session_view;
 
 /* A tool and whoever moves it: the engine's. */
@@ -74,7 +74,7 @@ struct lar_session {
     double time_step;
     uint64_t divided; /* steps of the simulation that were divided before the session */
     int32_t tools;
-    lar_session_tool tool[LAR_TOOLS_MOST];
+    lar_session_tool tool[LAR_TOOLS_MAX];
 
     lar_requests requests;
     lar_triple_buffer view; /* lar_session_view, to everybody */

@@ -18,7 +18,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
     const int32_t parts = lar_simulation_step_parts(session->simulation);
-    if (parts != status->step_parts) lar_pace_forget_least(&session->pace);
+    if (parts != status->step_parts) lar_pace_forget_min(&session->pace);
     status->step_parts = parts;
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;

@@ -156,11 +156,11 @@ double lar_session_stiffness(const lar_session *session, int32_t material) {
 }
 
 int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
-                                  int32_t most, float (*force)[3], uint64_t *last) {
+                                  int32_t max, float (*force)[3], uint64_t *last) {
     uint64_t ignored;
     if (last) *last = after;
     if (lar_session_check_tool(session, tool, NULL) || !force) return 0;
-    return lar_history_copy(&session->history, tool, after, most, force, last ? last : &ignored);
+    return lar_history_copy(&session->history, tool, after, max, force, last ? last : &ignored);
 }
 
 /* ---- snapshots ----------------------------------------------------------------------------- */

@@ -45,7 +45,7 @@ _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until the
 _Static_assert(sizeof(lar_settings) == 552, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
-_Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MOST == 4, "the format");
+_Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
 typedef struct file_shape {
@@ -56,7 +56,7 @@ typedef struct file_shape {
 typedef double node_vector[3];
 
 static size_t settings_bytes(uint32_t version) {
-    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MOST * sizeof(lar_spare_tool) : 0;
+    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
     return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
                                       : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
 }
@@ -341,8 +341,8 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
 
 /* They stand behind the settings. */
 static void look_at_spares(const file_head *head, const lar_bytes *bytes,
-                           lar_spare_tool spare[LAR_SPARES_MOST]) {
-    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MOST * sizeof *spare;
+                           lar_spare_tool spare[LAR_SPARES_MAX]) {
+    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MAX * sizeof *spare;
     if (head->version == ADDED_TOOLS && bytes->size >= at + size)
         memcpy(spare, bytes->data + at, size);
 }
@@ -355,7 +355,7 @@ lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, l
             error, LAR_ERROR_ARGUMENT,
             "lar_checkpoint_inspect needs the path of a saved state and a place for the "
             "answer");
-    lar_spare_tool spare[LAR_SPARES_MOST] = {{0}};
+    lar_spare_tool spare[LAR_SPARES_MAX] = {{0}};
     lar_status status = lar_checkpoint_read(path, &bytes, error);
     if (!status) status = check_file(path, &bytes, &head, error);
     if (!status) look_at_spares(&head, &bytes, spare);
@@ -440,11 +440,11 @@ static bool good_pose(const lar_tool_pose *pose) {
 }
 
 /* Numbers of steps are far below this: sums of two of them do not overflow. */
-static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
 
 static bool good_motion(const lar_tool_motion *motion) {
     return good_pose(&motion->from) && good_pose(&motion->to) && motion->start <= motion->end &&
-           motion->end <= STEPS_MOST && (motion->holding == 0 || motion->holding == 1) &&
+           motion->end <= STEPS_MAX && (motion->holding == 0 || motion->holding == 1) &&
            motion->padding == 0;
 }
 
@@ -457,14 +457,14 @@ static bool good_grasp(const lar_grasp *grasp, const file_head *head, const lar_
 }
 
 static bool power_of_two(int32_t parts) {
-    return parts >= 1 && parts <= LAR_PARTS_MOST && (parts & (parts - 1)) == 0;
+    return parts >= 1 && parts <= LAR_PARTS_MAX && (parts & (parts - 1)) == 0;
 }
 
 static bool good_division(const lar_step_division *d, const file_head *head) {
     return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
            d->decided <= head->step && d->hardness >= 1 &&
-           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MOST &&
-           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST && power_of_two(d->base) &&
+           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
+           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
            (d->due == 0 || d->due == 1);
 }
 
@@ -481,11 +481,11 @@ static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
 /* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
 static bool good_follower(const lar_tool *tool, const lar_tool_follower *follower) {
     const lar_tool_felt *felt = &follower->felt;
-    int32_t lagging_most = tool->shape != LAR_TOOL_HAND;
+    int32_t lagging_max = tool->shape != LAR_TOOL_HAND;
     return good_motion(&follower->hand) && follower->hand.holding == 0 &&
            near_enough(tool, &follower->hand) && felt->depth >= 0 && felt->depth <= tool->radius &&
-           felt->steps <= STEPS_MOST && follower->load >= 0 && isfinite(follower->load) &&
-           follower->lagging >= 0 && follower->lagging <= lagging_most && follower->padding == 0;
+           felt->steps <= STEPS_MAX && follower->load >= 0 && isfinite(follower->load) &&
+           follower->lagging >= 0 && follower->lagging <= lagging_max && follower->padding == 0;
 }
 
 /* Those that a file does not have rest, and are nothing. */
@@ -545,9 +545,8 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (status) return status;
     const file_shape shape = {head.version, head.tools, head.grasps};
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
-    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MOST : 0) ||
-        head.grasps < 0 || head.grasps > LAR_GRASPS_MOST ||
-        bytes->size != file_bytes(&shape, nodes))
+    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MAX : 0) ||
+        head.grasps < 0 || head.grasps > LAR_GRASPS_MAX || bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -568,7 +567,7 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     found.v = found.u + nodes;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
     if (!finite || !all_finite(found.offset, 7 * nodes) || !none_negative(found.offset, nodes) ||
-        head.step > STEPS_MOST)
+        head.step > STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
     if (head.hash != hash_state(head.step, found.offset, found.u, found.v, (lar_gid)nodes))
         return refuse(error, path, "has a state with another hash; take another checkpoint");

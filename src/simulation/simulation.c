@@ -72,10 +72,10 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
                         (int)options->element);
-    if (options->threads < 0 || options->threads > LAR_THREADS_MOST)
+    if (options->threads < 0 || options->threads > LAR_THREADS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d threads of a processor; there can be 1 to %d, and more processors",
-                        (int)options->threads, LAR_THREADS_MOST);
+                        (int)options->threads, LAR_THREADS_MAX);
     return LAR_OK;
 }
 

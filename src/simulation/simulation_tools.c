@@ -87,7 +87,7 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
 /* ---- moving -------------------------------------------------------------------------------- */
 
 /* Beyond this a step could not be told from the next as a number. */
-static const double STEPS_MOST = 0x1p53;
+static const double STEPS_MAX = 0x1p53;
 
 /* Finite, and a turn of length one but for rounding, which it then is. */
 static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_pose *clean,
@@ -120,8 +120,8 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
     lar_segment from[2], to[2];
     lar_tool_place(tool, now, &body, from);
     lar_tool_place(tool, pose, &body, to);
-    double way = lar_tool_way(from, to, body.count), most = 0.5 * tool->radius * (double)steps;
-    if (way <= most) return LAR_OK;
+    double way = lar_tool_way(from, to, body.count), max = 0.5 * tool->radius * (double)steps;
+    if (way <= max) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "
                     "step (%.4g m/s); take more steps or a smaller way",
@@ -143,7 +143,7 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     lar_tool_pose now, wanted;
     uint64_t step = lar_simulation_steps(simulation);
     double time_step = simulation->domain.time_step;
-    if (steps < 1 || (double)steps > STEPS_MOST)
+    if (steps < 1 || (double)steps > STEPS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
                         tool->name, (unsigned long long)steps);
     lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
@@ -223,10 +223,10 @@ int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
     return parts > 1 ? parts : 1;
 }
 
-uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
-    if (most) *most = 0;
+uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max) {
+    if (max) *max = 0;
     if (!simulation) return 0;
     const lar_interval *interval = interval_of(simulation);
-    if (most) *most = interval->parts > 1 ? interval->parts : 1;
+    if (max) *max = interval->parts > 1 ? interval->parts : 1;
     return interval->divided;
 }

@@ -43,8 +43,8 @@ typedef struct lar_domain {
     void *blocks;           /* all blocks of all runs */
     lar_lane_base *base;    /* [8 for each block] */
     lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
-    double factor[LAR_FACTORS_MOST];  /* of their stiffness (model/settings.h); atomic */
-    double fastest[LAR_FACTORS_MOST]; /* square of the highest frequency at rest among the
+    double factor[LAR_FACTORS_MAX];  /* of their stiffness (model/settings.h); atomic */
+    double fastest[LAR_FACTORS_MAX]; /* square of the highest frequency at rest among the
                                          elements of these materials [1/s^2]; a whole's */
     double *corner_limit;    /* [8 for each block] lar_hex8_corner_limit, in squared force units */
     double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
@@ -83,10 +83,10 @@ void lar_domain_destroy(lar_domain *domain); /* idempotent */
 
 /* The domain of one processor of several: the same scale, step, limits and turned corners as the
  * whole, which must outlive it. counted[node of the model]: whether this processor accounts for the
- * node's energies, for one of several has to. Runs have at most run_most blocks. Conditions are
+ * node's energies, for one of several has to. Runs have at most run_max blocks. Conditions are
  * left to the caller: they belong to threads. */
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
-                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  const bool *counted, int32_t run_max, lar_domain *domain,
                                   lar_error *error);
 
 /* The elements' bound of the time step at rest and the element that sets it. */

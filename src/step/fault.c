@@ -22,7 +22,7 @@ static void examine_element(const lar_domain *domain, const lar_state *state, la
 
 /* The volume of an element in its worst corner, as a part of that at rest. */
 static double worst_corner(const lar_domain *domain, const lar_state *state, lar_gid e) {
-    double rest[8][3], now[8][3], u[8][3], at[3], J[2][3][3], cof[9], least = INFINITY;
+    double rest[8][3], now[8][3], u[8][3], at[3], J[2][3][3], cof[9], min = INFINITY;
     lar_mesh_corners(&domain->model->mesh, e, rest);
     lar_domain_corners(domain, state->u, e, u);
     for (int a = 0; a < 8; a++)
@@ -33,9 +33,9 @@ static double worst_corner(const lar_domain *domain, const lar_state *state, lar
         lar_hexahedron_jacobian((const double(*)[3])now, at, J[1]);
         double ratio = lar_lane_cofactor((const double *)J[1], cof) /
                        lar_lane_cofactor((const double *)J[0], cof);
-        if (!(ratio >= least)) least = ratio;
+        if (!(ratio >= min)) min = ratio;
     }
-    return least;
+    return min;
 }
 
 /* Where the surface is folded most. */
@@ -77,7 +77,7 @@ static void examine_place(const lar_domain *domain, const lar_state *state, lar_
 /* What a tool does to an element. */
 static const char *describe_action(const lar_domain *domain, const lar_fault *fault) {
     if (!isfinite(fault->volume_ratio) || !isfinite(fault->growth)) return "tears apart";
-    if (!(fault->volume_ratio > domain->limits.least_volume)) return "turns inside out or crushes";
+    if (!(fault->volume_ratio > domain->limits.min_volume)) return "turns inside out or crushes";
     if (fault->growth * domain->time_step > domain->stable_step)
         return "squeezes more than the time step allows";
     return "loads beyond all reason";
@@ -98,7 +98,7 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
                         (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                         (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
                         hint(fault));
-    if (!(volume_ratio > domain->limits.least_volume)) {
+    if (!(volume_ratio > domain->limits.min_volume)) {
         cause = "is turned inside out or crushed";
         remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
     } else if (growth * domain->time_step > domain->stable_step) {

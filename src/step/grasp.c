@@ -42,10 +42,10 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
     return aside || beyond || !between ? INFINITY : distance;
 }
 
-/* Goes through all points in the order of the faces: counts those that are no farther than `most`,
+/* Goes through all points in the order of the faces: counts those that are no farther than `max`,
  * notes the nearest distance, and adds every `every`-th to the grasps when it is not 0. */
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
-                          double most, int32_t every, int32_t tool, lar_tools *tools,
+                          double max, int32_t every, int32_t tool, lar_tools *tools,
                           double *nearest) {
     const lar_tool_contact *contact = &whole->interactions.tool_contact;
     int32_t count = 0;
@@ -59,8 +59,8 @@ static int32_t go_through(const lar_domain *whole, const lar_state *state, const
             lar_face_mean((const double(*)[3])x, weight, point);
             double distance = reach_of(reach, point, own);
             if (distance < *nearest) *nearest = distance;
-            if (!(distance <= most)) continue;
-            if (every > 0 && count % every == 0 && tools->grasp_count < LAR_GRASPS_MOST) {
+            if (!(distance <= max)) continue;
+            if (every > 0 && count % every == 0 && tools->grasp_count < LAR_GRASPS_MAX) {
                 lar_grasp *grasp = &tools->grasps[tools->grasp_count++];
                 *grasp = (lar_grasp){.tool = tool, .face = s};
                 memcpy(grasp->weight, weight, sizeof weight);
@@ -77,7 +77,7 @@ static int32_t room_of(const lar_tool_list *list, const lar_tools *tools) {
     int32_t holders = 0;
     for (int32_t i = 0; i < list->count; i++)
         holders += list->tool[i].shape == LAR_TOOL_HAND || list->tool[i].shape == LAR_TOOL_GRASPER;
-    int32_t room = LAR_GRASPS_MOST / holders, left = LAR_GRASPS_MOST - tools->grasp_count;
+    int32_t room = LAR_GRASPS_MAX / holders, left = LAR_GRASPS_MAX - tools->grasp_count;
     if (room > GRASPS_OF_A_TOOL) room = GRASPS_OF_A_TOOL;
     return room < left ? room : left;
 }
@@ -86,24 +86,24 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
                  int32_t tool, const lar_tool_pose *pose, lar_tools *tools) {
     lar_reach reach = {.tool = &list->tool[tool], .pose = *pose};
     int32_t before = tools->grasp_count, room = room_of(list, tools);
-    double most = INFINITY, nearest = INFINITY;
+    double max = INFINITY, nearest = INFINITY;
     bool hand = reach.tool->shape == LAR_TOOL_HAND;
     if (whole->interactions.tool_contact.face_count == 0 || room <= 0) return;
     if (hand) {
-        most = reach.tool->radius;
+        max = reach.tool->radius;
     } else {
         lar_tool_at(&tools->motion[tool], state->step, whole->time_step, &reach.pose, NULL);
         double opening = fmax(reach.pose.opening, CLOSED);
         lar_sine_cosine(0.5 * reach.tool->spread * opening, &reach.sine, &reach.cosine);
-        most = 2 * reach.tool->length + reach.tool->radius; /* the jaws themselves decide */
+        max = 2 * reach.tool->length + reach.tool->radius; /* the jaws themselves decide */
     }
-    int32_t count = go_through(whole, state, &reach, most, 0, tool, tools, &nearest);
-    if (count == 0 && hand && nearest <= 2 * most) {
-        most = nearest;
+    int32_t count = go_through(whole, state, &reach, max, 0, tool, tools, &nearest);
+    if (count == 0 && hand && nearest <= 2 * max) {
+        max = nearest;
         count = 1;
     }
     if (count == 0) return;
-    go_through(whole, state, &reach, most, (count + room - 1) / room, tool, tools, &nearest);
+    go_through(whole, state, &reach, max, (count + room - 1) / room, tool, tools, &nearest);
     int32_t taken = tools->grasp_count - before;
     for (int32_t i = before; i < tools->grasp_count; i++)
         tools->grasps[i].stiffness = (hand ? HAND_STIFFNESS : JAWS_STIFFNESS) / taken;
@@ -156,8 +156,8 @@ void lar_grasp_ease(const lar_domain *whole, const lar_tool_list *list, int32_t 
         lar_grasp *grasp = &tools->grasps[i];
         if (grasp->tool != tool) continue;
         /* Of what it really has, or softening would begin unseen. */
-        double most = lar_grasp_stiffness_limit(&contact->face[contact->face_of[grasp->face]],
-                                                list->tool[tool].radius, &law, whole->mass);
-        grasp->stiffness = share * fmin(wanted, most);
+        double max = lar_grasp_stiffness_limit(&contact->face[contact->face_of[grasp->face]],
+                                               list->tool[tool].radius, &law, whole->mass);
+        grasp->stiffness = share * fmin(wanted, max);
     }
 }

@@ -22,7 +22,7 @@
 /* Takes hold or lets go, as the tool's new pose asks: `pose->opening` below 0.25 closes a grasper
  * or a hand that is open, above 0.5 opens it. A grasper takes what is between its jaws now, at
  * state->step; an empty hand is already at `pose`. Other tools do not hold. A tool gets its share
- * of LAR_GRASPS_MOST: of more points it takes every second, third, ... No memory is asked for. */
+ * of LAR_GRASPS_MAX: of more points it takes every second, third, ... No memory is asked for. */
 lar_status lar_grasp_update(const lar_domain *whole, const lar_state *state,
                             const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
                             lar_tools *tools, lar_error *error);

@@ -121,7 +121,7 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), LEAD * step, force, &guard);
-    if (!(guard.least < LAR_GUARD_START)) return;
+    if (!(guard.min < LAR_GUARD_START)) return;
     double part = soften(domain, e, guard.stiffness, step, force);
     add(domain, e, (const double(*)[3])force, state);
     if (counts) state->contact -= step * part * guard.taken;

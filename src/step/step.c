@@ -70,7 +70,7 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
     double J = domain->kind == LAR_ELEMENT_HEX8_FULL
                    ? lar_hex8_full_force(corner, material, u, f)
                    : lar_hex8_matrix_force(corner, material, u, f);
-    bool fits = J > domain->limits.least_volume;
+    bool fits = J > domain->limits.min_volume;
     for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
     if (!fits) {
         fault_element(fault, state, e);

@@ -34,8 +34,8 @@ typedef struct lar_device_client_report {
     uint64_t strange;        /* packets that answer nothing */
     uint64_t steps;          /* of the engine, from the first answer to the last */
     double round_trip_p50, round_trip_p99, round_trip_p999, round_trip_max; /* there and back [s] */
-    double force_most, force_mean;                                          /* [N] */
-    double torque_most;                                                     /* [N m] */
+    double force_max, force_mean;                                           /* [N] */
+    double torque_max;                                                      /* [N m] */
     uint64_t touching, holding; /* answers that said so */
 } lar_device_client_report;
 

@@ -52,13 +52,13 @@ typedef struct lar_partition_cost {
  * the mean, counted from the scheme's schedules. A vector has 24 bytes. */
 typedef struct lar_partition_scheme {
     const char *name;
-    int64_t local_most, global_most, vectors_most; /* vectors */
+    int64_t local_max, global_max, vectors_max; /* vectors */
     double local_mean, global_mean, vectors_mean;
-    int64_t bytes_most;
+    int64_t bytes_max;
     double bytes_mean;
-    int64_t packets_most;
+    int64_t packets_max;
     double packets_mean;
-    int64_t packet_bytes_most; /* the largest packet */
+    int64_t packet_bytes_max; /* the largest packet */
     double packet_bytes_mean;
 } lar_partition_scheme;
 
@@ -66,9 +66,9 @@ typedef struct lar_partition_scheme {
 typedef struct lar_partition_schedules {
     int32_t threads;
     const char *scheme, *channels;
-    int64_t batches_most, waits_most; /* of a processor, all threads */
+    int64_t batches_max, waits_max; /* of a processor, all threads */
     double batches_mean, waits_mean;
-    int64_t buffer_bytes_most; /* of a receive buffer, both halves */
+    int64_t buffer_bytes_max; /* of a receive buffer, both halves */
 } lar_partition_schedules;
 
 typedef struct lar_partition_report {

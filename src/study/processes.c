@@ -26,7 +26,7 @@
 static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0;
 
 /* Whoever wants more on one machine has mistyped the grid. */
-enum { STARTED_MOST = 64 };
+enum { STARTED_MAX = 64 };
 
 /* By this variable of the environment a process knows which one has started it. */
 static const char PARENT[] = "LARIAT_PARENT";
@@ -227,11 +227,11 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
     bool starts = p->several && p->start == LAR_COMM_BY_ADDRESS && p->job.count == 1 &&
                   !by_hand(p) && count > 1;
     if (status || !starts) return status;
-    if (count > STARTED_MOST)
+    if (count > STARTED_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d processes on one machine; at most %d are started here: leave --comm "
                         "out, or start them by hand or by mpirun on several machines",
-                        (int)count, STARTED_MOST);
+                        (int)count, STARTED_MAX);
     p->pid = lar_calloc((size_t)count, sizeof *p->pid);
     if (!p->pid) return lar_fail_memory(error, (size_t)count * sizeof *p->pid, "processes");
     p->count = count;

@@ -11,10 +11,10 @@
 
 #include "base/parallel_for.h"
 
-enum { MOST = 1000 };
+enum { MAX = 1000 };
 
 typedef struct work {
-    int done[MOST]; /* written by whoever has the item */
+    int done[MAX]; /* written by whoever has the item */
     int32_t count, portion;
     int bad; /* atomic: portions that are none */
     int calls;
@@ -37,7 +37,7 @@ static void every_item_is_done_once(void **state) {
             lar_parallel_for(w.count, w.portion, count_up, &w);
             assert_int_equal(w.bad, 0);
             assert_int_equal(w.calls, ((int64_t)w.count + w.portion - 1) / w.portion);
-            for (int32_t n = 0; n < MOST; n++) assert_int_equal(w.done[n], n < w.count);
+            for (int32_t n = 0; n < MAX; n++) assert_int_equal(w.done[n], n < w.count);
         }
 }
 
@@ -48,8 +48,8 @@ typedef struct nest {
 static void share_rows(void *context, int32_t first, int32_t end) {
     nest *all = context;
     for (int32_t r = first; r < end; r++) {
-        all->row[r] = (work){.count = MOST, .portion = 10};
-        lar_parallel_for(MOST, 10, count_up, &all->row[r]);
+        all->row[r] = (work){.count = MAX, .portion = 10};
+        lar_parallel_for(MAX, 10, count_up, &all->row[r]);
     }
 }
 
@@ -59,7 +59,7 @@ static void calls_can_be_nested(void **state) {
     memset(&all, 0, sizeof all);
     lar_parallel_for(8, 1, share_rows, &all);
     for (int r = 0; r < 8; r++)
-        for (int32_t n = 0; n < MOST; n++) assert_int_equal(all.row[r].done[n], 1);
+        for (int32_t n = 0; n < MAX; n++) assert_int_equal(all.row[r].done[n], 1);
 }
 
 /* Waits for another one who is at work at the same time, and no longer than ten seconds. */

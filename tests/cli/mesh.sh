@@ -64,8 +64,8 @@ find . -name '*.part' | grep -q . && fail "a part file is left"
 # The pull moves the handle alike whatever the mesh; frames hold the fine surface when asked to.
 furthest() { # the largest mean displacement of the handle in a run's probes
     awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /^"*handle/) at[++n] = c; next }
-        { d = 0; for (c = 1; c <= n; c++) d += $at[c] ^ 2; if (d > most) most = d }
-        END { print sqrt(most) }' "$1/probes.csv"
+        { d = 0; for (c = 1; c <= n; c++) d += $at[c] ^ 2; if (d > max) max = d }
+        END { print sqrt(max) }' "$1/probes.csv"
 }
 for elements in 150 600 2400; do
     expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements $elements --title pull \

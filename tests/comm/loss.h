@@ -18,7 +18,7 @@
 #include <sys/time.h>
 #include <time.h>
 
-enum { LOSS_MOST = 8, LOSS_BYTES = 256 * LOSS_MOST };
+enum { LOSS_MAX = 8, LOSS_BYTES = 256 * LOSS_MAX };
 static const double LOSS_LIMIT = 2.0;     /* [s], the promise */
 static const unsigned LOSS_TOO_LONG = 60; /* [s], then a process that hangs is ended */
 
@@ -46,7 +46,7 @@ typedef struct loss_results {
     long self_kill; /* [us] after its start the victim kills itself; 0: it does not */
     double began;   /* when the trouble came */
     int released;   /* atomic: who hangs may end */
-    loss_entry entries[LOSS_MOST];
+    loss_entry entries[LOSS_MAX];
 } loss_results;
 
 static inline double loss_now(void) {

@@ -3,7 +3,7 @@
  * victim. */
 #include "loss.h"
 
-enum { PROCESSORS = 4, BACKENDS_MOST = 8 };
+enum { PROCESSORS = 4, BACKENDS_MAX = 8 };
 
 typedef struct scene {
     const char *backend;
@@ -55,13 +55,13 @@ static int finish(scene *s, loss_control *control) {
 
 /* The same trouble over every backend at once: most of the time is waiting. */
 static void lose(int32_t victim, loss_kind kind, int cut) {
-    scene scenes[BACKENDS_MOST];
-    loss_control controls[BACKENDS_MOST];
+    scene scenes[BACKENDS_MAX];
+    loss_control controls[BACKENDS_MAX];
     lar_comm_backend_info info;
     int count = 0, wrong = 0;
     for (int i = 0; fleet_backend(i, &info); i++)
         /* Which of its sockets carry packets is UCX's own affair. */
-        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MOST &&
+        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MAX &&
             !(kind == LOSS_CUT_ONE && strcmp(info.name, "ucx") == 0))
             launch(&scenes[count++], info.name, victim, kind, cut);
     for (int i = 0; i < count; i++) {

@@ -9,7 +9,7 @@ enum { GRIDS = sizeof edges / sizeof *edges };
 
 /* Eq. 6.7, and no processor below the floor either. */
 static void check_balance(const lar_distribution *d) {
-    int32_t count[LAR_GRID_MOST];
+    int32_t count[LAR_GRID_MAX];
     assert_true(lar_distribution_load(d, count));
     for (int32_t p = 0; p < d->grid.count; p++)
         assert_true(count[p] >= d->element_count / d->grid.count);

@@ -32,7 +32,7 @@ static int tear_down(void **state) {
 }
 
 static void check_balance(const organ *o, const lar_grid *grid) {
-    int32_t count[LAR_GRID_MOST];
+    int32_t count[LAR_GRID_MAX];
     lar_distribution d = {*grid, o->mesh.element_count, o->processor};
     assert_true(lar_distribution_load(&d, count));
     for (int32_t p = 0; p < grid->count; p++)
@@ -59,7 +59,7 @@ static void same_for_a_seed(void **state) {
     assert_memory_equal(o->processor, o->other, bytes);
     int32_t set[64];
     int64_t pays[12];
-    assert_true(o->incidence.most <= 64);
+    assert_true(o->incidence.max <= 64);
     lar_cost cost = lar_cost_measure(&o->incidence, o->processor, grid.count, set, pays);
     assert_int_equal(cost.worst, result.best.worst);
     assert_int_equal(cost.total, result.best.total);

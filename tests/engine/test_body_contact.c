@@ -150,7 +150,7 @@ static void bodies_in_each_other_are_refused(void **unused) {
 static void what_is_no_number_is_the_most(void **unused) {
     (void)unused;
     lar_report sum = {0}, other = {.moved = NAN, .way = 1}, last = {.moved = 2, .way = NAN};
-    assert_true(lar_most(1, 2) == 2 && lar_most(2, 1) == 2);
+    assert_true(lar_larger(1, 2) == 2 && lar_larger(2, 1) == 2);
     lar_report_join(&sum, &other);
     lar_report_join(&sum, &last);
     lar_report_join(&sum, &(lar_report){.moved = 3, .way = 3});
@@ -170,7 +170,7 @@ static double thrown(double speed, double part_of_stable_step, bool self, double
     lar_simulation *s = start_step(model, step);
     lar_energy e;
     lar_simulation_energy(s, &e);
-    double first_energy = total(&e), most = 0, until = 0.0005 / speed + 0.05;
+    double first_energy = total(&e), max = 0, until = 0.0005 / speed + 0.05;
     bool touched = false;
     while (lar_simulation_time(s) < until) {
         lar_contact_info info;
@@ -178,12 +178,12 @@ static double thrown(double speed, double part_of_stable_step, bool self, double
         lar_simulation_energy(s, &e);
         lar_simulation_contact(s, &info);
         touched = touched || info.touching > 0;
-        most = fmax(most, total(&e));
+        max = fmax(max, total(&e));
     }
     assert_true(touched);
     *rebound = total(&e) / first_energy;
     finish(s, model);
-    return most / first_energy;
+    return max / first_energy;
 }
 
 static uint64_t last_hash; /* of the last run */
@@ -191,7 +191,7 @@ static uint64_t last_hash; /* of the last run */
 /* What is too soft for its speed: G = 4 kPa at 3 and 5 m/s. While it goes on, energy holds. When
  * elements are crushed until their surface has no inside any more, the run stops and says so. */
 static lar_status crushed(double shear, double speed, double part_of_stable_step, const char *grid,
-                          uint64_t *steps, double *most, lar_error *error) {
+                          uint64_t *steps, double *max, lar_error *error) {
     brick lower = lower_brick, upper = upper_brick;
     lower.shear = upper.shear = shear;
     lower.bulk = upper.bulk = 10 * shear;
@@ -206,11 +206,11 @@ static lar_status crushed(double shear, double speed, double part_of_stable_step
     lar_simulation_energy(s, &e);
     double first_energy = total(&e);
     lar_status status = LAR_OK;
-    *most = 0;
+    *max = 0;
     while (lar_simulation_time(s) < 0.05 && !status) {
         status = lar_simulation_advance(s, 4, error);
         lar_simulation_energy(s, &e);
-        if (!status) *most = fmax(*most, total(&e) / first_energy);
+        if (!status) *max = fmax(*max, total(&e) / first_energy);
     }
     *steps = lar_simulation_steps(s);
     last_hash = lar_simulation_hash(s);
@@ -226,11 +226,11 @@ static void what_is_crushed_holds_or_stops_and_says_why(void **unused) {
     for (int k = 0; k < 30; k += test_every(7), tried++) {
         lar_error error = {0};
         uint64_t steps;
-        double most, speed = k % 2 ? 5 : 3, shear = shears[k / 2 % 3], part = parts[k / 6];
-        lar_status status = crushed(shear, speed, part, NULL, &steps, &most, &error);
+        double max, speed = k % 2 ? 5 : 3, shear = shears[k / 2 % 3], part = parts[k / 6];
+        lar_status status = crushed(shear, speed, part, NULL, &steps, &max, &error);
         print_message("%g kPa, %g m/s, %.3f of the stable step: at most %.5f, %s\n", 1e-3 * shear,
-                      speed, part, most, status ? error.message : "holds");
-        assert_below(most, 1.001);
+                      speed, part, max, status ? error.message : "holds");
+        assert_below(max, 1.001);
         held += !status;
         if (!status) continue;
         assert_int_equal(status, LAR_ERROR_UNSTABLE);
@@ -247,9 +247,9 @@ static void what_is_crushed_is_the_same_everywhere(void **unused) {
     static const char *const grids[] = {NULL, "1x1x2", "2x2x1"};
     uint64_t steps[3], first_hash = 0;
     lar_error error[3] = {0};
-    double most[3];
+    double max[3];
     for (int i = 0; i < 3; i++) {
-        lar_status status = crushed(2e3, 5, 0.2, grids[i], &steps[i], &most[i], &error[i]);
+        lar_status status = crushed(2e3, 5, 0.2, grids[i], &steps[i], &max[i], &error[i]);
         assert_int_equal(status, LAR_OK);
         assert_true(steps[i] == steps[0]);
         assert_true(last_hash == first_hash || i == 0);
@@ -264,10 +264,10 @@ static void a_collision_adds_no_energy(void **unused) {
         for (int j = 0; j < 3; j++) {
             if ((i + j) % 2 && i < 2) continue; /* slow ones: every other */
             if (i < 2 && test_every(2) > 1) continue;
-            double left, most = thrown(speeds[i], parts[j], j == 1, &left);
+            double left, max = thrown(speeds[i], parts[j], j == 1, &left);
             print_message("%4g m/s, %.3f of the stable step: at most %.5f, %.4f left\n", speeds[i],
-                          parts[j], most, left);
-            assert_below(most, 1.001);
+                          parts[j], max, left);
+            assert_below(max, 1.001);
         }
 }
 
@@ -392,19 +392,19 @@ static void a_strip_that_closes_on_itself_holds(void **unused) {
     /* The inner side of one end stays above that of the other. */
     int32_t one = brick_node(&b, 0, 1, 1), other = brick_node(&b, b.cells[0], 1, 1);
     double sign = model->mesh.position[one][2] > model->mesh.position[other][2] ? 1 : -1;
-    double least = INFINITY;
+    double min = INFINITY;
     while (lar_simulation_time(s) < 0.6) {
         advance(s, 20);
-        least = fmin(least, sign * (model->mesh.position[one][2] + node_u(s, one)[2] -
-                                    model->mesh.position[other][2] - node_u(s, other)[2]));
+        min = fmin(min, sign * (model->mesh.position[one][2] + node_u(s, one)[2] -
+                                model->mesh.position[other][2] - node_u(s, other)[2]));
     }
     lar_simulation_contact(s, &info);
     print_message(
         "the ends: %d nodes touch, %.2g of an element deep; their middles %.2g mm apart\n",
-        (int)info.touching, info.deepest / b.edge, 1e3 * least);
+        (int)info.touching, info.deepest / b.edge, 1e3 * min);
     assert_true(info.touching > 0);
     assert_below(info.deepest, 0.1 * b.edge);
-    assert_true(least > -0.1 * b.edge);
+    assert_true(min > -0.1 * b.edge);
     finish(s, model);
 }
 

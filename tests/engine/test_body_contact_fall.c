@@ -57,7 +57,7 @@ static double depth_in(const double x[3], const double (*place)[3], const lar_me
                        const int32_t *face, int32_t count) {
     static const double PI = 3.14159265358979323846;
     static const double even[4] = {0.25, 0.25, 0.25, 0.25};
-    double angle = 0, least = INFINITY;
+    double angle = 0, min = INFINITY;
     for (int32_t f = 0; f < count; f++) {
         double corner[4][3], middle[3];
         for (int a = 0; a < 4; a++)
@@ -66,9 +66,9 @@ static double depth_in(const double x[3], const double (*place)[3], const lar_me
         for (int a = 0; a < 4; a++)
             angle +=
                 solid_angle(x, (const double *const[]){corner[a], corner[(a + 1) % 4], middle});
-        least = fmin(least, lar_face_distance(x, (const double(*)[3])corner));
+        min = fmin(min, lar_face_distance(x, (const double(*)[3])corner));
     }
-    return angle > 2 * PI ? least : 0;
+    return angle > 2 * PI ? min : 0;
 }
 
 /* What the surface nodes of one body lie inside the other, times their part of the surface, as a
@@ -106,17 +106,17 @@ static void what_falls_stays_outside(void **unused) {
         options.time_step = parts[k] * stable_step_of(model);
         lar_simulation *s = start_with(model, options);
         double(*place)[3] = lar_calloc((size_t)model->mesh.node_count, sizeof *place);
-        double most = 0, fastest = 0;
+        double max = 0, fastest = 0;
         while (lar_simulation_time(s) < 0.06) {
             advance(s, (uint64_t)(0.002 / options.time_step));
-            most = fmax(most, overlap(s, place, first));
+            max = fmax(max, overlap(s, place, first));
             for (int32_t n = 0; n < model->mesh.node_count; n++)
                 for (int i = 0; i < 3; i++) fastest = fmax(fastest, fabs(node_v(s, n)[i]));
         }
         print_message("%.1f of the stable step: %.3f %% of a ball inside the other at most, nodes "
                       "at most %.2f m/s\n",
-                      parts[k], 100 * most, fastest);
-        assert_below(most, 1e-3);
+                      parts[k], 100 * max, fastest);
+        assert_below(max, 1e-3);
         assert_below(fastest, 2.5);
         free(place);
         finish(s, model);

@@ -13,7 +13,7 @@ static lar_model *folding_bar(double shear, int layers) {
     static const double angle = 1.0471975511965976, half = 0.06;
     brick b = {{12, 3, layers}, 0.01, 0, LAR_LAW_neo_hookean, shear, 100 * shear, 1000};
     lar_model *model = brick_model(&b);
-    double most[3] = {-1, -1, -1}, c = cos(angle), s = sin(angle);
+    double max[3] = {-1, -1, -1}, c = cos(angle), s = sin(angle);
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
         double *x = model->mesh.position[n];
         double along = fabs(x[0] - half), deep = b.edge * layers - x[2];
@@ -21,11 +21,11 @@ static lar_model *folding_bar(double shear, int layers) {
         double share = fmin(3 * along / half, 1);
         x[0] = (x[0] < half ? -1 : 1) * (along * c + share * deep * s);
         x[2] = along * s - (1 - share) * deep / c - share * deep * c;
-        for (int i = 0; i < 3; i++) most[i] = fmax(most[i], x[i]);
+        for (int i = 0; i < 3; i++) max[i] = fmax(max[i], x[i]);
     }
     touch_self(model);
-    add_plane(model, (double[]){most[0] + 0.001, 0, 0}, (double[]){-1, 0, 0});
-    add_plane(model, (double[]){0, 0, most[2] + 0.001}, (double[]){0, 0, -1});
+    add_plane(model, (double[]){max[0] + 0.001, 0, 0}, (double[]){-1, 0, 0});
+    add_plane(model, (double[]){0, 0, max[2] + 0.001}, (double[]){0, 0, -1});
     memcpy(model->gravity, (double[]){7, 0, 7}, sizeof model->gravity);
     model->damping = 20;
     return model;
@@ -93,7 +93,7 @@ static double deepest_inside(const lar_simulation *s, int *count) {
     double deepest = 0;
     *count = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
-        double x[3], corner[8][3], least = INFINITY;
+        double x[3], corner[8][3], min = INFINITY;
         bool inside = false;
         place_of(s, n, x);
         for (int32_t e = 0; e < model->mesh.element_count && !inside; e++) {
@@ -111,9 +111,9 @@ static double deepest_inside(const lar_simulation *s, int *count) {
                 own = own || model->surface.corner[f][a] == n;
                 place_of(s, model->surface.corner[f][a], corner[a]);
             }
-            if (!own) least = fmin(least, lar_face_distance(x, (const double(*)[3])corner));
+            if (!own) min = fmin(min, lar_face_distance(x, (const double(*)[3])corner));
         }
-        deepest = fmax(deepest, least);
+        deepest = fmax(deepest, min);
         (*count)++;
     }
     return deepest;
@@ -240,12 +240,12 @@ static void fold_shut(double shear, int layers) {
     lar_model *model = folding_bar(shear, layers);
     lar_simulation *s = start(model);
     lar_energy e;
-    int inside, most = 0;
+    int inside, max = 0;
     double given = 0, over = 0, before = 0;
     while (lar_simulation_time(s) < 6) {
         advance(s, 20);
         lar_simulation_energy(s, &e);
-        most = stowaways(s) > most ? stowaways(s) : most;
+        max = stowaways(s) > max ? stowaways(s) : max;
         given = fmax(given, before - e.contact);
         over = fmax(over, e.kinetic + e.strain + e.hourglass - e.external);
         before = e.contact;
@@ -254,9 +254,9 @@ static void fold_shut(double shear, int layers) {
     print_message("G = %g kPa, %d layers: %d nodes came in from the side at most; at rest %d "
                   "inside, %.2f of an element deep, kinetic %.2g of %.2g J; contact took %.2g J, "
                   "gave at most %.2g at a time\n",
-                  1e-3 * shear, layers, most, inside, deepest / 0.01, kinetic(s), e.strain,
+                  1e-3 * shear, layers, max, inside, deepest / 0.01, kinetic(s), e.strain,
                   e.contact, given);
-    assert_true(most > 0); /* or this tests nothing */
+    assert_true(max > 0); /* or this tests nothing */
     assert_true(e.contact > 0);
     assert_below(given, 0.02 * e.contact);
     assert_below(over, 1e-9);

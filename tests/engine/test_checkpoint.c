@@ -558,14 +558,14 @@ static void *save_often(void *argument) {
 /* Each writes a file of its own, and the last name given stands. */
 static void several_save_to_one_path(void **unused) {
     (void)unused;
-    enum { SAVERS = 4, MOST = 400000 };
+    enum { SAVERS = 4, MAX = 400000 };
     saver s[SAVERS];
     pthread_t thread[SAVERS];
     lar_bytes left;
     remove(SHARED);
     for (int k = 0; k < SAVERS; k++) {
-        s[k] = (saver){.bytes = {malloc(MOST), (size_t)(MOST / (k + 1))}};
-        memset(s[k].bytes.data, 'a' + k, MOST);
+        s[k] = (saver){.bytes = {malloc(MAX), (size_t)(MAX / (k + 1))}};
+        memset(s[k].bytes.data, 'a' + k, MAX);
         memcpy(s[k].bytes.data, "LARIATCP", 8);
         assert_int_equal(pthread_create(&thread[k], NULL, save_often, &s[k]), 0);
     }

@@ -47,12 +47,12 @@ static void wait(lar_simulation *simulation, double seconds) {
 }
 
 static double fastest(const lar_simulation *simulation) {
-    double most = 0;
+    double max = 0;
     for (int32_t n = 0; n < simulation->domain.model->mesh.node_count; n++) {
         const double *v = node_v(simulation, n);
-        most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+        max = fmax(max, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
-    return most;
+    return max;
 }
 
 /* ---- what they press with ------------------------------------------------------------------- */
@@ -163,7 +163,7 @@ static void vanish(lar_simulation *simulation) {
 }
 
 typedef struct release {
-    double held, most, fall, speed; /* force before [N]; the largest, and its largest fall in a
+    double held, max, fall, speed; /* force before [N]; the largest, and its largest fall in a
                                        millisecond [N]; of a node [m/s] */
 } release;
 
@@ -186,7 +186,7 @@ static release let_go(double way, double seconds) {
         else
             wait(simulation, 0.001);
         double now = size_of(felt(simulation, 0).force);
-        r.most = fmax(r.most, now);
+        r.max = fmax(r.max, now);
         r.fall = fmax(r.fall, before - now);
         before = now;
         r.speed = fmax(r.speed, fastest(simulation));
@@ -205,10 +205,10 @@ static void opening_lets_go_without_a_jump(void **unused) {
             release r = let_go(ways[w], opens[o]);
             print_message("held with %.3g N, opened in %g s: up to %.3g N, falls by %.3g N in a "
                           "ms at most; %.3g m/s, tissue alone %.3g m/s\n",
-                          r.held, opens[o], r.most, r.fall, r.speed, free.speed);
+                          r.held, opens[o], r.max, r.fall, r.speed, free.speed);
             assert_below(r.speed, (o == 0 ? 0.6 : 0.2) * free.speed);
             if (o == 0) continue;
-            assert_below(r.most, r.held + 0.005);
+            assert_below(r.max, r.held + 0.005);
             assert_below(r.fall, 0.01);
         }
     }

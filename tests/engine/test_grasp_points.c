@@ -98,7 +98,7 @@ static void hands_share_the_room_for_holds(void **unused) {
     for (int t = 0; t < 4; t++) {
         hand(simulation, t, 0.01 + 0.02 * (t % 2), 0.01 + 0.02 * (t / 2), 0.005, 0, 1);
         int32_t held = felt(simulation, t).held;
-        assert_true(held > 24 && held <= LAR_GRASPS_MOST / 4);
+        assert_true(held > 24 && held <= LAR_GRASPS_MAX / 4);
     }
     double total = 0;
     for (int32_t i = 0; i < simulation->tools.grasp_count; i++)

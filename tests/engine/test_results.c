@@ -331,13 +331,13 @@ static void an_embedded_surface_has_frames_of_its_own(void **state) {
         lar_model_embedded_move(f->model, frame ? (const double(*)[3])u : NULL, place);
         assert_int_equal(read.vertex_count, info.vertices);
         assert_int_equal(read.triangle_count, info.triangles);
-        double most = 0, moved = 0;
+        double max = 0, moved = 0;
         for (int32_t v = 0; v < info.vertices; v++)
             for (int i = 0; i < 3; i++) {
-                most = fmax(most, fabs(read.vertex[v][i] - place[v][i]));
+                max = fmax(max, fabs(read.vertex[v][i] - place[v][i]));
                 moved = fmax(moved, fabs(place[v][i] - info.rest[v][i]));
             }
-        assert_true(most < 1e-8);
+        assert_true(max < 1e-8);
         assert_true((moved > 1e-5) == (frame == 1));
         lar_triangles_clear(&read);
     }

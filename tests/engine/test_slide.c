@@ -171,9 +171,9 @@ static void a_slide_over_what_gives_way_costs_next_to_none(void **unused) {
             if (which == 2) continue;
             outcome o = slide(&r);
             print_ride(&r, &o);
-            double most = r.speed > 0.2 ? 2e-4 : 1e-4;
-            assert_below(fabs(o.lost), most);
-            assert_below(0.5 * (o.taken + o.trembling) / o.kinetic, most);
+            double max = r.speed > 0.2 ? 2e-4 : 1e-4;
+            assert_below(fabs(o.lost), max);
+            assert_below(0.5 * (o.taken + o.trembling) / o.kinetic, max);
             assert_below(o.worst, 6e-4);
         }
 }

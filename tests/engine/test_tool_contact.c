@@ -319,7 +319,7 @@ static const double ways[WAYS][2][3] = {{{0.025, 0.015, 0.05}, {0.025, 0.015, -0
 
 /* There and back. Returns what the run says. */
 static lar_status push(const brick *b, const lar_tool *tool, int way, double speed,
-                       double *most_force, lar_error *error) {
+                       double *max_force, lar_error *error) {
     lar_model *model = brick_model(b);
     fix_nodes(model, brick_side(b, 2, 0), LAR_AXIS_ALL);
     touch_tool(model, "probe", *tool, ways[way][0]);
@@ -328,7 +328,7 @@ static lar_status push(const brick *b, const lar_tool *tool, int way, double spe
     for (int i = 0; i < 3; i++) length += pow(ways[way][1][i] - ways[way][0][i], 2);
     uint64_t steps = (uint64_t)(sqrt(length) / speed / time_step) + 1;
     lar_status status = LAR_OK;
-    *most_force = 0;
+    *max_force = 0;
     for (int leg = 0; leg < 2 && !status; leg++) {
         place(simulation, 0, ways[way][!leg], upright, 1, steps);
         for (uint64_t i = 0; i < steps + 200 && !status; i += 20) {
@@ -337,7 +337,7 @@ static lar_status push(const brick *b, const lar_tool *tool, int way, double spe
             assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, NULL), LAR_OK);
             for (int k = 0; k < 3; k++) {
                 assert_true(isfinite(force.force[k]));
-                *most_force = fmax(*most_force, fabs(force.force[k]));
+                *max_force = fmax(*max_force, fabs(force.force[k]));
             }
         }
     }

@@ -97,12 +97,12 @@ static void empty_lane(load *l, int n) {
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
                     int64_t *force, const lar_hex8_limits *limits, bool watch) {
     lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, count, blocks};
-    enum { MOST = 64 };
-    static int32_t lane[MOST * LAR_BLOCK];
-    static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
-    assert_true(count <= MOST);
-    for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    enum { MAX = 64 };
+    static int32_t lane[MAX * LAR_BLOCK];
+    static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
+    assert_true(count <= MAX);
+    for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
+    static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
     lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
     int64_t found = kernels[k]->recover(&run, u, force, limits, watch ? &listed : NULL);
     /* The first lane of those of the block that is named. */
@@ -214,14 +214,14 @@ static void integers_balance(void **state) {
             recover(&l, k, false, &no_limits, &once);
             f = once;
             call(k, (lar_law)law, l.block, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits, false);
-            int64_t sum[4] = {0}, most = 0;
+            int64_t sum[4] = {0}, max = 0;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) {
                     assert_true(f.at[p][i] == 2 * once.at[p][i]);
                     sum[i] += once.at[p][i];
-                    most = most < once.at[p][i] ? once.at[p][i] : most;
+                    max = max < once.at[p][i] ? once.at[p][i] : max;
                 }
-            assert_true(most > 1000000);
+            assert_true(max > 1000000);
             for (int i = 0; i < 4; i++) assert_true(sum[i] == 0);
         }
 }

@@ -5,7 +5,7 @@
 #include "base/simd.h"
 #include "mechanics/hex8_block.h"
 
-enum { MOST = 9, LANES = MOST * LAR_BLOCK, ROOM = 8 * LANES + 2, SPARE = ROOM - 1 };
+enum { MAX = 9, LANES = MAX * LAR_BLOCK, ROOM = 8 * LANES + 2, SPARE = ROOM - 1 };
 static const double size = 0.01, scale = 0x1p52; /* m, force units per newton: every bit shows */
 static const double modulus_shear = 4e3, modulus_bulk = 2e5;
 
@@ -26,8 +26,8 @@ typedef struct body {
     int turn; /* of boxes; -1: crooked elements */
     lar_law law;
     lar_block_rows rows;
-    lar_hex8_block general[MOST];
-    lar_box_block box[MOST];
+    lar_hex8_block general[MAX];
+    lar_box_block box[MAX];
     double x[ROOM][3];
     double u[ROOM][4] __attribute__((aligned(64)));
 } body;
@@ -132,10 +132,10 @@ static void make_body(body *b, uint64_t *seed, int turn, lar_law law, lar_block_
 /* The first lane of those that the kernel names, or -1. */
 static int64_t recover_run(int k, const lar_block_run *run, const double *u, int64_t *force,
                            const lar_hex8_limits *limits, bool watch) {
-    static int32_t lane[MOST * LAR_BLOCK];
-    static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
-    for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    static int32_t lane[MAX * LAR_BLOCK];
+    static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
+    for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
+    static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
     lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
     int64_t found = kernels[k]->recover(run, u, force, limits, watch ? &listed : NULL);
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
@@ -167,13 +167,13 @@ static void every_kind_gives_the_same_bits(void **state) {
             for (int joined = 0; joined < LAR_ROWS_COUNT; joined++) {
                 uint64_t seed = (uint64_t)(100 * turn + 10 * law + joined + 1000);
                 make_body(&b, &seed, turn, (lar_law)law, (lar_block_rows)joined);
-                for (int count = 0; count <= MOST; count++) {
+                for (int count = 0; count <= MAX; count++) {
                     recover(&b, 0, false, LAR_ROWS_NONE, count, &no_limits, false, &expected);
-                    int64_t most = 0;
+                    int64_t max = 0;
                     for (int p = 0; p < ROOM; p++)
                         for (int i = 0; i < 3; i++)
-                            if (most < expected.at[p][i]) most = expected.at[p][i];
-                    assert_true(count == 0 ? most == 0 : most > 1000000);
+                            if (max < expected.at[p][i]) max = expected.at[p][i];
+                    assert_true(count == 0 ? max == 0 : max > 1000000);
                     for (int k = 0; k < kernel_count; k++)
                         for (int form = 0; form < 4; form++) {
                             bool boxes = turn >= 0 && form / 2, watch = form % 2;
@@ -197,8 +197,8 @@ static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool
     static forces f, loose;
     double *at = b->u[b->general[n / 8].head.node[6][n % 8] / 4];
     memcpy(at, u, 3 * sizeof *u);
-    int64_t lane = recover(b, k, boxes, b->rows, MOST, limits, watch, &f);
-    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MOST, limits, watch, &loose));
+    int64_t lane = recover(b, k, boxes, b->rows, MAX, limits, watch, &f);
+    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MAX, limits, watch, &loose));
     memset(at, 0, 3 * sizeof *at);
     return lane;
 }
@@ -262,7 +262,7 @@ static void no_other_node_is_touched(void **state) {
                                  .shape = LAR_SHAPE_BOX,
                                  .rows = b.rows,
                                  .turn = b.turn,
-                                 .count = MOST,
+                                 .count = MAX,
                                  .blocks = b.box};
             recover_run(k, &run, &b.u[0][0], &f.at[0][0], &no_limits, true);
             int spared = 0;

@@ -165,12 +165,12 @@ static void the_fastest_value(void **state) {
             memset(n.force, 0, sizeof n.force);
             int first = 2, end = NODES - 2;
             bool moved = i / 4 >= first && i / 4 < end;
-            double most = 0, fastest = 0, more = 1e6;
+            double max = 0, fastest = 0, more = 1e6;
             n.v[i] = i % 2 ? 500 : -500;
-            for (int j = 4 * first; j < 4 * end; j++) most = fmax(most, fabs(n.v[j]));
-            assert_true(moved ? most == 500 : most < 500);
+            for (int j = 4 * first; j < 4 * end; j++) max = fmax(max, fabs(n.v[j]));
+            assert_true(moved ? max == 500 : max < 500);
             kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &fastest);
-            assert_true(fastest == most);
+            assert_true(fastest == max);
             kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &more);
             assert_true(more == 1e6);
         }

@@ -24,17 +24,17 @@ static TEST_UNUSED lar_voxel_grid solid_voxel_grid(solid_function *region, int n
     for (size_t c = 0; c < cells; c++) {
         const int at[3] = {(int)(c % (size_t)ni), (int)(c / (size_t)ni % (size_t)nj),
                            (int)(c / (size_t)ni / (size_t)nj)};
-        int count[256] = {0}, most = 0;
+        int count[256] = {0}, max = 0;
         for (int s = 0; s < 64; s++) {
             const double x[3] = {at[0] + (s % 4 + 0.5) / 4, at[1] + (s / 4 % 4 + 0.5) / 4,
                                  at[2] + (s / 16 + 0.5) / 4};
             count[region(x)]++;
         }
         for (int r = 1; r < 256; r++)
-            if (count[r] > 0 && (most == 0 || count[r] > count[most])) most = r;
-        voxel_grid.inner[c] = (uint8_t)most;
+            if (count[r] > 0 && (max == 0 || count[r] > count[max])) max = r;
+        voxel_grid.inner[c] = (uint8_t)max;
         voxel_grid.share[c] = (uint8_t)((64 - count[0]) * 255 / 64);
-        voxel_grid.region[c] = (uint8_t)(count[0] > 32 ? 0 : most);
+        voxel_grid.region[c] = (uint8_t)(count[0] > 32 ? 0 : max);
     }
     return voxel_grid;
 }

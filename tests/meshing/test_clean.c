@@ -64,7 +64,7 @@ static void shapes_keep_their_topology(void **state) {
         const char *name;
         solid_function *function;
         int shells, euler;
-        double most; /* flipped, part of the cells */
+        double max; /* flipped, part of the cells */
     } shape[] = {{"ellipsoid", ellipsoid, 1, 2, 0.02},       {"torus", torus, 1, 0, 0.03},
                  {"box with a hole", holes, 1, 0, 0.01},     {"hollow ball", hollow, 2, 4, 0.02},
                  {"two balls", two_balls, 1, 2, 0.03},       {"sheet", thin_sheet, 1, 2, 0},
@@ -76,7 +76,7 @@ static void shapes_keep_their_topology(void **state) {
         const double cells = (double)solid_cells(&voxel_grid);
         assert_int_equal(surface.shells, shape[s].shells);
         assert_int_equal(surface.euler, shape[s].euler);
-        assert_below(cleaning.added + cleaning.removed, shape[s].most * cells);
+        assert_below(cleaning.added + cleaning.removed, shape[s].max * cells);
         lar_voxel_grid_clear(&voxel_grid);
     }
 }

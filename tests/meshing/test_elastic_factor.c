@@ -11,11 +11,11 @@
 
 #include "meshing/starter/elastic_factor.h"
 
-enum { MOST = 40, ROWS = MOST * LAR_BLOCK };
+enum { MAX = 40, ROWS = MAX * LAR_BLOCK };
 
 typedef struct problem {
-    int32_t count, place[MOST];
-    int32_t pair[8 * MOST][2];
+    int32_t count, place[MAX];
+    int32_t pair[8 * MAX][2];
     size_t pairs;
     double dense[ROWS][ROWS]; /* by columns of the factor */
     lar_factor factor;
@@ -34,7 +34,7 @@ static void know(problem *p, int32_t a, int32_t b) {
 }
 
 static void lay(problem *p) {
-    bool taken[MOST] = {false};
+    bool taken[MAX] = {false};
     assert_int_equal(lar_factor_lay(p->count, (const int32_t(*)[2])p->pair, p->pairs, p->place,
                                     &p->factor, &p->error),
                      LAR_OK);
@@ -75,7 +75,7 @@ static void fill(problem *p, uint32_t seed, double ground) {
 static double solve(problem *p) {
     static lar_loads x[ROWS], f[ROWS];
     uint32_t seed = 5;
-    double most = 0;
+    double max = 0;
     const int32_t rows = p->count * LAR_BLOCK;
     for (int32_t r = 0; r < rows; r++)
         for (int l = 0; l < LAR_LOADS; l++) x[r][l] = f[r][l] = any(&seed);
@@ -84,9 +84,9 @@ static double solve(problem *p) {
         for (int l = 0; l < LAR_LOADS; l++) {
             double left = f[r][l];
             for (int32_t c = 0; c < rows; c++) left -= p->dense[r][c] * x[c][l];
-            most = fmax(most, fabs(left));
+            max = fmax(max, fabs(left));
         }
-    return most;
+    return max;
 }
 
 static void check(problem *p, uint32_t seed) {
@@ -102,11 +102,11 @@ static void it_solves_what_a_dense_matrix_says(void **state) {
     for (uint32_t seed = 1; seed < 8; seed++) {
         static problem p;
         memset(&p, 0, sizeof p);
-        p.count = MOST;
+        p.count = MAX;
         uint32_t next = seed;
-        for (int k = 0; k < 3 * MOST; k++) {
-            int32_t a = (int32_t)((any(&next) + 1) / 2 * MOST);
-            int32_t b = (int32_t)((any(&next) + 1) / 2 * MOST);
+        for (int k = 0; k < 3 * MAX; k++) {
+            int32_t a = (int32_t)((any(&next) + 1) / 2 * MAX);
+            int32_t b = (int32_t)((any(&next) + 1) / 2 * MAX);
             if (a != b) know(&p, a, b); /* some twice, some in both directions */
         }
         check(&p, seed);
@@ -118,11 +118,11 @@ static void a_star_and_a_chain_stay_as_sparse_as_they_are(void **state) {
     static problem p;
     for (int star = 0; star < 2; star++) {
         memset(&p, 0, sizeof p);
-        p.count = MOST;
+        p.count = MAX;
         /* In their own order the hub, first, would make all others know each other. */
-        for (int32_t i = 1; i < MOST; i++) know(&p, star ? 0 : i - 1, i);
+        for (int32_t i = 1; i < MAX; i++) know(&p, star ? 0 : i - 1, i);
         lay(&p);
-        assert_int_equal(p.factor.start[MOST], 2 * MOST - 1);
+        assert_int_equal(p.factor.start[MAX], 2 * MAX - 1);
         lar_factor_clear(&p.factor);
         check(&p, 3);
     }

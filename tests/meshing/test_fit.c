@@ -117,15 +117,15 @@ static double shortest_edge(const fitted *body) {
 static void assert_good_elements(const fitted *body) {
     lar_jacobians jacobians;
     lar_jacobians_count(&body->unfitted.mesh, &jacobians);
-    assert_below(0.25, jacobians.least);
+    assert_below(0.25, jacobians.min);
     assert_below(0.95, jacobians.above_05);
     assert_below(0.2, shortest_edge(body));
 }
 
-static void assert_region_volumes(const fitted *body, double most) {
+static void assert_region_volumes(const fitted *body, double max) {
     for (int r = 1; r <= body->boundary.region_count; r++) {
         double wanted = body->boundary.region[r].volume;
-        assert_below(fabs(region_volume(&body->unfitted.mesh, r) - wanted) / wanted, most);
+        assert_below(fabs(region_volume(&body->unfitted.mesh, r) - wanted) / wanted, max);
     }
 }
 
@@ -285,7 +285,7 @@ static void test_thin_region(void **state) {
         fit(&body);
         lar_jacobians jacobians;
         lar_jacobians_count(&body.unfitted.mesh, &jacobians);
-        assert_below(0.25, jacobians.least);
+        assert_below(0.25, jacobians.min);
         assert_below(0.9, jacobians.above_05);
         assert_region_volumes(&body, 0.005);
         assert_below(deviation_of(&body), 0.15);
@@ -312,7 +312,7 @@ static void check_block(int (*label)(const double x[3]), double edge) {
     fit(&body);
     lar_jacobians jacobians;
     lar_jacobians_count(&body.unfitted.mesh, &jacobians);
-    assert_below(0.75, jacobians.least);
+    assert_below(0.75, jacobians.min);
     assert_int_equal(crossings_of(&body), 0);
     end(&body);
 }
@@ -467,7 +467,7 @@ static void test_floor_and_aim_are_kept(void **state) {
         assert_int_equal(lar_fit(&strict.boundary, &strict.unfitted, &options[k], &error), LAR_OK);
         lar_jacobians jacobians;
         lar_jacobians_count(&strict.unfitted.mesh, &jacobians);
-        assert_below(0.7, jacobians.least);
+        assert_below(0.7, jacobians.min);
         assert_below(deviation_of(&usual), deviation_of(&strict));
         end(&strict);
     }

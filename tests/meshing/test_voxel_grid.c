@@ -272,7 +272,7 @@ static void test_hole_in_surface(void **state) {
 }
 
 /* The image's sides through the body lie between cells. */
-static void check_cuts(const lar_boundary *boundary, const lar_voxel_grid *voxel_grid, int least) {
+static void check_cuts(const lar_boundary *boundary, const lar_voxel_grid *voxel_grid, int min) {
     int on_plane = 0;
     for (int s = 0; s < LAR_CUTS; s++) {
         const lar_cut *cut = &boundary->cut[s];
@@ -282,7 +282,7 @@ static void check_cuts(const lar_boundary *boundary, const lar_voxel_grid *voxel
         double cells = fabs(lar_dot(from, cut->normal)) / voxel_grid->size;
         on_plane += fabs(cells - round(cells)) < 1e-6;
     }
-    assert_true(on_plane >= least);
+    assert_true(on_plane >= min);
 }
 
 static void test_cuts(void **state) {

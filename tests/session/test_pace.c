@@ -122,7 +122,7 @@ static void late_in_slow_motion_is_no_miss(void **unused) {
 static void the_least_step_of_the_last_second_is_known(void **unused) {
     (void)unused;
     begin_with(1);
-    assert_true(report().step_least == 0);
+    assert_true(report().step_min == 0);
     for (int i = 0; i < 30; i++) {
         if (now < pace.deadline.due) now = pace.deadline.due;
         lar_pace_begin(&pace, 0.1, now);
@@ -131,9 +131,9 @@ static void the_least_step_of_the_last_second_is_known(void **unused) {
         lar_pace_answered(&pace, now);
         lar_pace_look(&pace, now);
     }
-    near(report().step_least, 3e-4, 1e-9);
-    lar_pace_forget_least(&pace);
-    assert_true(report().step_least == 0);
+    near(report().step_min, 3e-4, 1e-9);
+    lar_pace_forget_min(&pace);
+    assert_true(report().step_min == 0);
 }
 
 static void too_much_is_given_up(void **unused) {

@@ -183,13 +183,13 @@ static void everything_else_is_refused(void **unused) {
 
 static void long_words_are_none_of_ours(void **unused) {
     (void)unused;
-    char text[LAR_MESSAGE_MOST + 2], reason[LAR_REASON_BYTES];
+    char text[LAR_MESSAGE_MAX + 2], reason[LAR_REASON_BYTES];
     lar_command command;
     memset(text, ' ', sizeof text);
     memcpy(text, "{\"do\":\"play\"}", 13);
-    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MOST, TOOLS, &command, reason),
+    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MAX, TOOLS, &command, reason),
                      LAR_CLOSE_NOT);
-    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MOST + 1, TOOLS, &command, reason),
+    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MAX + 1, TOOLS, &command, reason),
                      LAR_CLOSE_SIZE);
     /* A name that begins like one of ours, and is longer than any. */
     for (int length = 1; length < 200; length++) {
@@ -197,8 +197,8 @@ static void long_words_are_none_of_ours(void **unused) {
         command.name[0] = 'x';
         assert_int_equal(read_text(text, &command, reason), LAR_CLOSE_NOT);
         assert_true(strlen(command.name) ==
-                    (size_t)(length < LAR_NAME_MOST ? length : LAR_NAME_MOST));
-        assert_true((command.name[LAR_NAME_MOST - 1] == 0x7f) == (length > LAR_NAME_MOST));
+                    (size_t)(length < LAR_NAME_MAX ? length : LAR_NAME_MAX));
+        assert_true((command.name[LAR_NAME_MAX - 1] == 0x7f) == (length > LAR_NAME_MAX));
     }
 }
 

@@ -13,7 +13,7 @@
 #include "study/bench/jitter.h"
 
 static void check_percentiles(const lar_percentiles *p) {
-    assert_true(p->p50 >= 0 && p->p50 <= p->p99 && p->p99 <= p->p999 && p->p999 <= p->most);
+    assert_true(p->p50 >= 0 && p->p50 <= p->p99 && p->p99 <= p->p999 && p->p999 <= p->max);
 }
 
 /* Ticks that are given up are not among them. */
@@ -26,10 +26,10 @@ static void every_tick_is_counted(void **unused) {
     if (r.skipped == 0) assert_int_equal(r.ticks, 150);
     assert_true(r.misses <= r.ticks);
     assert_true(fabs(r.missed - (double)r.misses / (double)r.ticks) < 1e-12);
-    assert_true(r.missed_of.least <= r.missed && r.missed <= r.missed_of.most);
+    assert_true(r.missed_of.min <= r.missed && r.missed <= r.missed_of.max);
     check_percentiles(&r.late);
     check_percentiles(&r.done);
-    assert_true(r.done.most >= r.late.most);
+    assert_true(r.done.max >= r.late.max);
     assert_true(r.period == 1000 && r.repeat == 3);
 }
 
@@ -70,10 +70,10 @@ static void impossible_options_are_refused(void **unused) {
         {.seconds = NAN, .repeat = 1},
         {.seconds = 3601, .repeat = 1},
         {.seconds = 0.01, .repeat = 0},
-        {.seconds = 0.01, .repeat = LAR_BENCH_REPEAT_MOST + 1},
+        {.seconds = 0.01, .repeat = LAR_BENCH_REPEAT_MAX + 1},
         {.seconds = 0.01, .repeat = 1, .load = -1},
         {.seconds = 0.01, .repeat = 1, .load = NAN},
-        {.seconds = 0.01, .repeat = 1, .load = 2 * LAR_BENCH_JITTER_LOAD_MOST},
+        {.seconds = 0.01, .repeat = 1, .load = 2 * LAR_BENCH_JITTER_LOAD_MAX},
         {.seconds = 0.01, .repeat = 1, .priority = 100},
         {.seconds = 0.01, .repeat = 1, .priority = -1}};
     lar_bench_jitter_result r;

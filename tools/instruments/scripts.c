@@ -127,12 +127,12 @@ static lar_status tick(lar_scripts *s, double time, lar_error *error) {
 /* The fastest node, and the fastest within `reach` of a place. */
 static double fastest_node(const lar_scripts *s, const double place[3], double reach) {
     const double *v = s->simulation->state.v;
-    double most = 0;
+    double max = 0;
     for (int32_t n = 0; n < s->body.nodes; n++) {
         if (place && lar_apart(s->body.x[n], place) > reach) continue;
-        most = fmax(most, lar_length(v + 4 * s->simulation->domain.layout.local[n]));
+        max = fmax(max, lar_length(v + 4 * s->simulation->domain.layout.local[n]));
     }
-    return most;
+    return max;
 }
 
 static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *force, double winding) {
@@ -191,14 +191,14 @@ static lar_status play(lar_scripts *s, lar_error *error) {
 /* ---- the program --------------------------------------------------------------------------- */
 
 static void print_row(lar_scripts *s, const char *why) {
-    int32_t most;
+    int32_t max;
     double time = lar_simulation_time(s->simulation);
-    uint64_t divided = lar_simulation_divided_steps(s->simulation, &most);
+    uint64_t divided = lar_simulation_divided_steps(s->simulation, &max);
     printf(
         "| %s | inside %.3f s | %.3g N | grasp %.3g N | %.3g m/s at %.3f s | %llu steps in up to "
         "%d | %.3g x, worst %.3g x | %016llx |\n",
         *why ? why : "no stop", s->inside, s->force, s->grasp_force, s->fastest, s->fastest_at,
-        (unsigned long long)divided, (int)most, s->all / time, s->slowest,
+        (unsigned long long)divided, (int)max, s->all / time, s->slowest,
         (unsigned long long)lar_simulation_hash(s->simulation));
 }
 

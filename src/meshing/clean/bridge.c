@@ -7,7 +7,7 @@
 #include "meshing/clean/clean.h"
 
 /* A cell costs what it lacks, and something for being one more; longer ways are not looked for. */
-enum { CELL = 255, ONE_MORE = 32, COST_MOST = 6 * (CELL + ONE_MORE) };
+enum { CELL = 255, ONE_MORE = 32, COST_MAX = 6 * (CELL + ONE_MORE) };
 
 /* A cell that can be reached. */
 typedef struct reached {
@@ -19,11 +19,11 @@ typedef struct reached {
 typedef struct search {
     reached *all;
     size_t count, capacity;
-    int32_t first[COST_MOST + 1]; /* of each cost */
+    int32_t first[COST_MAX + 1]; /* of each cost */
 } search;
 
 static bool reach(search *way, size_t cell, int32_t from, int32_t cost) {
-    if (cost > COST_MOST) return true;
+    if (cost > COST_MAX) return true;
     if (way->count >= INT32_MAX || !LAR_GROW(way->all, way->capacity, way->count)) return false;
     way->all[way->count] = (reached){cell, from, way->first[cost]};
     way->first[cost] = (int32_t)way->count++;
@@ -72,7 +72,7 @@ static bool go_on(lar_cleaner *cleaner, search *way, int32_t index, int32_t cost
 
 /* Takes the cells in the order of their cost. */
 static bool run_search(lar_cleaner *cleaner, search *way, uint8_t own, int32_t *end) {
-    for (int32_t cost = 0; cost <= COST_MOST && *end < 0; cost++)
+    for (int32_t cost = 0; cost <= COST_MAX && *end < 0; cost++)
         while (way->first[cost] >= 0 && *end < 0) {
             const int32_t index = way->first[cost];
             const reached *one = &way->all[index];
@@ -90,7 +90,7 @@ lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t own, uin
     int32_t end = -1;
     *joined = false;
     if (!way) return lar_fail_memory(cleaner->error, sizeof *way, "the islands of the grid");
-    for (int cost = 0; cost <= COST_MOST; cost++) way->first[cost] = -1;
+    for (int cost = 0; cost <= COST_MAX; cost++) way->first[cost] = -1;
     lar_status status = LAR_OK;
     if (!reach(way, start, -1, 0) || !run_search(cleaner, way, own, &end))
         status = lar_fail_memory(cleaner->error, 2 * way->capacity * sizeof *way->all,

@@ -5,7 +5,7 @@
 
 /* Flipping cells may cut off an island, leaving it out may join cells by an edge or a corner only:
  * seldom more than once. */
-enum { ROUNDS_MOST = 6 };
+enum { ROUNDS_MAX = 6 };
 
 void lar_clean_position(const lar_voxel_grid *voxel_grid, size_t cell, int at[3]) {
     for (int d = 0; d < 3; d++) {
@@ -25,14 +25,14 @@ uint8_t lar_clean_fill(const lar_voxel_grid *voxel_grid, size_t cell) {
     const size_t row = (size_t)voxel_grid->cells[0], layer = row * (size_t)voxel_grid->cells[1];
     const size_t step[3] = {1, row, layer};
     uint8_t around[6], best = 0;
-    int most = 0;
+    int max = 0;
     for (int f = 0; f < 6; f++)
         around[f] = voxel_grid->region[f % 2 ? cell + step[f / 2] : cell - step[f / 2]];
     for (int f = 0; f < 6; f++) {
         int count = 0;
         for (int g = 0; g < 6; g++) count += around[g] == around[f];
-        if (around[f] == 0 || count < most || (count == most && around[f] > best)) continue;
-        most = count;
+        if (around[f] == 0 || count < max || (count == max && around[f] > best)) continue;
+        max = count;
         best = around[f];
     }
     return best;
@@ -69,7 +69,7 @@ lar_status lar_voxel_grid_clean(lar_voxel_grid *voxel_grid, lar_cleaning *cleani
     else
         memcpy(cleaner.before, voxel_grid->region, cleaner.cells);
     bool changed = true;
-    for (int round = 0; !status && changed && round < ROUNDS_MOST; round++) {
+    for (int round = 0; !status && changed && round < ROUNDS_MAX; round++) {
         status = lar_clean_islands(&cleaner, &changed);
         if (!status && (changed || round == 0)) status = lar_clean_manifold(&cleaner);
         changed = changed || round == 0;

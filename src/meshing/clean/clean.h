@@ -41,9 +41,9 @@ typedef struct lar_cleaner {
     size_t cells;
     uint8_t *before; /* [cells] regions before cells were flipped; islands and pinholes are
                         flipped in it too */
-    int32_t count[LAR_REGIONS_MOST + 1]; /* cells of each region, while they are flipped */
-    uint8_t *mark;                       /* [cells] */
-    int32_t *stack;                      /* grows */
+    int32_t count[LAR_REGIONS_MAX + 1]; /* cells of each region, while they are flipped */
+    uint8_t *mark;                      /* [cells] */
+    int32_t *stack;                     /* grows */
     size_t stack_capacity;
     lar_cleaning *cleaning;
     lar_error *error;

@@ -21,7 +21,7 @@ typedef struct piece {
 
 /* What lies around a piece. */
 typedef struct surroundings {
-    int32_t faces[LAR_REGIONS_MOST + 1]; /* by region */
+    int32_t faces[LAR_REGIONS_MAX + 1]; /* by region */
 } surroundings;
 
 int lar_clean_neighbours(const lar_voxel_grid *voxel_grid, size_t cell, size_t found[6]) {
@@ -97,7 +97,7 @@ static lar_status find_islands(lar_cleaner *cleaner, piece **islands, size_t *co
 static uint8_t heir_of(const surroundings *around, uint8_t region) {
     int64_t sum = around->faces[0];
     int heir = 0;
-    for (int r = 1; r <= LAR_REGIONS_MOST; r++) {
+    for (int r = 1; r <= LAR_REGIONS_MAX; r++) {
         sum += around->faces[r];
         if (r != region && (heir == 0 || around->faces[r] > around->faces[heir])) heir = r;
     }
@@ -157,7 +157,7 @@ lar_status lar_clean_islands(lar_cleaner *cleaner, bool *changed) {
     piece *islands = NULL;
     size_t count = 0;
     int64_t body = 0;
-    int32_t largest[LAR_REGIONS_MOST + 1] = {0};
+    int32_t largest[LAR_REGIONS_MAX + 1] = {0};
     lar_status status = find_islands(cleaner, &islands, &count);
     for (size_t p = 0; !status && p < count; p++) {
         if (islands[p].region != 0) body += islands[p].size;
@@ -173,9 +173,9 @@ lar_status lar_clean_islands(lar_cleaner *cleaner, bool *changed) {
             if (one->size > PINHOLE_CELLS || (one->size > 1 && one->size >= limit)) continue;
             status = fill_pinhole(cleaner, one, changed);
         } else {
-            const int32_t most = largest[one->region];
-            if (one->size == most || (one->size > 1 && one->size >= ISLAND_PART * most)) continue;
-            status = take_island(cleaner, one, most, changed);
+            const int32_t max = largest[one->region];
+            if (one->size == max || (one->size > 1 && one->size >= ISLAND_PART * max)) continue;
+            status = take_island(cleaner, one, max, changed);
         }
     }
     free(islands);

@@ -21,7 +21,7 @@ enum { GAIN_COUNT = sizeof GAINS / sizeof *GAINS };
 enum { LOOK_AT = 1 };
 
 /* Labels that a cell may take: its own, those of its neighbours, the one of its largest part. */
-enum { LABELS_MOST = 9 };
+enum { LABELS_MAX = 9 };
 
 static int32_t volume_cost(const lar_voxel_grid *voxel_grid, size_t cell, uint8_t label) {
     if (label == 0) return voxel_grid->share[cell];
@@ -55,19 +55,18 @@ static void change_region(lar_cleaner *cleaner, size_t cell, uint8_t region) {
     cleaner->voxel_grid->region[cell] = region;
 }
 
-static int labels_around(const lar_clean_window *window, uint8_t inner,
-                         uint8_t label[LABELS_MOST]) {
-    const uint8_t wanted[LABELS_MOST] = {window->label[2][2][2],
-                                         window->label[2][2][1],
-                                         window->label[2][2][3],
-                                         window->label[2][1][2],
-                                         window->label[2][3][2],
-                                         window->label[1][2][2],
-                                         window->label[3][2][2],
-                                         inner,
-                                         0};
+static int labels_around(const lar_clean_window *window, uint8_t inner, uint8_t label[LABELS_MAX]) {
+    const uint8_t wanted[LABELS_MAX] = {window->label[2][2][2],
+                                        window->label[2][2][1],
+                                        window->label[2][2][3],
+                                        window->label[2][1][2],
+                                        window->label[2][3][2],
+                                        window->label[1][2][2],
+                                        window->label[3][2][2],
+                                        inner,
+                                        0};
     int count = 0;
-    for (int w = 0; w < LABELS_MOST; w++) {
+    for (int w = 0; w < LABELS_MAX; w++) {
         bool known = false;
         for (int l = 0; l < count; l++) known = known || label[l] == wanted[w];
         if (!known) label[count++] = wanted[w];
@@ -92,7 +91,7 @@ static flip best_flip(const lar_cleaner *cleaner, size_t cell) {
     if (best.label != 0 && cleaner->count[best.label] == 1) return best;
     lar_clean_window window;
     lar_clean_look(voxel_grid, at, &window);
-    uint8_t label[LABELS_MOST];
+    uint8_t label[LABELS_MAX];
     const int count = labels_around(&window, voxel_grid->inner[cell], label);
     if (count == 1) return best;
     int unclean, unclean_then;
@@ -126,12 +125,12 @@ static void look_around(lar_cleaner *cleaner, size_t cell) {
 }
 
 /* One pass over all marked cells; *flips: how many changed. */
-static void descend(lar_cleaner *cleaner, int32_t least_gain, size_t *flips) {
+static void descend(lar_cleaner *cleaner, int32_t min_gain, size_t *flips) {
     *flips = 0;
     for (size_t c = 0; c < cleaner->cells; c++) {
         if (cleaner->mark[c] != LOOK_AT) continue;
         const flip best = best_flip(cleaner, c);
-        if (best.gain < least_gain) {
+        if (best.gain < min_gain) {
             /* Until something around it changes; a smaller gain is for a later pass. */
             if (best.gain == 0) cleaner->mark[c] = 0;
             continue;
@@ -166,7 +165,7 @@ static void mark_surface(lar_cleaner *cleaner) {
 static bool add_at(lar_cleaner *cleaner, const int point[3]) {
     lar_voxel_grid *voxel_grid = cleaner->voxel_grid;
     size_t chosen = 0;
-    int32_t least = INT32_MAX;
+    int32_t min = INT32_MAX;
     for (int c = 0; c < 8; c++) {
         const int at[3] = {point[0] - 1 + (c & 1), point[1] - 1 + (c >> 1 & 1),
                            point[2] - 1 + (c >> 2)};
@@ -181,11 +180,11 @@ static bool add_at(lar_cleaner *cleaner, const int point[3]) {
         window.label[2][2][2] = label;
         const int32_t cost =
             lar_clean_cost(&window, &unclean) + volume_cost(voxel_grid, cell, label);
-        if (cost >= least) continue;
-        least = cost;
+        if (cost >= min) continue;
+        min = cost;
         chosen = cell;
     }
-    if (least == INT32_MAX) return false;
+    if (min == INT32_MAX) return false;
     change_region(cleaner, chosen, lar_clean_fill(voxel_grid, chosen));
     look_around(cleaner, chosen);
     return true;

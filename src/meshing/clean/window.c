@@ -137,13 +137,13 @@ static int coordinate(int cell, int axis) {
 }
 
 static int distance(int a, int b, bool largest) {
-    int sum = 0, most = 0;
+    int sum = 0, max = 0;
     for (int axis = 0; axis < 3; axis++) {
         const int d = coordinate(a, axis) - coordinate(b, axis), size = d < 0 ? -d : d;
         sum += size;
-        most = size > most ? size : most;
+        max = size > max ? size : max;
     }
-    return largest ? most : sum;
+    return largest ? max : sum;
 }
 
 /* Pieces of a set of cells that have a cell next to the middle one, where cells are next to each

@@ -25,13 +25,13 @@ static int common_nodes(const int32_t a[4], const int32_t b[4], int common[4]) {
 }
 
 /* Compares, where fmin and fmax would be calls: most pairs end here. */
-static double least(const double (*x)[3], const int32_t face[4], int i) {
+static double min(const double (*x)[3], const int32_t face[4], int i) {
     const double one = x[face[0]][i] < x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
     const double other = x[face[2]][i] < x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
     return one < other ? one : other;
 }
 
-static double most(const double (*x)[3], const int32_t face[4], int i) {
+static double max(const double (*x)[3], const int32_t face[4], int i) {
     const double one = x[face[0]][i] > x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
     const double other = x[face[2]][i] > x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
     return one > other ? one : other;
@@ -39,8 +39,7 @@ static double most(const double (*x)[3], const int32_t face[4], int i) {
 
 static bool boxes_apart(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
     for (int i = 0; i < 3; i++)
-        if (least(x, b, i) - most(x, a, i) > gap || least(x, a, i) - most(x, b, i) > gap)
-            return true;
+        if (min(x, b, i) - max(x, a, i) > gap || min(x, a, i) - max(x, b, i) > gap) return true;
     return false;
 }
 
@@ -243,7 +242,7 @@ static double room(const corners *c, const double way[3]) {
 static double room_between_boxes(const double (*x)[3], const int32_t a[4], const int32_t b[4]) {
     double widest = -INFINITY;
     for (int i = 0; i < 3; i++) {
-        const double above = least(x, b, i) - most(x, a, i), below = least(x, a, i) - most(x, b, i);
+        const double above = min(x, b, i) - max(x, a, i), below = min(x, a, i) - max(x, b, i);
         widest = above > widest ? above : widest;
         widest = below > widest ? below : widest;
     }

@@ -28,11 +28,11 @@ enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
-    const double least = lar_fit_least(work, work->law.floor, &part);
-    if (!(least > 0))
+    const double min = lar_fit_min(work, work->law.floor, &part);
+    if (!(min > 0))
         return lar_fail(error, LAR_ERROR_MODEL,
                         "the grid that is to be fitted has an element without volume");
-    work->law.floor = fmin(work->law.floor, 0.9 * least);
+    work->law.floor = fmin(work->law.floor, 0.9 * min);
     work->law.aim = fmax(work->law.aim, work->law.floor);
     return LAR_OK;
 }

@@ -141,7 +141,7 @@ bool lar_fit_list_around(const int32_t *node, size_t stride, size_t count, int p
                          int32_t **start, int32_t **around);
 
 /* The least scaled Jacobian, the part of the elements above `bar`. */
-double lar_fit_least(const lar_fit_work *work, double bar, double *part_above);
+double lar_fit_min(const lar_fit_work *work, double bar, double *part_above);
 
 /* The area of a quadrilateral, as a vector: half the product of its diagonals. */
 void lar_fit_area(const lar_fit_work *work, const int32_t node[4], double area[3]);

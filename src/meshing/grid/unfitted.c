@@ -35,9 +35,9 @@ static bool cells_around(const lar_voxel_grid *voxel_grid, const int at[3], uint
 
 /* The pairs of regions that faces at a point divide: twelve faces, one for each pair of cells that
  * differ in one bit. Ascending, none twice; the number of pairs. */
-enum { PAIRS_MOST = 12 };
+enum { PAIRS_MAX = 12 };
 
-static int add_pair(uint16_t pair[PAIRS_MOST][2], int count, uint16_t a, uint16_t b) {
+static int add_pair(uint16_t pair[PAIRS_MAX][2], int count, uint16_t a, uint16_t b) {
     int place = count;
     while (place > 0 &&
            (pair[place - 1][0] > a || (pair[place - 1][0] == a && pair[place - 1][1] > b)))
@@ -51,7 +51,7 @@ static int add_pair(uint16_t pair[PAIRS_MOST][2], int count, uint16_t a, uint16_
 
 /* A pair has a cut's number in the place of outside where the face belongs to a cut. */
 static int pairs_at(const lar_voxel_grid *voxel_grid, const lar_unfitted_cuts *cuts,
-                    const int at[3], uint16_t pair[PAIRS_MOST][2]) {
+                    const int at[3], uint16_t pair[PAIRS_MAX][2]) {
     uint8_t around[8];
     cells_around(voxel_grid, at, around);
     int count = 0;
@@ -217,7 +217,7 @@ static lar_status fill_nodes(const point_grid *grid, const lar_unfitted_cuts *cu
                 const int at[3] = {i, j, k};
                 place_of(grid->voxel_grid, at, unfitted->mesh.position[n]);
                 unfitted->mesh.node_id[n] = n + 1;
-                uint16_t pair[PAIRS_MOST + 1][2];
+                uint16_t pair[PAIRS_MAX + 1][2];
                 const int count = pairs_at(grid->voxel_grid, cuts, at, pair);
                 for (int m = 0; m < count; m++, used++) {
                     if (used == INT32_MAX || !LAR_GROW(unfitted->meet, capacity, used))

@@ -86,7 +86,7 @@ uint16_t lar_unfitted_cuts_front(const lar_unfitted_cuts *cuts, const lar_voxel_
     if (!any_cut_near(cuts, centre, REACH * voxel_grid->size)) return 0;
 
     int front = 0;
-    double least = INFINITY;
+    double min = INFINITY;
     for (int f = 0; f < 1 + LAR_CUTS; f++) {
         lar_nearest nearest;
         if (!cuts->tree[f] || !lar_triangle_tree_nearest(cuts->tree[f], centre,
@@ -94,8 +94,8 @@ uint16_t lar_unfitted_cuts_front(const lar_unfitted_cuts *cuts, const lar_voxel_
             continue;
         const double along = sign * lar_dot(normal, cuts->normal[nearest.triangle]);
         const double cost = nearest.distance / voxel_grid->size + TURN_WEIGHT * (1 - along);
-        if (cost < least) {
-            least = cost;
+        if (cost < min) {
+            min = cost;
             front = f;
         }
     }

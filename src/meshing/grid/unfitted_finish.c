@@ -8,7 +8,7 @@
 #include "model/mesh/faces.h"
 
 /* Interfaces that get a set: of a model with hundreds of regions the larger ones. */
-enum { INTERFACES_MOST = 2048, NAME_MOST = 200 };
+enum { INTERFACES_MAX = 2048, NAME_MAX = 200 };
 /* An outer face is part of a cut when its normal leans from the cut's by less than 45 degrees. */
 static const double CUT_LEAN = 0.7;
 
@@ -20,9 +20,9 @@ typedef struct finishing {
 } finishing;
 
 /* Letters, digits and "_" of a name; what else there is becomes "_". */
-static void plain_name(const char *name, char plain[NAME_MOST]) {
+static void plain_name(const char *name, char plain[NAME_MAX]) {
     size_t length = 0;
-    for (; name[length] && length < NAME_MOST / 2; length++) {
+    for (; name[length] && length < NAME_MAX / 2; length++) {
         const unsigned char c = (unsigned char)name[length];
         plain[length] = (char)(c < 128 && isalnum(c) ? c : '_');
     }
@@ -34,7 +34,7 @@ static void plain_name(const char *name, char plain[NAME_MOST]) {
 static lar_status add_set(finishing *work, const char *name, lar_set_kind kind,
                           const int32_t *index, int32_t count) {
     lar_mesh *mesh = &work->unfitted->mesh;
-    char unique[2 * NAME_MOST + 16];
+    char unique[2 * NAME_MAX + 16];
     snprintf(unique, sizeof unique, "%s", name);
     for (int n = 2; lar_mesh_find_set(mesh, unique, kind); n++)
         snprintf(unique, sizeof unique, "%s_%d", name, n);
@@ -44,7 +44,7 @@ static lar_status add_set(finishing *work, const char *name, lar_set_kind kind,
     return lar_mesh_add_set(mesh, unique, kind, copy, count, work->error);
 }
 
-static void region_name(const finishing *work, int region, char plain[NAME_MOST]) {
+static void region_name(const finishing *work, int region, char plain[NAME_MAX]) {
     const char *name = work->boundary->region[region].name;
     plain_name(name ? name : "", plain);
 }
@@ -54,7 +54,7 @@ static lar_status add_regions(finishing *work, int32_t *index) {
     const lar_mesh *mesh = &work->unfitted->mesh;
     lar_status status = LAR_OK;
     for (int r = 1; !status && r <= work->boundary->region_count; r++) {
-        char name[NAME_MOST], surface[NAME_MOST + 16];
+        char name[NAME_MAX], surface[NAME_MAX + 16];
         region_name(work, r, name);
         int32_t count = 0;
         for (int32_t e = 0; e < mesh->element_count; e++)
@@ -107,7 +107,7 @@ static lar_status add_cuts(finishing *work, int32_t *index) {
         int32_t count = 0;
         for (int32_t f = 0; f < work->outer_count; f++)
             if (is_on_cut(work, work->outer[f], c)) index[count++] = work->outer[f];
-        char plain[NAME_MOST], name[NAME_MOST + 16];
+        char plain[NAME_MAX], name[NAME_MAX + 16];
         plain_name(work->boundary->cut[c].name, plain);
         snprintf(name, sizeof name, "cut_%s", plain);
         if (count > 0) status = add_set(work, name, LAR_SET_FACES, index, count);
@@ -169,9 +169,9 @@ static lar_status interface_floor(finishing *work, const interface_face *found, 
         size[interfaces]++;
     }
     *floor = 1;
-    if (count > 0 && interfaces + 1 > INTERFACES_MOST) {
+    if (count > 0 && interfaces + 1 > INTERFACES_MAX) {
         qsort(size, interfaces + 1, sizeof *size, compare_sizes);
-        *floor = size[INTERFACES_MOST - 1] + 1;
+        *floor = size[INTERFACES_MAX - 1] + 1;
     }
     free(size);
     return LAR_OK;
@@ -186,7 +186,7 @@ static lar_status add_interfaces(finishing *work, int32_t *index) {
         for (next = i; next < count && same_interface(&found[next], &found[i]); next++)
             index[next - i] = found[next].face;
         if (next - i < floor) continue;
-        char a[NAME_MOST], b[NAME_MOST], name[2 * NAME_MOST];
+        char a[NAME_MAX], b[NAME_MAX], name[2 * NAME_MAX];
         region_name(work, found[i].a, a);
         region_name(work, found[i].b, b);
         snprintf(name, sizeof name, "%s_%s", a, b);

@@ -145,11 +145,11 @@ lar_status lar_voxel_grid_from_image(const lar_image *image, const lar_boundary 
                               made.size * made.axis[b][a];
     }
     size_t cells = (size_t)made.cells[0] * (size_t)made.cells[1] * (size_t)made.cells[2];
-    if (cells > LAR_VOXEL_GRID_CELLS_MOST)
+    if (cells > LAR_VOXEL_GRID_CELLS_MAX)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: %zu voxels around the body are more than the %d that a grid may have; "
                         "name a size",
-                        image->source, cells, (int)LAR_VOXEL_GRID_CELLS_MOST);
+                        image->source, cells, (int)LAR_VOXEL_GRID_CELLS_MAX);
     made.region = lar_calloc(cells, 1);
     made.inner = lar_calloc(cells, 1);
     made.share = lar_calloc(cells, 1);

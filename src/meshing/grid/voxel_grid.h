@@ -10,7 +10,7 @@
 
 #include "meshing/boundary/boundary.h"
 
-enum { LAR_VOXEL_GRID_CELLS_MOST = 1 << 27 };
+enum { LAR_VOXEL_GRID_CELLS_MAX = 1 << 27 };
 
 typedef struct lar_voxel_grid {
     int32_t cells[3];
@@ -23,7 +23,7 @@ typedef struct lar_voxel_grid {
     uint8_t *inner;    /* [cells] the region with the largest part, whatever is outside; 0: none */
     uint8_t *share; /* [cells] part of the cell that is inside any region, by weight, 0..255, with
                        slots and thin parts widened (voxel_grid_thin.h) */
-    double wanted[LAR_REGIONS_MOST + 1]; /* cells that each region shall have, where there are
+    double wanted[LAR_REGIONS_MAX + 1]; /* cells that each region shall have, where there are
                                             several: those that it fills, see share; 0: unknown */
     int32_t repaired; /* lines that did not come out of the body again and took no part */
 } lar_voxel_grid;
@@ -36,7 +36,7 @@ static inline size_t lar_voxel_grid_cell(const lar_voxel_grid *voxel_grid, int i
 /* Fills a zeroed grid along boundary->axis with cells of `size`: regions are sampled on 4 x 4
  * lines per cell by counting crossings (exact along the line). Flat cuts across an axis lie between
  * cells; where both ends are cut, the size is changed by up to 1 % for it, or the larger cut is
- * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_VOXEL_GRID_CELLS_MOST cells,
+ * chosen. LAR_ERROR_ARGUMENT when the size gives more than LAR_VOXEL_GRID_CELLS_MAX cells,
  * LAR_ERROR_MODEL when no cell is half full, with slots and thin parts widened. */
 lar_status lar_voxel_grid_fill(const lar_boundary *boundary, double size,
                                lar_voxel_grid *voxel_grid, lar_error *error);

@@ -53,8 +53,8 @@ static bool cell_is_near(const lar_voxel_grid *voxel_grid, const double point[3]
 /* The part of a triangle without a cell near it, at places about a cell apart. */
 static double lost_part(const lar_voxel_grid *voxel_grid, const lar_triangles *outer, int32_t t,
                         double area) {
-    enum { CUTS_MOST = 64 };
-    const int cuts = (int)fmin(fmax(1, ceil(sqrt(2 * area) / voxel_grid->size)), CUTS_MOST);
+    enum { CUTS_MAX = 64 };
+    const int cuts = (int)fmin(fmax(1, ceil(sqrt(2 * area) / voxel_grid->size)), CUTS_MAX);
     const double *x[3];
     int lost = 0;
     for (int c = 0; c < 3; c++) x[c] = outer->vertex[outer->corner[t][c]];
@@ -79,7 +79,7 @@ lar_status lar_voxel_grid_check_reach(const lar_boundary *boundary, const lar_tr
         all += area;
         lost += area * lost_part(voxel_grid, outer, t, area);
     }
-    if (!(lost > LAR_VOXEL_GRID_LOST_MOST * all)) return LAR_OK;
+    if (!(lost > LAR_VOXEL_GRID_LOST_MAX * all)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%.300s: %.0f %% of the surface would have no element near it: the body is "
                     "thinner there than elements of %.3g mm can be; make it thicker, or ask for "

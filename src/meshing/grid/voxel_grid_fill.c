@@ -10,7 +10,7 @@
 
 #include "base/vector.h"
 
-enum { LINES = LAR_LINES_PER_CELL, COUNTERS = LAR_REGIONS_MOST + 1 };
+enum { LINES = LAR_LINES_PER_CELL, COUNTERS = LAR_REGIONS_MAX + 1 };
 
 typedef struct work {
     const lar_boundary *boundary;
@@ -69,8 +69,8 @@ static void find_extent(const lar_boundary *boundary, double low[3], double high
 /* Cut at both ends: a size that divides the body between them, when one is near. */
 static double fitting_size(double size, const ends end[3], const double low[3],
                            const double high[3]) {
-    const double most = 0.01;
-    double best = size, change = most;
+    const double max = 0.01;
+    double best = size, change = max;
     for (int a = 0; a < 3; a++) {
         if (!end[a].cut[0] || !end[a].cut[1]) continue;
         double divided = (high[a] - low[a]) / fmax(1, round((high[a] - low[a]) / size));
@@ -138,12 +138,12 @@ static lar_status place_voxel_grid(const lar_boundary *boundary, double size,
             corner[a] = (low[a] + high[a] - cells * voxel_grid->size) / 2;
         corner[a] -= voxel_grid->size;
         all *= cells + 2;
-        if (!(all <= LAR_VOXEL_GRID_CELLS_MOST))
+        if (!(all <= LAR_VOXEL_GRID_CELLS_MAX))
             return lar_fail(
                 error, LAR_ERROR_ARGUMENT,
                 "cells of %.4g mm would be more than %d for a body of %.4g x %.4g x %.4g "
                 "mm; choose a larger size, or look at the surface's unit (--scale)",
-                1e3 * size, (int)LAR_VOXEL_GRID_CELLS_MOST, 1e3 * (high[0] - low[0]),
+                1e3 * size, (int)LAR_VOXEL_GRID_CELLS_MAX, 1e3 * (high[0] - low[0]),
                 1e3 * (high[1] - low[1]), 1e3 * (high[2] - low[2]));
         voxel_grid->cells[a] = (int32_t)cells + 2;
     }
@@ -233,11 +233,11 @@ static void copy_rows(work *w) {
 /* A region shall have the cells that it has when it is widened, but not many more or less than its
  * volume fills: fitting can stretch them only so far. */
 static void limit_votes(work *w) {
-    const double MOST_OFF = 0.15;
+    const double MAX_OFF = 0.15;
     for (int r = 1; r <= w->boundary->region_count; r++) {
         const double volume = w->boundary->region[r].volume / pow(w->voxel_grid->size, 3);
         w->votes.volume[r] =
-            fmin(fmax(w->votes.volume[r], (1 - MOST_OFF) * volume), (1 + MOST_OFF) * volume);
+            fmin(fmax(w->votes.volume[r], (1 - MAX_OFF) * volume), (1 + MAX_OFF) * volume);
     }
 }
 

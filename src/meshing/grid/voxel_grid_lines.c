@@ -5,7 +5,7 @@
 
 #include "base/vector.h"
 
-enum { COUNTERS = LAR_REGIONS_MOST + 1 };
+enum { COUNTERS = LAR_REGIONS_MAX + 1 };
 
 /* What making the lines needs. */
 typedef struct work {
@@ -80,18 +80,18 @@ static int64_t turn(const int64_t a[2], const int64_t b[2], const int64_t p[2]) 
 static bool add_crossing(work *w, int32_t triangle, const int64_t line[2], int32_t number,
                          int orientation, int64_t whole) {
     const int32_t *corner = w->lines->boundary->triangles.corner[triangle];
-    double at = 0, least = INFINITY, most = -INFINITY;
+    double at = 0, min = INFINITY, max = -INFINITY;
     for (int c = 0; c < 3; c++) {
         const int64_t *a = w->grid[corner[(c + 1) % 3]], *b = w->grid[corner[(c + 2) % 3]];
         int64_t value = turn(a, b, line);
         if (side_of(a, b, value) != orientation) return true;
         double x = w->place[corner[c]][0];
         at += (double)value / (double)whole * x;
-        least = fmin(least, x);
-        most = fmax(most, x);
+        min = fmin(min, x);
+        max = fmax(max, x);
     }
     if (!LAR_GROW(w->found, w->capacity, w->count)) return false;
-    w->found[w->count++] = (lar_crossing){.at = fmin(fmax(at, least), most),
+    w->found[w->count++] = (lar_crossing){.at = fmin(fmax(at, min), max),
                                           .line = number,
                                           .triangle = orientation > 0 ? triangle : ~triangle};
     return true;
@@ -106,13 +106,13 @@ static lar_status cross_lines(work *w, lar_error *error) {
         if (whole == 0) continue;
         int32_t low[2], high[2];
         for (int b = 0; b < 2; b++) {
-            int64_t least = x[0][b], most = x[0][b];
+            int64_t min = x[0][b], max = x[0][b];
             for (int c = 1; c < 3; c++) {
-                if (x[c][b] < least) least = x[c][b];
-                if (x[c][b] > most) most = x[c][b];
+                if (x[c][b] < min) min = x[c][b];
+                if (x[c][b] > max) max = x[c][b];
             }
-            low[b] = line_from(w, least, LAR_LINES_PER_CELL - 1);
-            high[b] = line_from(w, most, 0);
+            low[b] = line_from(w, min, LAR_LINES_PER_CELL - 1);
+            high[b] = line_from(w, max, 0);
         }
         for (int32_t k = low[1]; k < high[1]; k++)
             for (int32_t j = low[0]; j < high[0]; j++) {
@@ -166,8 +166,8 @@ lar_status lar_lines_create(const lar_boundary *boundary, const lar_voxel_grid *
 /* ---- along the lines ------------------------------------------------------------------------ */
 
 /* The region that has a place: of all that are entered the last one. */
-static int region_here(const int32_t entered[COUNTERS], int most) {
-    for (int r = most; r > 0; r--)
+static int region_here(const int32_t entered[COUNTERS], int max) {
+    for (int r = max; r > 0; r--)
         if (entered[r] > 0) return r;
     return 0;
 }
@@ -183,18 +183,18 @@ bool lar_lines_follow(const lar_lines *lines, size_t line, lar_stretch *add, voi
     const lar_crossing *first = &lines->crossing[lines->start[line]];
     const lar_crossing *end = &lines->crossing[lines->start[line + 1]];
     int32_t entered[COUNTERS] = {0};
-    int most = 0;
+    int max = 0;
     for (const lar_crossing *c = first; c < end; c++) {
         step_over(lines, c, entered);
         const uint16_t *side = lines->boundary->side[c->triangle < 0 ? ~c->triangle : c->triangle];
         for (int s = 0; s < 2; s++)
-            if (lar_boundary_region(side[s]) > most) most = lar_boundary_region(side[s]);
+            if (lar_boundary_region(side[s]) > max) max = lar_boundary_region(side[s]);
     }
-    for (int r = 0; r <= most; r++)
+    for (int r = 0; r <= max; r++)
         if (entered[r] != 0) return false;
     for (const lar_crossing *c = first; c + 1 < end; c++) {
         step_over(lines, c, entered);
-        int region = region_here(entered, most);
+        int region = region_here(entered, max);
         if (region) add(context, region, c[0].at, c[1].at);
     }
     return true;

@@ -11,20 +11,20 @@
 /* All in cells. What is wider than REACH beside something thin has room enough. */
 static const double REACH = 1.5;
 
-/* Slots from SLOT_LEAST on are widened to SLOT_WIDE, as far as the body beside them keeps
+/* Slots from SLOT_MIN on are widened to SLOT_WIDE, as far as the body beside them keeps
  * PART_KEPT; parts the same. Narrower slots cost more in cells than they gain, and among several
  * regions they take the cells of those that have but a few; thinner parts would be elements that
  * ask for a short time step. More than a cell for slots: those that lie across the axes shall still
  * have cells that hang together by faces. */
-static const double SLOT_LEAST = 0.12, SLOT_LEAST_REGIONS = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
-static const double PART_LEAST = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
+static const double SLOT_MIN = 0.12, SLOT_MIN_REGIONS = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
+static const double PART_MIN = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
 
 /* Where a ball touches the surface a second time it must be so far on its other side: the cosine of
  * the angle between the normal and the way from the one place to the other. */
 static const double FACING = 0.85;
 
 /* Places per cell's face; a place stands for this part of its share of the area at least. */
-static const double PLACES_PER_FACE = 20, PLACE_LEAST = 0.7;
+static const double PLACES_PER_FACE = 20, PLACE_MIN = 0.7;
 
 /* What was measured at a place serves for some that follow, so near, with normals so alike: that
  * saves most of the time. */
@@ -48,13 +48,13 @@ typedef struct search {
     int32_t served; /* by it */
 } search;
 
-/* The largest ball's diameter on the side of `normal`; INFINITY: more than `most`, or the second
+/* The largest ball's diameter on the side of `normal`; INFINITY: more than `max`, or the second
  * place is not opposite. A ball of radius r at p + r n that has q in it becomes the one through q:
  * r = |q - p|^2 / (2 (q - p) n). */
 static double measure_thickness(const search *s, const double point[3], const double normal[3],
-                                double most) {
+                                double max) {
     enum { ROUNDS = 20 };
-    double radius = most / 2;
+    double radius = max / 2;
     bool opposite = false;
     for (int round = 0; round < ROUNDS; round++) {
         double centre[3], away[3];
@@ -63,7 +63,7 @@ static double measure_thickness(const search *s, const double point[3], const do
         if (!lar_triangle_tree_nearest(s->tree, centre, 0.95 * radius, &nearest)) break;
         lar_minus(nearest.point, point, away);
         const double along = lar_dot(away, normal), square = lar_dot(away, away);
-        if (!(along > 1e-9 * most)) break;
+        if (!(along > 1e-9 * max)) break;
         opposite = along > FACING * sqrt(square);
         if (!(square / (2 * along) < 0.995 * radius)) break;
         radius = square / (2 * along);
@@ -139,20 +139,20 @@ static bool add_place(search *s, const double point[3], const double normal[3], 
 /* The middles of the small triangles into which lines parallel to its sides cut a large one; of
  * small ones every so many. */
 static bool add_places(search *s, int32_t t) {
-    enum { CUTS_MOST = 256 };
+    enum { CUTS_MAX = 256 };
     const double each = s->thin->size * s->thin->size / PLACES_PER_FACE;
     double normal[3], point[3];
     lar_triangles_normal(&s->outer, t, normal);
     const double length = lar_length(normal), area = length / 2;
     if (!(length > 0)) return true;
     for (int d = 0; d < 3; d++) normal[d] /= length;
-    const int cuts = (int)fmin(fmax(1, ceil(sqrt(area / each))), CUTS_MOST);
+    const int cuts = (int)fmin(fmax(1, ceil(sqrt(area / each))), CUTS_MAX);
     const int32_t *corner = s->outer.corner[t];
     const double *x[3];
     for (int c = 0; c < 3; c++) x[c] = s->outer.vertex[corner[c]];
     for (int k = 0; k < cuts * cuts; k++) {
         s->due += area / (cuts * cuts);
-        if (s->due < PLACE_LEAST * each) continue;
+        if (s->due < PLACE_MIN * each) continue;
         s->due = 0;
         const int i = k / cuts, j = k % cuts;
         const bool upright = i + j < cuts;
@@ -229,11 +229,11 @@ typedef struct widening {
 
 /* How far the surface counts as moved [cells]: outwards when it is positive. A slot goes before a
  * part. */
-static double way_of(const lar_thin_place *place, double least, double size) {
+static double way_of(const lar_thin_place *place, double min, double size) {
     const double slot = place->slot / size, part = place->part / size;
-    if (slot > least && slot < SLOT_WIDE && part > PART_KEPT)
+    if (slot > min && slot < SLOT_WIDE && part > PART_KEPT)
         return -fmin(SLOT_WIDE - slot, part - PART_KEPT) / 2;
-    if (part > PART_LEAST && part < PART_WIDE && slot > SLOT_KEPT)
+    if (part > PART_MIN && part < PART_WIDE && slot > SLOT_KEPT)
         return fmin(PART_WIDE - part, slot - SLOT_KEPT) / 2;
     return 0;
 }
@@ -321,7 +321,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
                           const lar_voxel_grid *voxel_grid, lar_thin_changes *changes,
                           lar_error *error) {
     if (!thin || thin->count == 0) return LAR_OK;
-    const double least = boundary->region_count > 1 ? SLOT_LEAST_REGIONS : SLOT_LEAST;
+    const double min = boundary->region_count > 1 ? SLOT_MIN_REGIONS : SLOT_MIN;
     widening w = {.boundary = boundary, .voxel_grid = voxel_grid};
     const size_t cells =
         (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
@@ -331,7 +331,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
     for (size_t c = 0; c < cells; c++) w.of[c] = -1;
     for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(voxel_grid->axis[a], voxel_grid->origin);
     for (size_t p = 0; !status && p < thin->count; p++) {
-        const double way = way_of(&thin->place[p], least, voxel_grid->size);
+        const double way = way_of(&thin->place[p], min, voxel_grid->size);
         if (way != 0 && !add_half_ball(&w, &thin->place[p], way))
             status =
                 lar_fail_memory(error, 2 * w.capacity * sizeof *w.fine, "what is thin of the body");

@@ -9,7 +9,7 @@
 /* A weight goes up while its region has too few cells and down while it has too many, by a step
  * that grows while the direction stays and halves when it turns (Riedmiller and Braun 1993). */
 enum { ROUNDS = 60 };
-static const double STEP_FIRST = 0.25, STEP_MOST = 0.5, GROW = 1.2, SHRINK = 0.5;
+static const double STEP_FIRST = 0.25, STEP_MAX = 0.5, GROW = 1.2, SHRINK = 0.5;
 
 /* Near enough: this part of its cells, or half a cell. */
 static const double NEAR = 0.01;
@@ -18,12 +18,12 @@ static const double NEAR = 0.01;
 static const double ROUNDING = 1e-9;
 
 /* A region is not made of cells that hold less than some hundredth of it. */
-static const double WEIGHT_MOST = 32;
+static const double WEIGHT_MAX = 32;
 
 typedef struct ballot {
-    double weight[LAR_REGIONS_MOST + 1], step[LAR_REGIONS_MOST + 1];
-    int8_t turn[LAR_REGIONS_MOST + 1];
-    int32_t cells[LAR_REGIONS_MOST + 1];
+    double weight[LAR_REGIONS_MAX + 1], step[LAR_REGIONS_MAX + 1];
+    int8_t turn[LAR_REGIONS_MAX + 1];
+    int32_t cells[LAR_REGIONS_MAX + 1];
 } ballot;
 
 /* What a cell becomes. */
@@ -81,11 +81,11 @@ static bool change_weights(const lar_votes *votes, int32_t regions, ballot *b) {
         if (fabs(missing) <= fmax(0.5, NEAR * votes->volume[r])) continue;
         const int8_t turn = missing > 0 ? 1 : -1;
         b->step[r] *= turn == -b->turn[r] ? SHRINK : GROW;
-        b->step[r] = fmin(b->step[r], STEP_MOST);
+        b->step[r] = fmin(b->step[r], STEP_MAX);
         b->turn[r] = turn;
         const double factor = 1 + b->step[r];
         b->weight[r] = turn > 0 ? b->weight[r] * factor : b->weight[r] / factor;
-        b->weight[r] = fmin(fmax(b->weight[r], 1 / WEIGHT_MOST), WEIGHT_MOST);
+        b->weight[r] = fmin(fmax(b->weight[r], 1 / WEIGHT_MAX), WEIGHT_MAX);
         changed = true;
     }
     return changed;
@@ -102,13 +102,13 @@ static double distance_of(const lar_votes *votes, int32_t regions, const ballot 
 
 void lar_votes_count(const lar_votes *votes, int32_t regions, lar_voxel_grid *voxel_grid) {
     ballot now = {.step = {0}};
-    for (int32_t r = 0; r <= LAR_REGIONS_MOST; r++) now.weight[r] = 1, now.step[r] = STEP_FIRST;
+    for (int32_t r = 0; r <= LAR_REGIONS_MAX; r++) now.weight[r] = 1, now.step[r] = STEP_FIRST;
     ballot best = now;
-    double least = INFINITY;
+    double min = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {
         count_cells(votes, &now);
         const double distance = distance_of(votes, regions, &now);
-        if (distance < least) least = distance, best = now;
+        if (distance < min) min = distance, best = now;
         if (!change_weights(votes, regions, &now)) break;
     }
     for (int32_t r = 1; r <= regions; r++) voxel_grid->wanted[r] = votes->volume[r];

@@ -21,8 +21,8 @@ typedef struct lar_vote {
 typedef struct lar_votes {
     lar_vote *vote;
     size_t count, capacity;
-    double volume[LAR_REGIONS_MOST + 1];   /* of each region [cells] */
-    int32_t certain[LAR_REGIONS_MOST + 1]; /* cells that it fills */
+    double volume[LAR_REGIONS_MAX + 1];   /* of each region [cells] */
+    int32_t certain[LAR_REGIONS_MAX + 1]; /* cells that it fills */
 } lar_votes;
 
 /* Adds what lies in a cell: region, its part of the cell (0..1). False: no memory. */

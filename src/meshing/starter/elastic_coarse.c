@@ -11,11 +11,11 @@
 
 /* About so many boxes, of two elements at least. */
 static double box_size(const lar_elastic *elastic) {
-    static const double BOXES = 160, LEAST = 2;
+    static const double BOXES = 160, MIN = 2;
     double volume = 0;
     for (int32_t k = 0; k < elastic->element_count; k++) volume += elastic->element[k].volume;
     double edge = cbrt(volume / fmax(1, elastic->element_count));
-    return fmax(LEAST * edge, cbrt(volume / BOXES));
+    return fmax(MIN * edge, cbrt(volume / BOXES));
 }
 
 static bool same_box(const double a[3], const double b[3], double box) {

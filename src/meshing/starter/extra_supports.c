@@ -9,7 +9,7 @@
 
 /* Of a piece's length: how far its weight may move it; how far extra supports are apart, at first;
  * of that, how large they are. */
-static const double SAG_MOST = 0.15, APART = 0.5, RADIUS = 0.3;
+static const double SAG_MAX = 0.15, APART = 0.5, RADIUS = 0.3;
 /* Extra supports this part of the limit do not need. */
 static const double WORTH_IT = 0.5;
 enum { ROUNDS = 4 };
@@ -108,7 +108,7 @@ static bool is_carried(search *s) {
     bool carried = true;
     memset(s->sags, 0, (size_t)nodes * sizeof *s->sags);
     for (int32_t n = 0; n < nodes; n++) {
-        if (!(s->sag[n] > SAG_MOST * s->length[n])) continue;
+        if (!(s->sag[n] > SAG_MAX * s->length[n])) continue;
         s->sags[s->piece[n]] = true;
         carried = false;
     }
@@ -129,14 +129,14 @@ static bool is_spared(const search *s, int32_t n) {
 /* The node of the underside that would sag most, as a part of what it may; -1: none is worth it. */
 static int32_t lowest(const search *s) {
     const lar_mesh *mesh = &s->meshing->mesh;
-    double most = WORTH_IT * SAG_MOST;
+    double max = WORTH_IT * SAG_MAX;
     int32_t best = -1;
     for (int32_t k = 0; k < s->faces; k++)
         for (int a = 0; a < 4; a++) {
             int32_t n = mesh->element[s->face[k] / 6][lar_face_node[s->face[k] % 6][a]];
             if (is_spared(s, n) || !s->sags[s->piece[n]]) continue;
-            if (!(s->sag[n] > most * s->length[n])) continue;
-            most = s->sag[n] / s->length[n];
+            if (!(s->sag[n] > max * s->length[n])) continue;
+            max = s->sag[n] / s->length[n];
             best = n;
         }
     return best;

@@ -66,25 +66,25 @@ static void apply_loads(solution *s, const bool *handle, int axis) {
 
 /* Rayleigh's quotients; u K u is the work of the load. */
 static double slowest(const solution *s) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int l = 0; l < LAR_LOADS; l++) {
         double moved = 0;
         for (int32_t n = 0; n < s->mesh->node_count; n++)
             for (int i = 0; i < 3; i++) moved += s->mass[n] * s->way[n][i][l] * s->way[n][i][l];
-        if (moved > 0 && s->work[l] > 0) least = fmin(least, sqrt(s->work[l] / moved));
+        if (moved > 0 && s->work[l] > 0) min = fmin(min, sqrt(s->work[l] / moved));
     }
-    return isfinite(least) ? least : 0;
+    return isfinite(min) ? min : 0;
 }
 
 static void find_sag(const solution *s, double *sag) {
     for (int32_t n = 0; n < s->mesh->node_count; n++) {
-        double most = 0;
+        double max = 0;
         for (int l = 0; l < PULL; l++) {
             double square = 0;
             for (int i = 0; i < 3; i++) square += s->way[n][i][l] * s->way[n][i][l];
-            most = fmax(most, square);
+            max = fmax(max, square);
         }
-        sag[n] = sqrt(most);
+        sag[n] = sqrt(max);
     }
 }
 

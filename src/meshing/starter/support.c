@@ -132,7 +132,7 @@ static void mark_faces(choice *c, const lar_set *faces) {
 static int mark_cuts(choice *c) {
     const lar_mesh *mesh = &c->meshing->mesh;
     const lar_boundary *boundary = &c->meshing->boundary;
-    int32_t most = 0;
+    int32_t max = 0;
     int where = -1;
     for (int i = 0; i < LAR_CUTS; i++) {
         const char *name = boundary->cut[i].name;
@@ -140,8 +140,8 @@ static int mark_cuts(choice *c) {
             const lar_set *faces = &mesh->set[s];
             if (!is_cut(c, faces, name)) continue;
             mark_faces(c, faces);
-            if (faces->count > most) {
-                most = faces->count;
+            if (faces->count > max) {
+                max = faces->count;
                 where = side_of(name);
             }
         }
@@ -207,12 +207,12 @@ static lar_status mark_loose_pieces(choice *c, int side) {
     for (int32_t e = 0; ready && e < mesh->element_count; e++) {
         int32_t root = lar_union_root(p.parent, mesh->element[e][0]);
         const double *range = p.range[root];
-        double least = DBL_MAX;
+        double min = DBL_MAX;
         for (int a = 0; a < 8; a++) {
             double place = mesh->position[mesh->element[e][a]][side / 2];
-            least = fmin(least, side % 2 ? range[1] - place : place - range[0]);
+            min = fmin(min, side % 2 ? range[1] - place : place - range[0]);
         }
-        bool reaches = !p.held[root] && least <= TENTH * (range[1] - range[0]);
+        bool reaches = !p.held[root] && min <= TENTH * (range[1] - range[0]);
         for (int a = 0; reaches && a < 8; a++) c->held[mesh->element[e][a]] = true;
     }
     free(p.parent);

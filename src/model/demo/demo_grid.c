@@ -160,17 +160,17 @@ lar_status lar_demo_grid(lar_demo_half *half, lar_error *error) {
     for (int b = 0; b < BRICKS; ++b)
         cells += (bricks[b].i1 - bricks[b].i0) * (bricks[b].j1 - bricks[b].j0) *
                  (bricks[b].k1 - bricks[b].k0);
-    const size_t most_nodes = sizeof(node_table) / sizeof(int);
-    half->grid = lar_calloc(most_nodes, sizeof *half->grid);
-    half->position = lar_calloc(most_nodes, sizeof *half->position);
+    const size_t max_nodes = sizeof(node_table) / sizeof(int);
+    half->grid = lar_calloc(max_nodes, sizeof *half->grid);
+    half->position = lar_calloc(max_nodes, sizeof *half->position);
     half->corner = lar_calloc((size_t)cells, sizeof *half->corner);
     half->cell = lar_calloc((size_t)cells, sizeof *half->cell);
     half->part = lar_calloc((size_t)cells, sizeof *half->part);
     if (!half->grid || !half->position || !half->corner || !half->cell || !half->part)
-        return lar_fail_memory(error, most_nodes * sizeof *half->position,
+        return lar_fail_memory(error, max_nodes * sizeof *half->position,
                                "the demonstration organ");
     node_table table;
-    for (int *node = &table[0][0][0]; node != &table[0][0][0] + most_nodes; ++node) *node = -1;
+    for (int *node = &table[0][0][0]; node != &table[0][0][0] + max_nodes; ++node) *node = -1;
     for (int b = 0; b < BRICKS; ++b)
         for (int k = bricks[b].k0; k < bricks[b].k1; ++k)
             for (int j = bricks[b].j0; j < bricks[b].j1; ++j)

@@ -129,11 +129,11 @@ static lar_status add_element_sets(lar_mesh *mesh, lar_error *error) {
 }
 
 static lar_status assemble(const lar_demo_half *half, lar_mesh *mesh, lar_error *error) {
-    const size_t most_nodes = 2 * (size_t)half->node_count;
-    int(*grid)[3] = lar_calloc(most_nodes, sizeof *grid);
-    if (!grid) return lar_fail_memory(error, most_nodes * sizeof *grid, "the demonstration organ");
+    const size_t max_nodes = 2 * (size_t)half->node_count;
+    int(*grid)[3] = lar_calloc(max_nodes, sizeof *grid);
+    if (!grid) return lar_fail_memory(error, max_nodes * sizeof *grid, "the demonstration organ");
     whole_table nodes, cells;
-    lar_status status = reserve(mesh, most_nodes, 2 * (size_t)half->cell_count, error);
+    lar_status status = reserve(mesh, max_nodes, 2 * (size_t)half->cell_count, error);
     if (!status) {
         place_nodes(half, nodes, mesh, grid);
         place_elements(half, nodes, cells, mesh);

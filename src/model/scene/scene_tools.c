@@ -123,9 +123,9 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     if (!status) status = lar_scene_need(scene, entry, what, "shape", "shape: sphere", &word);
     if (!status) status = read_shape(scene, word, &shape);
     if (!status) status = lar_scene_keys(scene, entry, shape->what, shape->keys);
-    if (!status && scene->model->tool_count >= LAR_MODEL_TOOLS_MOST)
+    if (!status && scene->model->tool_count >= LAR_MODEL_TOOLS_MAX)
         status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
-                                "there are more than %d tools; remove some", LAR_MODEL_TOOLS_MOST);
+                                "there are more than %d tools; remove some", LAR_MODEL_TOOLS_MAX);
     if (status) return status;
     lar_tool *tool = LAR_MODEL_APPEND(scene->model, tool);
     if (!tool) return lar_scene_no_memory(scene, sizeof *tool);

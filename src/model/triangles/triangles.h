@@ -81,7 +81,7 @@ lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_er
  * at. Shallow: up to LAR_CROSSING_HARMLESS of the mean edge, as rounding and smoothing leave them;
  * they tell neither an inside from an outside wrongly nor show on any element. */
 #define LAR_CROSSING_HARMLESS 0.01
-enum { LAR_CROSSINGS_MOST = 10000 }; /* deep ones; looking ends there */
+enum { LAR_CROSSINGS_MAX = 10000 }; /* deep ones; looking ends there */
 
 typedef struct lar_crossings {
     int32_t shallow, deep; /* pairs */

@@ -61,7 +61,7 @@ lar_status lar_recording_check_simulation(const char *path, const lar_recording_
 /* ---- records ------------------------------------------------------------------------------- */
 
 /* Steps between two looks, also where ticks are long. */
-static const uint64_t PART_MOST = 1000;
+static const uint64_t PART_MAX = 1000;
 
 static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     lar_status status = LAR_OK;
@@ -69,7 +69,7 @@ static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     while (now < step && !status && !p->stopped) {
         uint64_t steps = step - now;
         if (steps > p->reader.header.tick_steps) steps = p->reader.header.tick_steps;
-        if (steps > PART_MOST) steps = PART_MOST;
+        if (steps > PART_MAX) steps = PART_MAX;
         status = lar_simulation_compute(p->simulation, steps, NULL, NULL, error);
         now = lar_simulation_steps(p->simulation);
         if (status) break;

@@ -121,7 +121,7 @@ static lar_percentiles percentiles_of(const lar_histogram *times) {
     return (lar_percentiles){.p50 = 1e-3 * lar_histogram_quantile(times, 0.5),
                              .p99 = 1e-3 * lar_histogram_quantile(times, 0.99),
                              .p999 = 1e-3 * lar_histogram_quantile(times, 0.999),
-                             .most = 1e-3 * (double)times->most};
+                             .max = 1e-3 * (double)times->max};
 }
 
 static lar_status take_turns(bench *b, lar_bench_jitter_result *r, lar_error *error) {
@@ -145,12 +145,12 @@ static lar_status take_turns(bench *b, lar_bench_jitter_result *r, lar_error *er
 
 static lar_status check_options(const lar_bench_jitter_options *o, lar_error *error) {
     if (!(o->seconds >= 1e-9 * PERIOD && o->seconds <= LONGEST) || o->repeat < 1 ||
-        o->repeat > LAR_BENCH_REPEAT_MOST || !(o->load >= 0) ||
-        o->load > LAR_BENCH_JITTER_LOAD_MOST || o->priority < 0 || o->priority > 99)
+        o->repeat > LAR_BENCH_REPEAT_MAX || !(o->load >= 0) ||
+        o->load > LAR_BENCH_JITTER_LOAD_MAX || o->priority < 0 || o->priority > 99)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "turns last 0.001 to %g s, there are 1 to %d, a tick computes for up to "
                         "%d us, and the priority is 0 to 99",
-                        LONGEST, LAR_BENCH_REPEAT_MOST, LAR_BENCH_JITTER_LOAD_MOST);
+                        LONGEST, LAR_BENCH_REPEAT_MAX, LAR_BENCH_JITTER_LOAD_MAX);
     return LAR_OK;
 }
 

@@ -325,9 +325,9 @@ static lar_status measure(bench *b, lar_error *error) {
 
 lar_status lar_bench_scaling(const lar_bench_scaling_options *options,
                              lar_bench_scaling_result *result, lar_error *error) {
-    if (options->repeat < 1 || options->repeat > LAR_BENCH_REPEAT_MOST)
+    if (options->repeat < 1 || options->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d samples; take 1 to %d", options->repeat,
-                        LAR_BENCH_REPEAT_MOST);
+                        LAR_BENCH_REPEAT_MAX);
     lar_bench_scaling_result *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the benchmark");
     bench b = {.options = options, .result = made};

@@ -89,5 +89,5 @@ double lar_step_clock_quantile(const lar_step_clock *step_clock, double share) {
 }
 
 double lar_step_clock_longest(const lar_step_clock *step_clock) {
-    return 1e-3 * (double)step_clock->times.most;
+    return 1e-3 * (double)step_clock->times.max;
 }

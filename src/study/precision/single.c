@@ -98,7 +98,7 @@ static bool update_single(const lar_motion *motion, int32_t first, int32_t end, 
                           double *v, int64_t *force, const double *push, const double *mass,
                           double *damped, double *fastest) {
     const float keep = (float)motion->keep, dt = (float)motion->dt;
-    float most = 0;
+    float max = 0;
     bool fits = true;
     for (int64_t k = 4 * (int64_t)first; k < 4 * (int64_t)end; k++) {
         const float before = (float)v[k], drift = (float)motion->drift[k % 4];
@@ -107,11 +107,11 @@ static bool update_single(const lar_motion *motion, int32_t first, int32_t end, 
         u[k] = fmaf(dt, after, (float)u[k]);
         force[k] = 0;
         fits = fits && fabsf(after) < motion->speed;
-        most = fmaxf(most, fabsf(after));
+        max = fmaxf(max, fabsf(after));
         const double twice = (double)before + after;
         if (mass) *damped += mass[k / 4] * twice * twice;
     }
-    if (most > *fastest) *fastest = most;
+    if (max > *fastest) *fastest = max;
     return fits;
 }
 

@@ -272,7 +272,7 @@ typedef struct lar_block_run {
     const void *blocks;
 } lar_block_run;
 typedef struct lar_hex8_limits {
-    float least_volume, stress_square, hourglass_square;
+    float min_volume, stress_square, hourglass_square;
 } lar_hex8_limits;
 enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
 typedef struct lar_hex8_watch {

@@ -250,11 +250,11 @@ static void fill_head(const lar_counted_block *from, lar_block_head *to) {
 
 void lar_counted_recover(int law, bool box, const lar_counted_block *block, const double *u,
                          int32_t nodes, int64_t *force, lar_operations *counts) {
-    enum { NODES_MOST = 64 };
-    counted displacement[4 * NODES_MOST];
+    enum { NODES_MAX = 64 };
+    counted displacement[4 * NODES_MAX];
     lar_hex8_block general;
     lar_box_block boxes;
-    if (nodes > NODES_MOST) return;
+    if (nodes > NODES_MAX) return;
     widen(u, 4 * (size_t)nodes, displacement);
     fill_head(block, box ? &boxes.head : &general.head);
     if (box) {
