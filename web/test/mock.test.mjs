@@ -217,9 +217,9 @@ test('pressure has a map with zero in its middle; processors have colours of the
     await drag(v.page, 500, 250, 0, -70);
     await v.page.waitForTimeout(700);
     // Both of one picture: the range follows every frame.
-    const [least, most] = await v.page.evaluate(() =>
+    const [min, max] = await v.page.evaluate(() =>
         ['legend-least', 'legend-most'].map((id) => document.getElementById(id).innerText));
-    assert.equal(least, `−${most}`);
+    assert.equal(min, `−${max}`);
     await v.page.mouse.up();
     await v.page.getByRole('radio', { name: 'processor' }).click();
     assert.equal(await v.page.locator('#keys-of-colours li').count(), 4);
@@ -236,9 +236,9 @@ test('an organ at rest has one colour: the range has a floor', async (t) => {
     own.state.noise = true; // values of rounding, as a body at rest has them
     const v = await openPage(browser, own.url);
     const places = [[470, 300], [530, 300], [500, 250], [500, 380]];
-    for (const [name, most] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
+    for (const [name, max] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
         await v.page.getByRole('radio', { name }).click();
-        await v.until((text) => document.getElementById('legend-most').innerText === text, most);
+        await v.until((text) => document.getElementById('legend-most').innerText === text, max);
         await v.page.waitForTimeout(300);
         const seen = await colours(v.page, places);
         for (const colour of seen) assert.ok(difference(colour, seen[0]) < 45, `${name}: ${seen.join(' | ')}`);

@@ -4,10 +4,10 @@
  *     frame: nodes of the mesh --weights--> vertices --triangles--> normals
  *
  * All arrays are made once; a frame only writes into them. 17,000 vertices take about a millisecond. */
-import { boxOf, type Drawn } from './drawn';
-import type { RidingMessage } from '../link/protocol';
+import { boxOf, type SurfaceView } from './surfaceView';
+import type { EmbeddedMessage } from '../link/protocol';
 
-export class Riding implements Drawn {
+export class EmbeddedSurface implements SurfaceView {
     readonly nodes: number;
     readonly positions: Float32Array;
     readonly normals: Float32Array;
@@ -19,7 +19,7 @@ export class Riding implements Drawn {
     private readonly carriers: Uint32Array; // the nodes that these are of
 
     /* `nodes`: of frames, at rest. */
-    constructor(nodes: Float32Array, message: RidingMessage) {
+    constructor(nodes: Float32Array, message: EmbeddedMessage) {
         this.nodes = message.material.length;
         this.weights = message.weights;
         this.carriers = message.carriers;

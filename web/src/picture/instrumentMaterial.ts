@@ -39,7 +39,7 @@ export interface Look {
     onTop?: boolean; // also seen through what lies before it
 }
 
-export function steel(look: Look): THREE.ShaderMaterial {
+export function instrumentMaterial(look: Look): THREE.ShaderMaterial {
     return new THREE.ShaderMaterial({
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,

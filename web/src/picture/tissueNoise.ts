@@ -7,7 +7,7 @@ const TRUNKS = 1.9;
 const BRANCHES = 5.2;
 
 /* Four numbers per node: mottling -1..1, distance from trunks and from branches, and `open`. */
-export function grain(unit: Float32Array, open: Float32Array): Float32Array {
+export function tissueNoise(unit: Float32Array, open: Float32Array): Float32Array {
     const out = new Float32Array(open.length * 4);
     for (let i = 0; i < open.length; i++) {
         const x = unit[i * 3]!;

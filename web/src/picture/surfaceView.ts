@@ -1,6 +1,6 @@
 /* What is drawn of the bodies: the mesh's own surface, rounded (surface.ts), or a fine one that rides on
  * the mesh (embedded.ts). Both follow the nodes that frames carry. */
-export interface Drawn {
+export interface SurfaceView {
     readonly nodes: number; // drawn ones
     readonly positions: Float32Array;
     readonly normals: Float32Array;

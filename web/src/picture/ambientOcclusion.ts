@@ -1,12 +1,12 @@
 /* How open the surroundings of each drawn node are at rest, 0..1: folds and gaps between organs are
  * darker. Coarse and made once: cells that the surface passes through are marked, and from every
  * node some rays look how soon they meet a marked one. */
-import type { Drawn } from './drawn';
+import type { SurfaceView } from './surfaceView';
 
 const CELLS = 56; // along the longest side
 const RAYS = 24;
 
-export function openness(surface: Drawn): Float32Array {
+export function openness(surface: SurfaceView): Float32Array {
     const { rest, nodes, size, center, normals, quads } = surface;
     const cell = (2.4 * size) / CELLS;
     const low = center.map((c) => c - 1.2 * size);

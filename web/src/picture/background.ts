@@ -1,9 +1,9 @@
 /* What lies behind the organ: the dim wall of the cavity, out of focus. A ball seen from inside whose
  * corners are coloured once; it turns with the view, so that one feels how the camera moves. */
 import * as THREE from 'three';
-import { noise } from './grain';
+import { noise } from './tissueNoise';
 
-export class Cavity {
+export class Background {
     readonly mesh: THREE.Mesh;
 
     constructor() {
