@@ -226,11 +226,11 @@ static void show_progress(view *v, const lar_session_status *s, double at) {
     v->progress_at = at;
 }
 
-static const double RATHER_NOT_AGAIN = 5; /* [s] */
+static const double REPEAT_LIMIT = 5; /* [s] */
 
 /* The run went back to a sound state; when it does so often, only now and then. */
 static void announce_recovery(view *v, const lar_session_status *s, double at) {
-    if (s->recoveries == v->recoveries || at < v->recovered_told + RATHER_NOT_AGAIN) return;
+    if (s->recoveries == v->recoveries || at < v->recovered_told + REPEAT_LIMIT) return;
     clear_progress(v);
     cli_complain(&cli_view, CLI_DONE, "note: the run became unstable and %s", s->recovery);
     v->recoveries = s->recoveries;
@@ -259,7 +259,7 @@ static void announce_slow(view *v, const lar_session_status *s, double at) {
     v->slow = s->slow_motion != 0;
     if (s->slow_cause != LAR_SLOW_NOT) v->report.slow_cause = s->slow_cause;
     if (!v->slow || s->slow_cause == LAR_SLOW_NOT || at < v->slow_since + KNOWN ||
-        at < v->slow_told + RATHER_NOT_AGAIN || v->slow_told > v->slow_since ||
+        at < v->slow_told + REPEAT_LIMIT || v->slow_told > v->slow_since ||
         s->real_time_factor_now > 0.99 * s->pace)
         return;
     clear_progress(v);

@@ -121,7 +121,7 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
 
 /* Random delays, to see that nothing depends on who is first (T 6.9): mostly none, sometimes a few
  * microseconds, now and then long enough for others to run ahead as far as they can. */
-static void dawdle(lar_worker *worker) {
+static void delay_at_random(lar_worker *worker) {
     if (!worker->random) return;
     worker->random ^= worker->random << 13;
     worker->random ^= worker->random >> 7;
@@ -202,7 +202,7 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_e
     lar_processor *p = worker->processor;
     const lar_batch_plan *batch = &p->batch[b];
     lar_status status = LAR_OK;
-    dawdle(worker);
+    delay_at_random(worker);
     recover(worker, batch, round);
     /* Before anybody can wait for this thread's sums, like loads; behind the first elements, while
      * whose recovery the places of others come. */
@@ -210,11 +210,11 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_e
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
         status = lar_processor_await(p, &p->sequence[p->wait[batch->waits.first + i]].round, round,
                                      error);
-    dawdle(worker);
+    delay_at_random(worker);
     for (int32_t i = 0; i < batch->receives.count && !status; i++)
         status = receive(worker, &p->packet[batch->receives.first + i], round, error);
     if (batch->moves && !status) status = move(worker, error);
-    if (batch->sends.count) dawdle(worker);
+    if (batch->sends.count) delay_at_random(worker);
     for (int32_t i = 0; i < batch->sends.count && !status; i++)
         status = send(worker, &p->packet[batch->sends.first + i], round, error);
     pack_reduction(worker, b);

@@ -212,7 +212,7 @@ static void close_on_thread(void *context, int32_t number) {
 
 /* Processor zero lets the other processes go. Who goes before that, or cannot say so, is given up:
  * after a goodbye alone the others would wait for as long as they live. */
-static void take_leave(lar_computer *computer) {
+static void dismiss_processes(lar_computer *computer) {
     lar_comm *comm = computer->processor ? computer->processor[0].comm : NULL;
     if (!comm || computer->hosted == computer->division.grid.count) return;
     const lar_order finish = {.kind = LAR_ORDER_FINISH};
@@ -223,7 +223,7 @@ static void take_leave(lar_computer *computer) {
 
 void lar_computer_destroy(lar_computer *computer) {
     if (!computer) return;
-    take_leave(computer);
+    dismiss_processes(computer);
     lar_control_destroy(computer->control);
     if (computer->pool) lar_thread_pool_run(computer->pool, close_on_thread, computer);
     lar_thread_pool_destroy(computer->pool);
