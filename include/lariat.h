@@ -253,7 +253,7 @@ LAR_API lar_status lar_model_quality(const lar_model *model, const char *against
 typedef struct lar_meshing lar_meshing;
 
 /* Told now and then what is being done and how much of it is, 0..1; 0 from it asks to stop. */
-typedef int lar_meshing_watch(void *context, const char *what, double part);
+typedef int lar_meshing_progress(void *context, const char *what, double part);
 
 typedef struct lar_meshing_options {
     double size;               /* edge of an element [m]; 0: from `elements` */
@@ -261,16 +261,16 @@ typedef struct lar_meshing_options {
     double scale;              /* of surfaces and meshes: metres per unit of the file; 0: 1 */
     const char *const *labels; /* of an image: numbers or names, each a region; NULL: all */
     int32_t label_count;
-    int fuse;                 /* not 0: all labels, or regions of a mesh, become one region */
-    const char *names;        /* a file of label names, "LABEL,NAME" per line; NULL: none */
-    int principal;            /* not 0: along the body's principal axes instead of the image's */
-    int voxel;                /* not 0: cubes on a grid, not fitted; size and elements 0: the
-                                 image's own voxels */
-    const char *title;        /* NULL: the only region's name, or the first file's */
-    const char *fix;          /* where the starter scene holds it: "left", "right", "back", "front",
-                                 "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
-                                 it, else "back", and extra supports that bear its weight */
-    lar_meshing_watch *watch; /* may be NULL */
+    int fuse;          /* not 0: all labels, or regions of a mesh, become one region */
+    const char *names; /* a file of label names, "LABEL,NAME" per line; NULL: none */
+    int principal;     /* not 0: along the body's principal axes instead of the image's */
+    int voxel;         /* not 0: cubes on a grid, not fitted; size and elements 0: the
+                          image's own voxels */
+    const char *title; /* NULL: the only region's name, or the first file's */
+    const char *fix;   /* where the starter scene holds it: "left", "right", "back", "front",
+                          "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
+                          it, else "back", and extra supports that bear its weight */
+    lar_meshing_progress *progress; /* may be NULL */
     void *context;
 } lar_meshing_options;
 
@@ -396,12 +396,12 @@ LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t s
 
 /* Called after every step with the number of steps done, by the thread that advances; 0 ends the
  * advance: at once, or, with several processors, some steps later in the same step on all. */
-typedef int lar_watch(void *context, uint64_t step);
+typedef int lar_step_callback(void *context, uint64_t step);
 
-/* The same, watched. Ask lar_simulation_steps where it ended. */
-LAR_API lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
-                                                  lar_watch *watch, void *context,
-                                                  lar_error *error);
+/* The same with a callback. Ask lar_simulation_steps where it ended. */
+LAR_API lar_status lar_simulation_advance_with(lar_simulation *simulation, uint64_t steps,
+                                               lar_step_callback *callback, void *context,
+                                               lar_error *error);
 
 /* For processes other than processor 0: computes what processor 0 asks for, and returns when it
  * destroys its simulation, or with LAR_ERROR_PEER when a processor is lost. */
@@ -870,11 +870,12 @@ typedef struct lar_replay_report {
  * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does
  * a file that is damaged or cut off where it is; what comes before is played and compared, and
  * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
- * `broken` says whether the recording ends with that, too. `watch` may be NULL: called with the
+ * `broken` says whether the recording ends with that, too. `callback` may be NULL: called with the
  * number of steps at the beginning, after every tick, reset and load, between two advances, so that
  * it may look at the simulation; 0 ends the replay. */
-LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
-                              void *context, lar_replay_report *report, lar_error *error);
+LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path,
+                              lar_step_callback *callback, void *context, lar_replay_report *report,
+                              lar_error *error);
 
 /* Plays a recording in the session, at its pace, with play, pause and step; it pauses at its end.
  * Tools follow the recording and nobody else meanwhile. NULL: ends that, and the run goes on from

@@ -39,7 +39,7 @@ typedef struct progress {
     double start, shown; /* [s]; shown 0: nothing is on the screen */
 } progress;
 
-/* lar_meshing_watch. */
+/* lar_meshing_progress. */
 static int show_progress(void *context, const char *what, double part) {
     static const double QUIET = 1.0, EVERY = 0.1; /* shorter work says nothing [s] */
     progress *p = context;
@@ -226,7 +226,7 @@ static int mesh(const mesh_settings *s) {
     options.voxel = s->voxel;
     options.title = s->title;
     options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
-    options.watch = show_progress;
+    options.progress = show_progress;
     options.context = &p;
     lar_meshing *meshing = NULL;
     lar_error error;

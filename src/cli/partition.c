@@ -164,7 +164,7 @@ static int run_partition(const char *path, lar_partition_options *wanted, bool j
     if (status) return status;
     int shown = -1;
     if (isatty(STDERR_FILENO)) {
-        wanted->watch = show_progress;
+        wanted->progress = show_progress;
         wanted->context = &shown;
     }
     lar_partition_report report;

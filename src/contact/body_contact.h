@@ -88,7 +88,7 @@ typedef struct lar_penetration_offset {
 } lar_penetration_offset;
 
 /* The list and what has moved since, of whoever has the whole model. */
-typedef struct lar_body_contact_motion {
+typedef struct lar_body_contact_search_state {
     lar_contact_search *search;
     double (*x)[3];            /* [contact nodes] places at the search under way [m] */
     double (*searched)[3];     /* and at the last one */
@@ -98,7 +98,7 @@ typedef struct lar_body_contact_motion {
     bool searching;            /* a search is under way */
     bool valid;                /* the list belongs to the state */
     bool always;               /* search in every step */
-} lar_body_contact_motion;
+} lar_body_contact_search_state;
 
 typedef struct lar_body_contact {
     const lar_contact_surface *surface; /* NULL: nothing to do */
@@ -123,7 +123,7 @@ typedef struct lar_body_contact {
     lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
-    lar_body_contact_motion *motion; /* of whoever has all nodes; otherwise NULL */
+    lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
 } lar_body_contact;
 
 /* For the whole model. Without contacts of bodies it costs nothing. */

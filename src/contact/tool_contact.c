@@ -58,10 +58,10 @@ static lar_status allocate(const lar_model *model, int32_t faces, int tools,
     bool fits = contact->face && contact->loaded && contact->foreign && contact->face_of &&
                 contact->weights;
     for (int t = 0; t < tools && fits; t++) {
-        lar_tool_watch *watch = &contact->watch[t];
-        watch->near = lar_calloc(count, sizeof *watch->near);
-        watch->look = lar_calloc(count, sizeof *watch->look);
-        fits = watch->near && watch->look;
+        lar_tool_vicinity *vicinity = &contact->vicinity[t];
+        vicinity->near = lar_calloc(count, sizeof *vicinity->near);
+        vicinity->look = lar_calloc(count, sizeof *vicinity->look);
+        fits = vicinity->near && vicinity->look;
     }
     return fits ? LAR_OK
                 : lar_fail_memory(error, count * sizeof *contact->face, "the faces before tools");
@@ -111,8 +111,8 @@ lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
 void lar_tool_contact_destroy(lar_tool_contact *contact) {
     lar_plane_contact_destroy(&contact->plane_contact);
     for (int t = 0; t < LAR_TOOLS_MAX; t++) {
-        free(contact->watch[t].near);
-        free(contact->watch[t].look);
+        free(contact->vicinity[t].near);
+        free(contact->vicinity[t].look);
     }
     free(contact->face);
     free(contact->group);
@@ -134,7 +134,7 @@ void lar_tool_contact_forget(lar_tool_contact *contact) {
     contact->moved = UINT64_MAX;
     forget_groups(contact);
     for (int t = 0; t < LAR_TOOLS_MAX; t++)
-        contact->watch[t].known = contact->watch[t].rests = false;
+        contact->vicinity[t].known = contact->vicinity[t].rests = false;
 }
 
 /* ---- where tools are ----------------------------------------------------------------------- */
@@ -196,17 +196,17 @@ static void pose_now(const lar_tool_motion *motion, const lar_state *state, int3
 }
 
 /* Brings the tool to the step. Returns how far it has come since the last one. */
-static double follow(lar_tool_watch *watch, const lar_tool *tool, const lar_tool_motion *motion,
-                     const lar_state *state, double time_step) {
-    if (watch->rests && state->step >= motion->end) return 0;
-    lar_tool_body *body = &watch->body, old = *body;
+static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
+                     const lar_tool_motion *motion, const lar_state *state, double time_step) {
+    if (vicinity->rests && state->step >= motion->end) return 0;
+    lar_tool_body *body = &vicinity->body, old = *body;
     lar_tool_pose pose;
     pose_now(motion, state, 0, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->now);
     pose_now(motion, state, 1, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->next);
-    watch->rests = state->step >= motion->end;
-    return watch->known ? lar_tool_way(old.now, body->now, body->count) : 0;
+    vicinity->rests = state->step >= motion->end;
+    return vicinity->known ? lar_tool_way(old.now, body->now, body->count) : 0;
 }
 
 /* ---- forces -------------------------------------------------------------------------------- */
@@ -252,23 +252,23 @@ static int64_t whole_units(double units) {
 
 static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, int32_t tool, const lar_contact_law *law) {
-    lar_tool_watch *watch = &contact->watch[tool];
-    for (int32_t i = 0; i < watch->near_count; i++) {
-        if (watch->path < watch->look[i] && !contact->always) continue;
-        lar_tool_contact_patch patch = {.face = &contact->face[watch->near[i]],
-                                        .body = &watch->body,
+    lar_tool_vicinity *vicinity = &contact->vicinity[tool];
+    for (int32_t i = 0; i < vicinity->near_count; i++) {
+        if (vicinity->path < vicinity->look[i] && !contact->always) continue;
+        lar_tool_contact_patch patch = {.face = &contact->face[vicinity->near[i]],
+                                        .body = &vicinity->body,
                                         .radius = contact->list->tool[tool].radius,
                                         .rate_of = 1 / context->time_step,
                                         .closest = INFINITY};
         double center[3];
         lar_tool_contact_corners(patch.face, state->u, patch.x);
         double size = lar_tool_contact_ball((const double(*)[3])patch.x, center);
-        double gap = lar_tool_contact_distance(&watch->body, patch.radius, center) - size;
+        double gap = lar_tool_contact_distance(&vicinity->body, patch.radius, center) - size;
         contact->seen.tested++;
-        watch->look[i] = watch->path + lar_tool_contact_clear(gap, patch.radius);
+        vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
         if (gap > 0) continue;
         lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->weights);
-        watch->look[i] = watch->path + lar_tool_contact_clear(patch.closest, patch.radius);
+        vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
         sum->touching += patch.touching;
@@ -276,7 +276,7 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
         for (int s = 0; s < 2; s++)
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
-        give(contact, context, watch->near[i], tool, watch->body.now[0].end[0],
+        give(contact, context, vicinity->near[i], tool, vicinity->body.now[0].end[0],
              (const double(*)[3])patch.x, (const double(*)[3])patch.force);
     }
 }
@@ -359,16 +359,16 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
                        const lar_state *state, int32_t t, double travel,
                        const lar_contact_law *law) {
     const lar_tool *tool = &contact->list->tool[t];
-    lar_tool_watch *watch = &contact->watch[t];
+    lar_tool_vicinity *vicinity = &contact->vicinity[t];
     int32_t serial = lar_spare_serial(contact->list, contact->tools, t);
-    if (watch->serial != serial) watch->known = watch->rests = false;
-    watch->serial = serial;
-    double came = follow(watch, tool, &contact->tools->motion[t], state, context->whole_step);
-    watch->path += travel + came;
-    if (contact->always || !watch->known || !(watch->path < watch->limit))
+    if (vicinity->serial != serial) vicinity->known = vicinity->rests = false;
+    vicinity->serial = serial;
+    double came = follow(vicinity, tool, &contact->tools->motion[t], state, context->whole_step);
+    vicinity->path += travel + came;
+    if (contact->always || !vicinity->known || !(vicinity->path < vicinity->limit))
         lar_tool_contact_search(
             contact, t, state,
-            travel + lar_tool_way(watch->body.now, watch->body.next, watch->body.count));
+            travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
     touch_near(contact, context, state, t, law);
     contact->seen.possible += (uint64_t)contact->face_count;
 }

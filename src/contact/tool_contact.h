@@ -75,7 +75,7 @@ typedef struct lar_tool_body {
 } lar_tool_body;
 
 /* What this thread knows of the surroundings of one tool. */
-typedef struct lar_tool_watch {
+typedef struct lar_tool_vicinity {
     lar_tool_body body;
     int32_t serial;    /* of the tool, where it can be another one (contact/spares.h) */
     bool rests, known; /* `body` is for good; `near` belongs to the state */
@@ -84,7 +84,7 @@ typedef struct lar_tool_watch {
     int32_t near_count;
     int32_t *near; /* [near_count] faces */
     double *look;  /* [near_count] the path from which on each must be looked at again */
-} lar_tool_watch;
+} lar_tool_vicinity;
 
 typedef struct lar_tool_contact {
     const lar_tool_list *list; /* NULL: no tools */
@@ -100,7 +100,7 @@ typedef struct lar_tool_contact {
     int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
     lar_tool_contact_force *loaded;
     lar_point_weights *weights; /* NULL: no faces */
-    lar_tool_watch watch[LAR_TOOLS_MAX];
+    lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
     double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;

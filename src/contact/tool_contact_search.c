@@ -109,16 +109,16 @@ static void measure_group(const lar_tool_contact *contact, lar_tool_contact_grou
     group->travel = contact->travel;
 }
 
-static void search_group(lar_tool_contact *contact, lar_tool_watch *watch, double radius,
+static void search_group(lar_tool_contact *contact, lar_tool_vicinity *vicinity, double radius,
                          double reach, const lar_tool_contact_group *group, const double *u) {
     double x[4][3], center[3];
     for (int32_t f = group->first; f < group->first + group->count; f++) {
         lar_tool_contact_corners(&contact->face[f], u, x);
         double size = lar_tool_contact_ball((const double(*)[3])x, center);
-        double gap = lar_tool_contact_distance(&watch->body, radius, center) - size;
+        double gap = lar_tool_contact_distance(&vicinity->body, radius, center) - size;
         if (gap > reach) continue; /* not a number is near */
-        watch->near[watch->near_count] = f;
-        watch->look[watch->near_count++] = lar_tool_contact_clear(gap, radius);
+        vicinity->near[vicinity->near_count] = f;
+        vicinity->look[vicinity->near_count++] = lar_tool_contact_clear(gap, radius);
     }
     contact->seen.boxed += (uint64_t)group->count;
 }
@@ -126,27 +126,27 @@ static void search_group(lar_tool_contact *contact, lar_tool_watch *watch, doubl
 void lar_tool_contact_search(lar_tool_contact *contact, int32_t tool, const lar_state *state,
                              double step_path) {
     enum { AHEAD = 48 };
-    lar_tool_watch *watch = &contact->watch[tool];
+    lar_tool_vicinity *vicinity = &contact->vicinity[tool];
     double radius = contact->list->tool[tool].radius;
     double reach = fmin(fmax(AHEAD * step_path, 0.02 * radius), 4 * radius);
     if (!(reach > 0)) reach = radius;
-    watch->near_count = 0;
-    watch->path = 0; /* short sums keep the smallest steps */
-    watch->limit = lar_tool_contact_clear(reach, radius);
-    watch->known = true;
+    vicinity->near_count = 0;
+    vicinity->path = 0; /* short sums keep the smallest steps */
+    vicinity->limit = lar_tool_contact_clear(reach, radius);
+    vicinity->known = true;
     for (int32_t g = 0; g < contact->group_count; g++) {
         lar_tool_contact_group *group = &contact->group[g];
         /* As it was, grown by what its corners can have gone: mostly that is far enough away. */
         double grown = group->radius + (contact->travel - group->travel);
-        if (lar_tool_contact_distance(&watch->body, radius, group->center) - grown > reach)
+        if (lar_tool_contact_distance(&vicinity->body, radius, group->center) - grown > reach)
             continue;
         if (!(contact->travel == group->travel)) {
             measure_group(contact, group, state->u);
-            if (lar_tool_contact_distance(&watch->body, radius, group->center) - group->radius >
+            if (lar_tool_contact_distance(&vicinity->body, radius, group->center) - group->radius >
                 reach)
                 continue;
         }
-        search_group(contact, watch, radius, reach, group, state->u);
+        search_group(contact, vicinity, radius, reach, group, state->u);
     }
     contact->seen.searches++;
 }

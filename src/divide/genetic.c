@@ -251,7 +251,7 @@ static void search_run(search *s, lar_genetic_result *result) {
         progress.seconds = lar_clock_seconds() - s->began;
         progress.best = s->best.cost;
         s->done = share_done(o, &progress);
-        if (o->watch && !o->watch(o->context, &progress)) more = false;
+        if (o->callback && !o->callback(o->context, &progress)) more = false;
     }
     *result = (lar_genetic_result){progress.start, s->best.cost, progress.generation,
                                    lar_clock_seconds() - s->began};

@@ -122,7 +122,7 @@ static lar_status check_options(work *w) {
 /* Tells the one who waits; refuses to go on when he says so. */
 static lar_status tell(const work *w, const char *what, double part) {
     const lar_meshing_options *o = &w->options;
-    if (!o->watch || o->watch(o->context, what, part)) return LAR_OK;
+    if (!o->progress || o->progress(o->context, what, part)) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_ARGUMENT, "stopped as asked, while %s", what);
 }
 
@@ -270,14 +270,14 @@ static lar_status check_count(const work *w) {
                     w->path[0], w->unfitted.size, (int)count, ELEMENTS_MIN);
 }
 
-static bool watch_fit(void *context, double part) {
+static bool fit_progress(void *context, double part) {
     const work *w = context;
     return tell(w, "fitting", part) == LAR_OK;
 }
 
 static lar_status make_mesh(work *w) {
     lar_meshing *m = w->meshing;
-    const lar_fit_options fit = {.watch = watch_fit, .context = w};
+    const lar_fit_options fit = {.progress = fit_progress, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
     if (!status) status = fill_voxel_grid(w);
     lar_image_clear(&w->image);

@@ -30,8 +30,9 @@ const char *lar_tool_size_problem(const lar_tool *tool);
 /* What lies on or at something may be inside it by so much, from rounding [m]. */
 double lar_overlap_rounding(const lar_mesh *mesh);
 
-/* Distance from the tool's skin to the surface at rest [m]: negative when they overlap, also when
- * the tool lies inside a body. `face` is the index into model->surface of the face next to it. */
+/* Distance from the tool's surface to the surface at rest [m]: negative when they overlap, also
+ * when the tool lies inside a body. `face` is the index into model->surface of the face next to it.
+ */
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face);
 
 #endif

@@ -266,15 +266,15 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
-    if (p->exchange) lar_contact_watch(worker, stop - done);
+    if (p->exchange) lar_contact_check_travel(worker, stop - done);
     if (worker->fault.kind && !*faulted) {
         *faulted = true;
         lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
                           &worker->fault);
         lar_processor_ask_stop(p, stop);
     }
-    if (number == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
-        !computer->watch(computer->watch_context, done)) {
+    if (number == 0 && computer->first == 0 && computer->callback && worker->state.part == 0 &&
+        !computer->callback(computer->callback_context, done)) {
         computer->called_off = true;
         lar_processor_ask_stop(p, stop);
     }
@@ -392,14 +392,14 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t 
 }
 
 /* Without contact of bodies and tools one stretch. */
-lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_step_callback *callback,
                                 void *context, lar_fault *fault, lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
     const uint64_t *step = &computer->processor[0].worker[0].state.step;
     uint64_t end = *step + steps;
     lar_status status = LAR_OK;
-    computer->watch = watch;
-    computer->watch_context = context;
+    computer->callback = callback;
+    computer->callback_context = context;
     computer->called_off = false;
     /* A fault before the first stretch leaves no step over which these could be a mean. */
     memset(computer->report.tool, 0, sizeof computer->report.tool);

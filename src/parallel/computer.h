@@ -62,9 +62,9 @@ typedef struct lar_computer {
     uint64_t *clock;           /* [processors] atomic: rounds done, of those in this process */
     uint64_t until;            /* the step before which this advance ends */
     lar_computer_contact contact;
-    lar_watch *watch;
-    void *watch_context;
-    bool called_off;     /* by the watch */
+    lar_step_callback *callback;
+    void *callback_context;
+    bool called_off;     /* by the callback */
     lar_report report;   /* of the last advance; at processor zero, of all processors */
     lar_state *state;    /* of the whole model: gathered into at zero, scattered from elsewhere */
     lar_tools *tools;    /* of this process: zero's are those that count */
@@ -89,9 +89,9 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
  * Accepts NULL. */
 void lar_computer_destroy(lar_computer *computer);
 
-/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a fault
+/* Advances all processors by `steps`, or fewer when `callback` (may be NULL) returns 0 or a fault
  * stopped everyone: *fault is then the first one. Processor zero only. */
-lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_watch *watch,
+lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, lar_step_callback *callback,
                                 void *context, lar_fault *fault, lar_error *error);
 
 /* The state of all processors into that of the whole model, and back to all processors: they go on

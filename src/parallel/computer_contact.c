@@ -46,8 +46,8 @@ lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
             lar_contact_map_create(model, whole->surface, count, owner, computer->division.reporter,
                                    contact->shift, &contact->map, error);
     }
-    contact->search = whole->motion->search;
-    contact->always = whole->motion->always;
+    contact->search = whole->search_state->search;
+    contact->always = whole->search_state->always;
     free(owner);
     return status;
 }

@@ -125,7 +125,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
 
 /* ---- in time --------------------------------------------------------------------------------- */
 
-void lar_contact_watch(lar_worker *worker, uint64_t steps) {
+void lar_contact_check_travel(lar_worker *worker, uint64_t steps) {
     const lar_body_contact *contact = &worker->interactions.body_contact;
     double allowed = 0.5 * contact->list.skin;
     double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);

@@ -130,6 +130,6 @@ lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error);
 
 /* After a step: asks for a stop in time, or reports a fault. `steps`: until all have stopped. */
-void lar_contact_watch(lar_worker *worker, uint64_t steps);
+void lar_contact_check_travel(lar_worker *worker, uint64_t steps);
 
 #endif

@@ -33,7 +33,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
     const lar_model *model = domain->model;
-    double keep = domain->motion.keep, gravity[3];
+    double keep = domain->leapfrog.keep, gravity[3];
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
@@ -59,7 +59,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
-    if (domain->motion.keep > 0) return LAR_OK;
+    if (domain->leapfrog.keep > 0) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
                     "a damping below %.3g 1/s or a time_step below %.3g s",
@@ -196,7 +196,7 @@ void lar_simulation_destroy(lar_simulation *simulation) {
 }
 
 /* Steps up to `end`, an interval's or the advance's. False when it shall not go on. */
-static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch *watch,
+static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_callback *callback,
                             void *context) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
@@ -209,7 +209,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
         lar_step(domain, state, fault);
         if (fault->kind) lar_fault_examine(domain, state, 0, domain->layout.node_count, fault);
         bool whole = state->part == 0;
-        goes_on = !fault->kind && (!watch || !whole || watch(context, state->step));
+        goes_on = !fault->kind && (!callback || !whole || callback(context, state->step));
     }
     simulation->report = (lar_report){0};
     lar_report_add(&simulation->report, &domain->interactions, state);
@@ -218,7 +218,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch 
     return goes_on;
 }
 
-static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
+static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_step_callback *callback,
                           void *context) {
     const uint64_t *step = &simulation->state.step;
     uint64_t end = *step + steps;
@@ -228,7 +228,7 @@ static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch 
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
         uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
-        goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
+        goes_on = advance_stretch(simulation, until < end ? until : end, callback, context);
     }
 }
 
@@ -237,7 +237,7 @@ static void advance_alone(lar_simulation *simulation, uint64_t steps, lar_watch 
  * nothing is measured by the energy of the bodies, which is asked for only when contact is behind
  * by more than it was the last time, or may be: what a report has lacks half of its last step,
  * which is taken for as much as all steps since the last report. */
-static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
+static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3;
     double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
     simulation->taken = taken;
@@ -256,22 +256,22 @@ static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     return LAR_OK;
 }
 
-lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                                  void *context, lar_error *error) {
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
+                                  lar_step_callback *callback, void *context, lar_error *error) {
     lar_computer *computer = simulation->computer;
     lar_fault *fault = &simulation->fault;
     lar_status status = LAR_OK;
     if (!fault->kind) {
         uint64_t before = lar_simulation_steps(simulation);
         if (computer) {
-            status = lar_computer_advance(computer, steps, watch, context, fault, error);
+            status = lar_computer_advance(computer, steps, callback, context, fault, error);
             simulation->report = computer->report;
             simulation->gathered = false;
         } else {
-            advance_alone(simulation, steps, watch, context);
+            advance_alone(simulation, steps, callback, context);
         }
         simulation->report_steps = lar_simulation_steps(simulation) - before;
-        if (!status && !fault->kind) status = watch_contact(simulation, error);
+        if (!status && !fault->kind) status = check_contact(simulation, error);
     }
     if (!status) lar_fault_attribute(&simulation->domain, fault);
     return status ? status : lar_fault_report(&simulation->domain, fault, error);
@@ -296,14 +296,15 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
 
 /* In one process gathering cannot fail and waits until somebody looks; between processes it can,
  * and nobody who looks could say so. */
-lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
-                                          lar_watch *watch, void *context, lar_error *error) {
+lar_status lar_simulation_advance_with(lar_simulation *simulation, uint64_t steps,
+                                       lar_step_callback *callback, void *context,
+                                       lar_error *error) {
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
     lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_advance", error);
     if (status) return status;
-    status = lar_simulation_compute(simulation, steps, watch, context, error);
+    status = lar_simulation_compute(simulation, steps, callback, context, error);
     bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
     if (may_gather && simulation->computer && simulation->computer->control) {
         lar_error lost;
@@ -314,7 +315,7 @@ lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t s
 }
 
 lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
-    return lar_simulation_advance_watched(simulation, steps, NULL, NULL, error);
+    return lar_simulation_advance_with(simulation, steps, NULL, NULL, error);
 }
 
 lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {

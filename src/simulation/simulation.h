@@ -30,11 +30,11 @@ struct lar_simulation {
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
 const lar_state *lar_simulation_state(const lar_simulation *simulation);
 
-/* lar_simulation_advance_watched without bringing the state together: what a tick of a session
+/* lar_simulation_advance_with without bringing the state together: what a tick of a session
  * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between
  * processes it can. */
-lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                                  void *context, lar_error *error);
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
+                                  lar_step_callback *callback, void *context, lar_error *error);
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
 
 /* A session lets its own thread alone change the simulation, or everyone again. */

@@ -346,8 +346,8 @@ static void prepare_motion(lar_domain *domain) {
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
     lar_gravity_at(model, NULL, 0, gravity);
-    domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
-    for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
+    domain->leapfrog = (lar_leapfrog){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
+    for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0)
             domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
@@ -357,7 +357,7 @@ static void prepare_motion(lar_domain *domain) {
         shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
     }
     /* Two watches (LAR_WATCH_INTERVAL) apart, no hourglass mode can grow beyond the integers. */
-    domain->motion.speed = 256 * shortest / dt;
+    domain->leapfrog.speed = 256 * shortest / dt;
 }
 
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
@@ -427,7 +427,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .rate_lent = true,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
-                           .motion = whole->motion};
+                           .leapfrog = whole->leapfrog};
     lar_status status = copy_materials(domain, error);
     if (!status)
         status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);

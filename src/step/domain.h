@@ -50,7 +50,7 @@ typedef struct lar_domain {
     double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
     int32_t *strained;       /* [8 for each block] what the guard looks at in every step, */
     int32_t *strained_count; /* [run_count] the first of a run's place; scratch (step/guard.h) */
-    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a watch */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
     lar_element_rate *rate;              /* [elements of the model] */
     bool rate_lent;                      /* `rate` belongs to the whole */
     size_t block_bytes;
@@ -67,7 +67,7 @@ typedef struct lar_domain {
     double stable_step; /* the elements' bound at rest [s] */
     lar_gid stable_worst;
     lar_hex8_limits limits;
-    lar_motion motion; /* without gravity when gravity follows a curve */
+    lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 
     lar_interactions interactions;
 } lar_domain;

@@ -155,7 +155,7 @@ static lar_status report_speed(const lar_domain *domain, const lar_fault *fault,
                     "smaller time step, or slower or smaller loads and motions%s",
                     (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                     (long long)mesh->node_id[node], place[0], place[1], place[2], highest,
-                    domain->motion.speed, hint(fault));
+                    domain->leapfrog.speed, hint(fault));
 }
 
 static lar_status report_load(const lar_domain *domain, const lar_fault *fault, lar_error *error) {

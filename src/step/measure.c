@@ -36,12 +36,12 @@ static double mean_step(const lar_domain *domain, const lar_state *state) {
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
 static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
                             const double gravity[3]) {
-    lar_motion motion = lar_step_motion(domain, &domain->interactions, state);
+    lar_leapfrog leapfrog = lar_step_leapfrog(domain, &domain->interactions, state);
     double step = mean_step(domain, state);
     double half = 0.5 * damping_of(domain) * step;
     double drift = gravity[value % 4] * step / (1 + half);
-    return motion.keep * state->v[value] + drift -
-           motion.push * domain->push[value / 4] * (double)state->force[value];
+    return leapfrog.keep * state->v[value] + drift -
+           leapfrog.push * domain->push[value / 4] * (double)state->force[value];
 }
 
 /* Length of the next step, or of its parts. */

@@ -46,12 +46,12 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
     bool watches = due || state->close || !state->listed;
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
-        lar_hex8_watch watch = {.limit = domain->corner_limit + place,
-                                .lane = domain->strained + place,
-                                .strain = domain->strain + place};
+        lar_hex8_monitor monitor = {.limit = domain->corner_limit + place,
+                                    .lane = domain->strained + place,
+                                    .strain = domain->strain + place};
         int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
-                                                 &domain->limits, watches ? &watch : NULL);
-        if (watches) lar_guard_select(domain, r, &watch, due, state);
+                                                 &domain->limits, watches ? &monitor : NULL);
+        if (watches) lar_guard_select(domain, r, &monitor, due, state);
         lar_guard_apply(domain, r, state);
         if (found >= 0) fault_run(domain, r, found, state, fault);
     }
@@ -119,21 +119,21 @@ static bool is_set(const lar_settings *settings) {
     return settings && (settings->gravity_set || settings->damping_set);
 }
 
-lar_motion lar_step_motion(const lar_domain *domain, const lar_interactions *interactions,
-                           const lar_state *state) {
+lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
+                               const lar_state *state) {
     const lar_step_division *division = lar_division_of(interactions);
     const lar_settings *settings = lar_settings_of(interactions);
-    lar_motion motion = domain->motion;
+    lar_leapfrog leapfrog = domain->leapfrog;
     double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
-    motion.dt = whole / division->parts;
-    if (mean == whole && !is_set(settings)) return motion;
+    leapfrog.dt = whole / division->parts;
+    if (mean == whole && !is_set(settings)) return leapfrog;
     double half = 0.5 * lar_damping_of(domain->model, settings) * mean;
     double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
     lar_gravity_at(domain->model, settings, 0, gravity);
-    motion.keep = (1 - half) / (1 + half);
-    motion.push = mean / whole * (1 + half_whole) / (1 + half);
-    for (int i = 0; i < 3; i++) motion.drift[i] = gravity[i] * mean / (1 + half);
-    return motion;
+    leapfrog.keep = (1 - half) / (1 + half);
+    leapfrog.push = mean / whole * (1 + half_whole) / (1 + half);
+    for (int i = 0; i < 3; i++) leapfrog.drift[i] = gravity[i] * mean / (1 + half);
+    return leapfrog;
 }
 
 void lar_step_enter(const lar_domain *domain, const lar_interactions *interactions,
@@ -171,19 +171,19 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
     const lar_settings *settings = lar_settings_of(interactions);
-    lar_motion motion = lar_step_motion(domain, interactions, state);
+    lar_leapfrog leapfrog = lar_step_leapfrog(domain, interactions, state);
     double damping = lar_damping_of(model, settings), damped = 0;
     double mean = context->mean_step;
     if (lar_gravity_varies(model, settings)) {
         double gravity[3];
         lar_gravity_at(model, settings, time, gravity);
         for (int i = 0; i < 3; i++)
-            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
+            leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
-    if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
+    if (!domain->kernels->update(&leapfrog, context->first, context->end, state->u, state->v,
                                  state->force, domain->push, weight, &damped, &state->fastest) &&
         !fault->kind)
         *fault = (lar_fault){
@@ -266,7 +266,7 @@ void lar_step_end(const lar_domain *domain, const lar_interactions *interactions
                   const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     add_half_work(domain, interactions, context, state);
     lar_body_contact_half_work(&interactions->body_contact, context, state);
-    /* The watch over speeds does not see nodes that are moved. */
+    /* The monitor over speeds does not see nodes that are moved. */
     if (!isfinite(state->external) && !fault->kind)
         *fault = (lar_fault){
             .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};

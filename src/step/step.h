@@ -66,8 +66,8 @@ const lar_step_division *lar_division_of(const lar_interactions *interactions);
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
                      const lar_state *state);
 /* How nodes move in the step that lies before the state: see lar_step_division. */
-lar_motion lar_step_motion(const lar_domain *domain, const lar_interactions *interactions,
-                           const lar_state *state);
+lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
+                               const lar_state *state);
 
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
  * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */

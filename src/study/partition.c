@@ -36,13 +36,13 @@ static void partition_clear(partition *p) {
 
 /* ---- making distributions --------------------------------------------------------------- */
 
-static bool watch_genetic(void *context, const lar_genetic_progress *progress) {
+static bool genetic_progress(void *context, const lar_genetic_progress *progress) {
     const partition *p = context;
     const lar_partition_options *o = p->options;
     double done = o->generations ? (double)progress->generation / (double)o->generations : 0;
     if (o->seconds > 0 && progress->seconds / o->seconds > done)
         done = progress->seconds / o->seconds;
-    o->watch(o->context, done < 1 ? done : 1, progress->start.worst, progress->best.worst);
+    o->progress(o->context, done < 1 ? done : 1, progress->start.worst, progress->best.worst);
     return true;
 }
 
@@ -55,7 +55,7 @@ static lar_status make_genetic(partition *p, lar_distribution *out) {
     options.seed = p->options->seed;
     options.seconds = p->options->seconds;
     options.generations = p->options->generations;
-    options.watch = p->options->watch ? watch_genetic : NULL;
+    options.callback = p->options->progress ? genetic_progress : NULL;
     options.context = p;
     status = lar_genetic_search(p->mesh, &p->incidence, &p->grid, &options, d.processor, &result,
                                 p->error);

@@ -24,7 +24,7 @@ enum { LAR_PARTITION_SCHEMES = 4 };
 
 /* Called during the genetic search: the share that is done, the cost of the cut and the best so
  * far. */
-typedef void lar_partition_watch(void *context, double done, int64_t start, int64_t best);
+typedef void lar_partition_progress(void *context, double done, int64_t start, int64_t best);
 
 typedef struct lar_partition_options {
     const char *grid; /* "2x2x3"; with a file NULL or the file's */
@@ -38,7 +38,7 @@ typedef struct lar_partition_options {
     const char *out;       /* distribution file to write, or NULL */
     const char *schedules; /* folder for schedule files, or NULL */
     const char *vtu;       /* mesh with the cell field "processor" to write, or NULL */
-    lar_partition_watch *watch;
+    lar_partition_progress *progress;
     void *context;
 } lar_partition_options;
 

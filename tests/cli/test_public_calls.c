@@ -108,7 +108,7 @@ static void meshing_calls(void **unused) {
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
     options = (lar_meshing_options){.fix = "sideways"};
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
-    options = (lar_meshing_options){.watch = never};
+    options = (lar_meshing_options){.progress = never};
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
     assert_int_equal(lar_meshing_create(image, 1, NULL, &meshing, NULL), LAR_ERROR_IO);
     assert_null(meshing);

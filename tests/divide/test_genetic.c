@@ -126,7 +126,7 @@ static void can_be_stopped(void **state) {
     lar_grid grid = grid_of(2, 2, 3);
     lar_genetic_options options = lar_genetic_options_default();
     int64_t seen = 0;
-    options.watch = stop_at_three;
+    options.callback = stop_at_three;
     options.context = &seen;
     lar_genetic_search(&o->mesh, &o->incidence, &grid, &options, o->processor, NULL, NULL);
     assert_int_equal(seen, 3);

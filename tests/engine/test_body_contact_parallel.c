@@ -111,7 +111,7 @@ static void nor_on_delays_nor_on_searches(void **unused) {
     lar_model_destroy(model);
 }
 
-/* Steps of a watched run are not interrupted, and the watch still ends it. */
+/* Steps of a run with a callback are not interrupted, and the callback still ends it. */
 static int until_step(void *context, uint64_t step) {
     uint64_t *last = context;
     assert_true(step == *last + 1);
@@ -127,7 +127,7 @@ static void searches_are_not_seen_from_outside(void **unused) {
     lar_simulation *s = start_with(model, options);
     uint64_t last = 0;
     lar_error error;
-    assert_int_equal(lar_simulation_advance_watched(s, 1000, until_step, &last, &error), LAR_OK);
+    assert_int_equal(lar_simulation_advance_with(s, 1000, until_step, &last, &error), LAR_OK);
     assert_true(last >= 300 && last < 310);
     assert_int_equal(lar_simulation_steps(s), last);
     lar_contact_info info;

@@ -125,7 +125,7 @@ static int stop_at(void *context, uint64_t step) {
 }
 
 /* Everyone stops in the same step, soon; going on gives what not stopping would have given. */
-static void a_watched_advance_ends_in_a_common_step(void **unused) {
+static void an_advance_with_a_callback_ends_in_a_common_step(void **unused) {
     (void)unused;
     lar_model *model = everything_model(&small);
     uint64_t wanted = hash_of(model, lar_options_default(), 200);
@@ -133,7 +133,7 @@ static void a_watched_advance_ends_in_a_common_step(void **unused) {
         lar_simulation *simulation = start_with(model, combination(grid, 2, 1, 0));
         uint64_t limit = 50;
         lar_error error;
-        if (lar_simulation_advance_watched(simulation, 200, stop_at, &limit, &error))
+        if (lar_simulation_advance_with(simulation, 200, stop_at, &limit, &error))
             fail_msg("%s", error.message);
         uint64_t stopped = lar_simulation_steps(simulation);
         assert_true(stopped >= limit && stopped <= limit + 8);
@@ -297,7 +297,7 @@ int main(int count, char **argument) {
     const struct CMUnitTest fast[] = {
         cmocka_unit_test(the_hash_is_the_same_everywhere),
         cmocka_unit_test(boxes_and_oracles_agree_with_themselves),
-        cmocka_unit_test(a_watched_advance_ends_in_a_common_step),
+        cmocka_unit_test(an_advance_with_a_callback_ends_in_a_common_step),
         cmocka_unit_test(an_unstable_run_stops_everywhere),
         cmocka_unit_test(energies_do_not_depend_on_the_division),
         cmocka_unit_test(every_element_arrives_at_every_node_once),

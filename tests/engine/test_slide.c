@@ -78,8 +78,8 @@ static void set_going(lar_simulation *s, lar_model *model, int32_t first, double
     lar_domain *domain = &s->domain;
     double dt = domain->time_step;
     model->damping = 0;
-    domain->motion.keep = 1;
-    for (int i = 0; i < 3; i++) domain->motion.drift[i] = model->gravity[i] * dt;
+    domain->leapfrog.keep = 1;
+    for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = model->gravity[i] * dt;
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0) domain->push[n] = dt / (domain->mass[n] * domain->scale);
     for (int32_t n = first; n < model->mesh.node_count; n++)

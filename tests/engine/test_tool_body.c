@@ -33,7 +33,7 @@ typedef struct pushed {
 } pushed;
 
 /* So many steps in ticks; the tool's centre never comes inside. */
-static pushed watch(lar_simulation *simulation, uint64_t steps) {
+static pushed vicinity(lar_simulation *simulation, uint64_t steps) {
     pushed seen = {0};
     uint64_t ticks = steps / TICK;
     for (uint64_t i = 0; i < ticks; i++) {
@@ -68,7 +68,7 @@ static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
     assert_true(winding(simulation, (double[]){0.015, 0.015, 0.01}) > 0.99);
 
     place(simulation, 0, below, upright, 1, second / 4);
-    pushed in = watch(simulation, second / 4), rest = watch(simulation, second / 4);
+    pushed in = vicinity(simulation, second / 4), rest = vicinity(simulation, second / 4);
     force = force_of(simulation);
     print_message("limit %.3g N: up to %.3g N on the way, %.3g N at rest, %.3g mm apart, tissue "
                   "up to %.3g mm deep; up to %d parts\n",
@@ -80,7 +80,7 @@ static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
     assert_true(rest.depth > 0 && rest.depth < ball.radius);
 
     place(simulation, 0, above, upright, 1, second / 4);
-    watch(simulation, second / 2);
+    vicinity(simulation, second / 2);
     force = force_of(simulation);
     lar_tool_pose pose, wanted = {.orientation = {1, 0, 0, 0}, .opening = 1};
     memcpy(wanted.position, above, sizeof wanted.position);

@@ -95,7 +95,7 @@ static void empty_lane(load *l, int n) {
 
 /* Loose blocks of general elements. */
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count, const double *u,
-                    int64_t *force, const lar_hex8_limits *limits, bool watch) {
+                    int64_t *force, const lar_hex8_limits *limits, bool monitor) {
     lar_block_run run = {law, LAR_SHAPE_GENERAL, LAR_ROWS_NONE, 0, false, count, blocks};
     enum { MAX = 64 };
     static int32_t lane[MAX * LAR_BLOCK];
@@ -103,16 +103,17 @@ static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, int count,
     assert_true(count <= MAX);
     for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
     static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
-    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(&run, u, force, limits, watch ? &listed : NULL);
+    lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
+    int64_t found = kernels[k]->recover(&run, u, force, limits, monitor ? &listed : NULL);
     /* The first lane of those of the block that is named. */
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
-static int64_t recover(const load *l, int k, bool watch, const lar_hex8_limits *limits, forces *f) {
+static int64_t recover(const load *l, int k, bool monitor, const lar_hex8_limits *limits,
+                       forces *f) {
     lar_law law = l->material[0].law;
     memset(f, 0, sizeof *f);
-    return call(k, law, l->block, BLOCKS, &l->u[0][0], &f->at[0][0], limits, watch);
+    return call(k, law, l->block, BLOCKS, &l->u[0][0], &f->at[0][0], limits, monitor);
 }
 
 /* Each element within the rounding of its seven modal forces (half a unit each); the scale is
@@ -168,8 +169,8 @@ static void same_bits_everywhere(void **state) {
         recover(&l, 0, false, &no_limits, &first);
         assert_true(first.at[SPARE][0] == 0 && first.at[SPARE][1] == 0 && first.at[SPARE][2] == 0);
         for (int k = 0; k < kernel_count; k++)
-            for (int watch = 0; watch < 2; watch++) {
-                assert_true(recover(&l, k, watch, &no_limits, &f) == -1);
+            for (int monitor = 0; monitor < 2; monitor++) {
+                assert_true(recover(&l, k, monitor, &no_limits, &f) == -1);
                 assert_memory_equal(&f, &first, sizeof f);
                 compared++;
             }
@@ -291,27 +292,27 @@ static void limits_name_their_lane(void **state) {
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 int64_t own = (BLOCKS - 1) * LAR_BLOCK + lane;
                 make_loose(&l, law, lane);
-                for (int watch = 0; watch < 2; watch++) {
+                for (int monitor = 0; monitor < 2; monitor++) {
                     move_element(&l, false, 0); /* at rest */
-                    assert_true(recover(&l, k, watch, &limits, &f) == -1);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == -1);
                     move_element(&l, false, -0.1 * size); /* F11 = 0.8 */
-                    assert_true(recover(&l, k, watch, &limits, &f) == -1);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == -1);
                     move_element(&l, false, -0.49 * size); /* F11 = 0.02: nearly flat */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, -0.6 * size); /* F11 = -0.2: inverted */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, 20 * size); /* F11 = 41: too much stress */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, NAN);
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, 0);
                     l.u[7][1] = NAN; /* one number of one node */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     l.u[7][1] = INFINITY;
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     l.u[7][1] = 0;
                     move_element(&l, true, size); /* hourglass: seen by a watching call only */
-                    assert_true(recover(&l, k, watch, &limits, &f) == (watch ? own : -1));
+                    assert_true(recover(&l, k, monitor, &limits, &f) == (monitor ? own : -1));
                 }
                 /* two bad elements: the first in order is named */
                 move_element(&l, false, -0.6 * size);

@@ -131,18 +131,18 @@ static void make_body(body *b, uint64_t *seed, int turn, lar_law law, lar_block_
 
 /* The first lane of those that the kernel names, or -1. */
 static int64_t recover_run(int k, const lar_block_run *run, const double *u, int64_t *force,
-                           const lar_hex8_limits *limits, bool watch) {
+                           const lar_hex8_limits *limits, bool monitor) {
     static int32_t lane[MAX * LAR_BLOCK];
     static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
     for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
     static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
-    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(run, u, force, limits, watch ? &listed : NULL);
+    lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
+    int64_t found = kernels[k]->recover(run, u, force, limits, monitor ? &listed : NULL);
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
 static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, int count,
-                       const lar_hex8_limits *limits, bool watch, forces *f) {
+                       const lar_hex8_limits *limits, bool monitor, forces *f) {
     lar_block_run run = {.law = b->law,
                          .shape = boxes ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL,
                          .rows = joined,
@@ -150,7 +150,7 @@ static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, 
                          .count = count,
                          .blocks = boxes ? (const void *)b->box : b->general};
     memset(f, 0, sizeof *f);
-    return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, watch);
+    return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, monitor);
 }
 
 static const lar_hex8_limits no_limits = {-INFINITY, INFINITY, INFINITY};
@@ -176,9 +176,9 @@ static void every_kind_gives_the_same_bits(void **state) {
                     assert_true(count == 0 ? max == 0 : max > 1000000);
                     for (int k = 0; k < kernel_count; k++)
                         for (int form = 0; form < 4; form++) {
-                            bool boxes = turn >= 0 && form / 2, watch = form % 2;
+                            bool boxes = turn >= 0 && form / 2, monitor = form % 2;
                             assert_true(recover(&b, k, boxes, (lar_block_rows)joined, count,
-                                                &no_limits, watch, &f) == -1);
+                                                &no_limits, monitor, &f) == -1);
                             assert_memory_equal(&f, &expected, sizeof f);
                             compared++;
                         }
@@ -192,13 +192,13 @@ static void every_kind_gives_the_same_bits(void **state) {
 
 /* Squeezes, stretches or spoils one element of an otherwise resting body by the node in its middle
  * (`corner` 6 of place p), which only it and its neighbours in the row see. */
-static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool watch,
+static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool monitor,
                       const lar_hex8_limits *limits) {
     static forces f, loose;
     double *at = b->u[b->general[n / 8].head.node[6][n % 8] / 4];
     memcpy(at, u, 3 * sizeof *u);
-    int64_t lane = recover(b, k, boxes, b->rows, MAX, limits, watch, &f);
-    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MAX, limits, watch, &loose));
+    int64_t lane = recover(b, k, boxes, b->rows, MAX, limits, monitor, &f);
+    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MAX, limits, monitor, &loose));
     memset(at, 0, 3 * sizeof *at);
     return lane;
 }
@@ -230,14 +230,14 @@ static void limits_are_reported_in_every_kind(void **state) {
                 for (int n = 0; n < LANES; n += n % 8 == 7 && n < 56 ? 25 : 1)
                     for (int form = 0; form < 4 * kernel_count; form++) {
                         int k = form / 4;
-                        bool boxes = turn >= 0 && form % 2, watch = form / 2 % 2;
+                        bool boxes = turn >= 0 && form % 2, monitor = form / 2 % 2;
                         int64_t own = first_with_node(&b, n);
-                        assert_true(beyond(&b, k, boxes, n, nothing, watch, &limits) == -1);
-                        assert_true(beyond(&b, k, boxes, n, spoiled, watch, &limits) == own);
-                        assert_true(beyond(&b, k, boxes, n, endless, watch, &limits) == own);
-                        assert_true(beyond(&b, k, boxes, n, far, watch, &limits) == own);
-                        assert_true(beyond(&b, k, boxes, n, bent, watch, &limits) ==
-                                    (watch ? own : -1));
+                        assert_true(beyond(&b, k, boxes, n, nothing, monitor, &limits) == -1);
+                        assert_true(beyond(&b, k, boxes, n, spoiled, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, endless, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, far, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, bent, monitor, &limits) ==
+                                    (monitor ? own : -1));
                     }
             }
 }

@@ -11,7 +11,7 @@
 
 #include "meshing/starter/elastic_factor.h"
 
-enum { MAX = 40, ROWS = MAX * LAR_BLOCK };
+enum { MAX = 40, ROWS = MAX * LAR_FACTOR_BLOCK };
 
 typedef struct problem {
     int32_t count, place[MAX];
@@ -46,7 +46,7 @@ static void lay(problem *p) {
 }
 
 static void put(problem *p, int32_t row, int32_t column, int i, int k, double value) {
-    const int32_t r = row * LAR_BLOCK + i, c = column * LAR_BLOCK + k;
+    const int32_t r = row * LAR_FACTOR_BLOCK + i, c = column * LAR_FACTOR_BLOCK + k;
     if (row < column || (row == column && i < k)) return;
     (*lar_factor_at(&p->factor, row, column))[i][k] += value;
     p->dense[r][c] += value;
@@ -56,19 +56,19 @@ static void put(problem *p, int32_t row, int32_t column, int i, int k, double va
 /* Each pair is held together by springs v v^T, each unknown to the ground by some stiffness. */
 static void fill(problem *p, uint32_t seed, double ground) {
     for (size_t s = 0; s < p->pairs; s++)
-        for (int spring = 0; spring < LAR_BLOCK; spring++) {
-            double v[2][LAR_BLOCK];
+        for (int spring = 0; spring < LAR_FACTOR_BLOCK; spring++) {
+            double v[2][LAR_FACTOR_BLOCK];
             const int32_t at[2] = {p->place[p->pair[s][0]], p->place[p->pair[s][1]]};
             for (int e = 0; e < 2; e++)
-                for (int i = 0; i < LAR_BLOCK; i++) v[e][i] = any(&seed);
+                for (int i = 0; i < LAR_FACTOR_BLOCK; i++) v[e][i] = any(&seed);
             for (int e = 0; e < 2; e++)
                 for (int f = 0; f < 2; f++)
-                    for (int i = 0; i < LAR_BLOCK; i++)
-                        for (int k = 0; k < LAR_BLOCK; k++)
+                    for (int i = 0; i < LAR_FACTOR_BLOCK; i++)
+                        for (int k = 0; k < LAR_FACTOR_BLOCK; k++)
                             put(p, at[e], at[f], i, k, v[e][i] * v[f][k]);
         }
     for (int32_t n = 0; n < p->count; n++)
-        for (int i = 0; i < LAR_BLOCK; i++) put(p, n, n, i, i, ground);
+        for (int i = 0; i < LAR_FACTOR_BLOCK; i++) put(p, n, n, i, i, ground);
 }
 
 /* The largest that is left of the loads. */
@@ -76,7 +76,7 @@ static double solve(problem *p) {
     static lar_loads x[ROWS], f[ROWS];
     uint32_t seed = 5;
     double max = 0;
-    const int32_t rows = p->count * LAR_BLOCK;
+    const int32_t rows = p->count * LAR_FACTOR_BLOCK;
     for (int32_t r = 0; r < rows; r++)
         for (int l = 0; l < LAR_LOADS; l++) x[r][l] = f[r][l] = any(&seed);
     lar_factor_solve(&p->factor, x);
@@ -148,22 +148,23 @@ static void pieces_and_single_ones_are_solved_each_for_itself(void **state) {
 /* A number that follows from another one has no stiffness of its own. */
 static void what_depends_on_others_is_left_out(void **state) {
     (void)state;
-    static lar_loads x[2 * LAR_BLOCK];
+    static lar_loads x[2 * LAR_FACTOR_BLOCK];
     static problem p;
     memset(&p, 0, sizeof p);
     p.count = 2;
     know(&p, 0, 1);
     lay(&p);
     for (int n = 0; n < 2; n++)
-        for (int i = 0; i < LAR_BLOCK - 1; i++) put(&p, n, n, i, i, 2);
+        for (int i = 0; i < LAR_FACTOR_BLOCK - 1; i++) put(&p, n, n, i, i, 2);
     put(&p, 1, 0, 2, 1, 2); /* 2 of column 1 is 1 of column 0 again */
     assert_int_equal(lar_factor_compute(&p.factor, &p.error), LAR_OK);
-    for (int r = 0; r < 2 * LAR_BLOCK; r++)
+    for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
         for (int l = 0; l < LAR_LOADS; l++) x[r][l] = 1;
     lar_factor_solve(&p.factor, x);
-    for (int r = 0; r < 2 * LAR_BLOCK; r++)
+    for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
         for (int l = 0; l < LAR_LOADS; l++) {
-            const bool left_out = r % LAR_BLOCK == LAR_BLOCK - 1 || r == LAR_BLOCK + 2;
+            const bool left_out =
+                r % LAR_FACTOR_BLOCK == LAR_FACTOR_BLOCK - 1 || r == LAR_FACTOR_BLOCK + 2;
             assert_true(fabs(x[r][l] - (left_out ? 0 : 0.5)) < 1e-12);
         }
     lar_factor_clear(&p.factor);

@@ -9,8 +9,8 @@ static double sag[BAR_NODES];
 
 /* Held at the left end, the right one is the handle; extra supports under it, at the lower end of
  * y. */
-static lar_motion with_extra_supports(const lar_meshing *m, int32_t *extra_supports) {
-    lar_motion motion;
+static lar_sag with_extra_supports(const lar_meshing *m, int32_t *extra_supports) {
+    lar_sag motion;
     bool carried;
     memset(extra, 0, sizeof extra);
     bar_mark(m, 0, held);
@@ -25,10 +25,10 @@ static lar_motion with_extra_supports(const lar_meshing *m, int32_t *extra_suppo
 static void a_soft_bar_is_carried(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
-    lar_motion motion, again;
+    lar_sag motion, again;
     int32_t extra_supports = 0, nodes = 0;
     bar_mark(&m, 0, held);
-    assert_int_equal(lar_motion_estimate(&m, held, handle, 0, &motion, sag, &error), LAR_OK);
+    assert_int_equal(lar_sag_estimate(&m, held, handle, 0, &motion, sag, &error), LAR_OK);
     assert_true(sag[BAR_NODES - 1] > 0.25 * BAR_LENGTH);
     double slowest = motion.slowest;
     motion = with_extra_supports(&m, &extra_supports);
@@ -40,7 +40,7 @@ static void a_soft_bar_is_carried(void **state) {
         all[n] = held[n] || extra[n];
     }
     assert_in_range(nodes, 4, BAR_NODES / 10);
-    assert_int_equal(lar_motion_estimate(&m, all, handle, 0, &again, sag, &error), LAR_OK);
+    assert_int_equal(lar_sag_estimate(&m, all, handle, 0, &again, sag, &error), LAR_OK);
     assert_true(again.slowest == motion.slowest && again.compliance == motion.compliance);
     for (int n = 0; n < BAR_NODES; n++) assert_true(sag[n] <= 0.15 * BAR_LENGTH);
 }
@@ -50,7 +50,7 @@ static void a_soft_bar_is_carried(void **state) {
 static void the_handle_gives_way_where_it_must(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
-    lar_motion motion;
+    lar_sag motion;
     int32_t extra_supports = 0, left = 0;
     bool carried = false;
     memset(extra, 0, sizeof extra);

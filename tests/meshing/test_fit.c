@@ -425,19 +425,19 @@ typedef struct witness {
     bool ordered;
 } witness;
 
-static bool witness_watch(void *context, double part) {
+static bool witness_progress(void *context, double part) {
     witness *seen = context;
     seen->ordered = seen->ordered && part >= seen->last && part <= 1;
     seen->last = part;
     return ++seen->calls != seen->stop_at;
 }
 
-static void test_watch_is_told_and_stops(void **state) {
+static void progress_is_told_and_stops(void **state) {
     (void)state;
     fitted body;
     lar_error error = {0};
     witness seen = {.ordered = true};
-    lar_fit_options options = {.watch = witness_watch, .context = &seen};
+    lar_fit_options options = {.progress = witness_progress, .context = &seen};
     begin_small(&body);
     double first[3];
     memcpy(first, body.unfitted.mesh.position[0], sizeof first);
@@ -598,7 +598,7 @@ int main(void) {
         cmocka_unit_test(test_walls_of_a_slot_stay_apart),
         cmocka_unit_test(test_faces_of_real_organs_stay_apart),
         cmocka_unit_test(test_same_bits_twice),
-        cmocka_unit_test(test_watch_is_told_and_stops),
+        cmocka_unit_test(progress_is_told_and_stops),
         cmocka_unit_test(test_floor_and_aim_are_kept),
         cmocka_unit_test(test_inverted_element_is_refused),
         cmocka_unit_test(test_energy_and_its_derivatives),

@@ -248,7 +248,7 @@ typedef struct patience {
     int told, max;
 } patience;
 
-static int watch(void *context, const char *what, double part) {
+static int progress(void *context, const char *what, double part) {
     patience *p = context;
     assert_true(*what && part >= 0 && part <= 1);
     return p->told++ < p->max;
@@ -258,7 +258,7 @@ static void it_can_be_stopped(void **state) {
     (void)state;
     static const char *const image[] = {ELLIPSOID};
     patience p = {.max = 1000000};
-    lar_meshing_options o = {.elements = 200, .watch = watch, .context = &p};
+    lar_meshing_options o = {.elements = 200, .progress = progress, .context = &p};
     lar_meshing_destroy(made(ELLIPSOID, &o));
     int all = p.told;
     assert_true(all >= 5);

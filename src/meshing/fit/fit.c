@@ -53,7 +53,8 @@ static lar_status sweep_apart(lar_fit_work *work, lar_error *error) {
 static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_error *error) {
     for (int32_t n = 0; n < work->mesh->node_count; n++) work->awake[n] = true;
     for (int round = 0; round < ROUNDS; round++) {
-        if (options && options->watch && !options->watch(options->context, (double)round / ROUNDS))
+        if (options && options->progress &&
+            !options->progress(options->context, (double)round / ROUNDS))
             return lar_fail(error, LAR_ERROR_ARGUMENT, "stopped while the mesh was fitted");
         if (round >= BALANCE) {
             lar_status status = lar_fit_volume_balance(work, 0.8, error);

@@ -27,12 +27,12 @@ lar_status lar_unfitted_create(const lar_voxel_grid *voxel_grid, const lar_bound
 void lar_unfitted_clear(lar_unfitted_mesh *unfitted);
 
 /* Told now and then how far it is, 0..1; false asks to stop (LAR_ERROR_ARGUMENT, "stopped"). */
-typedef bool lar_fit_watch(void *context, double part);
+typedef bool lar_fit_progress(void *context, double part);
 
 typedef struct lar_fit_options {
-    double floor;         /* no element's scaled Jacobian falls below; 0: 0.25 */
-    double aim;           /* nine of ten elements shall be above; 0: 0.55 */
-    lar_fit_watch *watch; /* may be NULL */
+    double floor;               /* no element's scaled Jacobian falls below; 0: 0.25 */
+    double aim;                 /* nine of ten elements shall be above; 0: 0.55 */
+    lar_fit_progress *progress; /* may be NULL */
     void *context;
 } lar_fit_options;
 

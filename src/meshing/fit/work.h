@@ -69,7 +69,7 @@ typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
     int32_t *start, *around; /* per node: face * 4 + corner */
     bool *crosses;           /* per face */
-    bool *watched;           /* per node: its faces must stay clear of others */
+    bool *checked;           /* per node: its faces must stay clear of others */
     bool any, all;           /* of nodes */
     bool *strict;            /* per face: clear of neighbours that look the same way too */
     bool *ring;              /* per node: of faces that cross, and around them */

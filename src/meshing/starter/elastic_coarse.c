@@ -121,7 +121,7 @@ static lar_status lay_matrix(lar_coarse *coarse, const lar_elastic *elastic, lar
 static void add_pair(lar_coarse *coarse, const int32_t *node, double K[24][24], int a, int b) {
     const int32_t row = coarse->group[node[a]], column = coarse->group[node[b]];
     if (row < 0 || column < 0 || row < column) return;
-    lar_block *block = lar_factor_at(&coarse->factor, row, column);
+    lar_factor_block *block = lar_factor_at(&coarse->factor, row, column);
     double KP[3][LAR_RIGID] = {{0}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

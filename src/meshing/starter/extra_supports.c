@@ -176,7 +176,7 @@ static int32_t put_extra_supports(search *s, double apart, bool *extra) {
 
 lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *held, int axis,
                                      int sign, bool *handle, int pulled, bool *extra,
-                                     int32_t *count, bool *carried, lar_motion *motion,
+                                     int32_t *count, bool *carried, lar_sag *motion,
                                      lar_error *error) {
     search s;
     double apart = APART;
@@ -185,7 +185,7 @@ lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *hel
     *carried = false;
     lar_status status = begin(&s, meshing, held, handle, axis, sign, error);
     for (int32_t put = 1; !status && put > 0; *count += put) {
-        status = lar_motion_estimate(meshing, s.all, handle, pulled, motion, s.sag, error);
+        status = lar_sag_estimate(meshing, s.all, handle, pulled, motion, s.sag, error);
         *carried = !status && is_carried(&s);
         put = 0;
         for (; !status && !*carried && put == 0 && round < ROUNDS; round++, apart /= 2) {

@@ -12,16 +12,16 @@
 #ifndef LAR_MESHING_STARTER_EXTRA_SUPPORTS_H
 #define LAR_MESHING_STARTER_EXTRA_SUPPORTS_H
 
-#include "meshing/starter/motion.h"
+#include "meshing/starter/sag.h"
 
 /* held: [nodes], by other rules; the extra supports' nodes are added to extra: [nodes], false
  * before. The underside is where the surface looks towards the lower (sign -1) or upper (1) end of
- * an axis within 60 degrees. handle and pulled: as in lar_motion_estimate; extra supports take
+ * an axis within 60 degrees. handle and pulled: as in lar_sag_estimate; extra supports take
  * nodes from the handle where all else is carried. Returns the number of extra supports, whether
  * the body is carried then, and its motion with them. */
 lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *held, int axis,
                                      int sign, bool *handle, int pulled, bool *extra,
-                                     int32_t *count, bool *carried, lar_motion *motion,
+                                     int32_t *count, bool *carried, lar_sag *motion,
                                      lar_error *error);
 
 #endif

@@ -307,7 +307,7 @@ static double rounded(double force) {
     return round(force / digit) * digit;
 }
 
-static void choose_pull(choice *c, int side, const lar_motion *motion) {
+static void choose_pull(choice *c, int side, const lar_sag *motion) {
     lar_support *support = &c->meshing->support;
     double length = 0, force;
     for (int i = 0; i < 3; i++) length = fmax(length, c->upper[i] - c->lower[i]);
@@ -328,7 +328,7 @@ typedef struct marks {
 } marks;
 
 /* Extra supports, where nobody said what holds it and its weight asks for them. */
-static lar_status add_extra_supports(choice *c, int side, const marks *in, lar_motion *motion) {
+static lar_status add_extra_supports(choice *c, int side, const marks *in, lar_sag *motion) {
     lar_support *support = &c->meshing->support;
     int32_t count = 0;
     lar_status status = lar_extra_supports_choose(
@@ -342,7 +342,7 @@ static lar_status add_extra_supports(choice *c, int side, const marks *in, lar_m
 static lar_status choose(choice *c, const char *rule, const marks *in) {
     const lar_mesh *mesh = &c->meshing->mesh;
     lar_support *support = &c->meshing->support;
-    lar_motion motion = {0};
+    lar_sag motion = {0};
     int held_side = -1, side = -1;
     int32_t count = 0, held = 0;
     lar_status status = hold(c, rule, &held_side);
@@ -352,8 +352,8 @@ static lar_status choose(choice *c, const char *rule, const marks *in) {
         support->opposed = mark_handle(c, opposite(side), in->opposed) > 0;
     if (!status && !rule) status = add_extra_supports(c, side, in, &motion);
     if (!status && rule)
-        status = lar_motion_estimate(c->meshing, support->opposed ? in->opposed : c->held,
-                                     in->handle, side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
+        status = lar_sag_estimate(c->meshing, support->opposed ? in->opposed : c->held, in->handle,
+                                  side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
     for (int32_t n = 0; n < mesh->node_count; n++) support->fixed_nodes += c->held[n];
     support->slowest = motion.slowest;
     if (status || side < 0 || (held == 0 && !support->opposed)) return status;

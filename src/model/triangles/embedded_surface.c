@@ -14,12 +14,12 @@
 #include <string.h>
 
 #include "base/parallel_for.h"
-#include "model/triangles/skin.h"
+#include "model/triangles/surface_tree.h"
 
 /* Vertices farther from the body than so many mean edges are another body's. */
 static const double REACH = 2;
 /* Natural coordinates up to so much beyond an element are inside: rounding on shared faces. */
-static const double SKIN = 1e-6;
+static const double OUTER = 1e-6;
 /* What no element holds and the boundary is far from, in the gap that a twisted element leaves, is
  * bound to an element up to so much beyond it. */
 static const double ASIDE = 1.5;
@@ -126,7 +126,7 @@ typedef struct binder {
     /* The tree knows boxes of triangles: one per element stands for the element's box. */
     lar_triangles boxes;
     lar_triangle_tree *box_tree;
-    lar_mesh_skin skin;
+    lar_surface_tree outer;
     lar_embedded_surface *embedded; /* that is made */
     double *outside;                /* [vertices] distance from the body; 0 in it */
 } binder;
@@ -134,7 +134,7 @@ typedef struct binder {
 static void binder_clear(binder *b) {
     lar_triangle_tree_destroy(b->box_tree);
     lar_triangles_clear(&b->boxes);
-    lar_mesh_skin_clear(&b->skin);
+    lar_surface_tree_clear(&b->outer);
     free(b->outside);
 }
 
@@ -183,7 +183,7 @@ static bool try_element(void *context, int32_t element) {
     double corner[8][3], xi[3];
     lar_mesh_corners(s->binder->mesh, element, corner);
     if (!invert((const double(*)[3])corner, s->point, xi)) return true;
-    double out = fmax(largest(xi), 1 - SKIN);
+    double out = fmax(largest(xi), 1 - OUTER);
     if (s->element >= 0 && (out > s->out || (out == s->out && element > s->element))) return true;
     s->element = element;
     s->out = out;
@@ -198,7 +198,8 @@ static lar_status refuse_far(const binder *b, const lar_triangles *surface, int3
     const double *p = surface->vertex[vertex];
     lar_nearest nearest;
     double distance = NAN;
-    if (lar_triangle_tree_nearest(b->skin.tree, p, INFINITY, &nearest)) distance = nearest.distance;
+    if (lar_triangle_tree_nearest(b->outer.tree, p, INFINITY, &nearest))
+        distance = nearest.distance;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: the vertex at (%g, %g, %g) m lies %.3g m from the mesh, farther than "
                     "two of its mean edges (%.3g m each); is it the surface of another body, or "
@@ -224,11 +225,11 @@ static double bind_vertex(const binder *b, int32_t vertex) {
     embedded->element[vertex] = -1;
     if (!isfinite(point[0]) || !isfinite(point[1]) || !isfinite(point[2])) return 0;
     search s = {.binder = b, .point = point, .element = -1};
-    lar_triangle_tree_boxes(b->box_tree, point, point, SKIN * b->mean_edge, try_element, &s);
+    lar_triangle_tree_boxes(b->box_tree, point, point, OUTER * b->mean_edge, try_element, &s);
     lar_nearest nearest;
-    if ((s.element < 0 || s.out > 1 + SKIN) &&
-        lar_triangle_tree_nearest(b->skin.tree, point, REACH * b->mean_edge, &nearest)) {
-        int32_t face = b->skin.face[nearest.triangle / 2];
+    if ((s.element < 0 || s.out > 1 + OUTER) &&
+        lar_triangle_tree_nearest(b->outer.tree, point, REACH * b->mean_edge, &nearest)) {
+        int32_t face = b->outer.face[nearest.triangle / 2];
         s.element = face / 6;
         for (int i = 0; i < 3; i++) s.xi[i] = 0;
         for (int c = 0; c < 3; c++) {
@@ -282,7 +283,7 @@ lar_status lar_embedded_surface_bind(const lar_mesh *mesh, lar_triangles *surfac
     if (!embedded->element || !embedded->weight)
         status = lar_fail_memory(error, 36 * vertices, "a surface that rides on the mesh");
     if (!status) status = make_boxes(&b, error);
-    if (!status) status = lar_mesh_skin_create(mesh, &b.skin, error);
+    if (!status) status = lar_surface_tree_create(mesh, &b.outer, error);
     if (!status) status = bind_all(&b, error);
     binder_clear(&b);
     if (status) lar_embedded_surface_clear(embedded);

@@ -73,7 +73,7 @@ lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *si
     if (asked_to_stop(&s)) return LAR_OK;
     s.begin = lar_clock_ns();
     s.look = s.begin + (glance ? nanoseconds(glance->every) : 0);
-    return lar_simulation_advance_watched(simulation, steps, after_step, &s, error);
+    return lar_simulation_advance_with(simulation, steps, after_step, &s, error);
 }
 
 double lar_step_clock_elapsed(const lar_step_clock *step_clock) {

@@ -236,7 +236,7 @@ static lar_status swings(const lar_model *model, lar_precision way, lar_isa isa,
         lar_simulation_energy(r.simulation, &e);
         const double begin = e.kinetic;
         domain->time_step *= factor;
-        domain->motion.dt *= factor;
+        domain->leapfrog.dt *= factor;
         for (lar_lid n = 0; n < domain->layout.node_padded; n++) domain->push[n] *= factor;
         *answer = !lar_simulation_advance(r.simulation, steps, error);
         lar_simulation_energy(r.simulation, &e);

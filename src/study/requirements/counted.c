@@ -278,7 +278,7 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
                         const double *push, lar_operations *counts) {
     enum { NODES = 8 };
     counted wide_u[4 * NODES], wide_v[4 * NODES], wide_push[NODES], fastest = 0;
-    const lar_motion motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
+    const lar_leapfrog motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
     widen(u, 4 * NODES, wide_u);
     widen(v, 4 * NODES, wide_v);
     widen(push, NODES, wide_push);

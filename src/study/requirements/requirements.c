@@ -20,7 +20,7 @@ _Static_assert(LAR_REQUIREMENTS_SCHEMES == (int)LAR_SCHEMES, "there is a place f
 _Static_assert(LAR_REQUIREMENTS_SHAPES == (int)LAR_SHAPE_COUNT, "there is a place for each shape");
 
 static void tell(const lar_requirements_options *options, const char *what) {
-    if (options->watch) options->watch(options->context, what);
+    if (options->progress) options->progress(options->context, what);
 }
 
 /* ---- counted from the mesh ---------------------------------------------------------------- */

@@ -27,7 +27,7 @@ typedef struct lar_requirements_options {
     double iterations;        /* n_it; 0: the thesis's 100 */
     double implicit_step;     /* dt_im [s]; 0: the thesis's 20 ms */
     bool measure;             /* step times on this machine, some tenths of a second */
-    void (*watch)(void *context, const char *what); /* called before each part; or NULL */
+    void (*progress)(void *context, const char *what); /* called before each part; or NULL */
     void *context;
 } lar_requirements_options;
 

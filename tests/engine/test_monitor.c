@@ -108,7 +108,7 @@ static void a_node_that_is_too_fast_is_named(void **unused) {
     int32_t node = brick_node(&b, 3, 2, 2);
     model->mesh.node_id[node] = 815;
     lar_simulation *simulation = start(model);
-    double limit = simulation->domain.motion.speed;
+    double limit = simulation->domain.leapfrog.speed;
     lar_simulation_destroy(simulation);
     throw_node(model, node, (double[]){0, 1.5 * limit, 0});
     simulation = start(model);

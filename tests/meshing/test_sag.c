@@ -1,19 +1,19 @@
 /* How bodies will move, against beams that books have the answer for. */
 #include "bars.h"
 
-#include "meshing/starter/motion.h"
+#include "meshing/starter/sag.h"
 
 static lar_error error;
 static bool held[BAR_NODES], handle[BAR_NODES];
 static double sag[BAR_NODES];
 
 /* Held at the left end, pulled at the right one along an axis. */
-static lar_motion motion_of(double height, int axis) {
+static lar_sag motion_of(double height, int axis) {
     lar_meshing m = bar(height);
-    lar_motion motion;
+    lar_sag motion;
     bar_mark(&m, 0, held);
     bar_mark(&m, BAR_LENGTH, handle);
-    if (lar_motion_estimate(&m, held, handle, axis, &motion, sag, &error))
+    if (lar_sag_estimate(&m, held, handle, axis, &motion, sag, &error))
         fail_msg("%s", error.message);
     return motion;
 }
@@ -55,14 +55,14 @@ static void its_end_sags_most(void **state) {
 static void what_nothing_holds_is_left_out(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
-    lar_motion motion;
+    lar_sag motion;
     const bool none[BAR_NODES] = {false};
-    assert_int_equal(lar_motion_estimate(&m, none, none, 0, &motion, sag, &error), LAR_OK);
+    assert_int_equal(lar_sag_estimate(&m, none, none, 0, &motion, sag, &error), LAR_OK);
     assert_true(motion.slowest == 0 && motion.compliance == 0 && sag[0] == 0);
     bar_mark(&m, 0, held);
     bar_mark(&m, BAR_LENGTH, handle);
     m.region[0].held = true; /* bone, all of it */
-    assert_int_equal(lar_motion_estimate(&m, held, handle, 0, &motion, NULL, &error), LAR_OK);
+    assert_int_equal(lar_sag_estimate(&m, held, handle, 0, &motion, NULL, &error), LAR_OK);
     assert_true(motion.slowest == 0 && motion.compliance == 0);
 }
 

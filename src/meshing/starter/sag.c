@@ -1,4 +1,4 @@
-#include "meshing/starter/motion.h"
+#include "meshing/starter/sag.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -88,10 +88,10 @@ static void find_sag(const solution *s, double *sag) {
     }
 }
 
-lar_status lar_motion_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
-                               int axis, lar_motion *motion, double *sag, lar_error *error) {
+lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
+                            int axis, lar_sag *motion, double *sag, lar_error *error) {
     solution s = {0};
-    *motion = (lar_motion){0};
+    *motion = (lar_sag){0};
     lar_status status = prepare(&s, meshing, held, error);
     if (!status) {
         apply_loads(&s, handle, axis);

@@ -6,21 +6,21 @@
  *     w^2 = u K u / u M u,
  * is never below the slowest motion's and mostly a tenth or two above it (Rayleigh 1877; Temple and
  * Bickley 1933). The least of the four is taken. */
-#ifndef LAR_MESHING_STARTER_MOTION_H
-#define LAR_MESHING_STARTER_MOTION_H
+#ifndef LAR_MESHING_STARTER_SAG_H
+#define LAR_MESHING_STARTER_SAG_H
 
 #include "meshing/meshing.h"
 
-typedef struct lar_motion {
+typedef struct lar_sag {
     double slowest;    /* [1/s] angular frequency of the slowest natural motion; 0: nothing moves */
     double compliance; /* [m/N] how far a force at the handle moves it, in the mean */
-} lar_motion;
+} lar_sag;
 
 /* held, handle: [nodes]; the handle is pulled along this axis of the world. What hangs together
  * with nothing that is held is left out. sag: [nodes], or NULL: how far the weight would move each
  * node, the worst of three directions [m], were it that stiff all the way. The regions' information
  * must be there. */
-lar_status lar_motion_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
-                               int axis, lar_motion *motion, double *sag, lar_error *error);
+lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
+                            int axis, lar_sag *motion, double *sag, lar_error *error);
 
 #endif

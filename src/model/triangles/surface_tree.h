@@ -5,20 +5,20 @@
  *     | / 0 |
  *     0-----1
  */
-#ifndef LAR_MODEL_TRIANGLES_SKIN_H
-#define LAR_MODEL_TRIANGLES_SKIN_H
+#ifndef LAR_MODEL_TRIANGLES_SURFACE_TREE_H
+#define LAR_MODEL_TRIANGLES_SURFACE_TREE_H
 
 #include "model/mesh/mesh.h"
 #include "model/triangles/tree.h"
 
-typedef struct lar_mesh_skin {
+typedef struct lar_surface_tree {
     int32_t *face;           /* [faces] element * 6 + local face, ascending */
     lar_triangles triangles; /* [2 faces]; its vertices are the mesh's nodes, lent */
     lar_triangle_tree *tree;
-} lar_mesh_skin;
+} lar_surface_tree;
 
 /* Into a zeroed one, of a mesh that outlives it unmoved. The caller clears in any case. */
-lar_status lar_mesh_skin_create(const lar_mesh *mesh, lar_mesh_skin *skin, lar_error *error);
-void lar_mesh_skin_clear(lar_mesh_skin *skin); /* a zeroed one is fine */
+lar_status lar_surface_tree_create(const lar_mesh *mesh, lar_surface_tree *outer, lar_error *error);
+void lar_surface_tree_clear(lar_surface_tree *outer); /* a zeroed one is fine */
 
 #endif
