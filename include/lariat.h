@@ -25,6 +25,10 @@
  * use scratch memory inside it, though never change what another call returns. A SESSION takes a
  * simulation over and computes on a thread of its own; all its calls may come from any thread.
  * While it does, calls that change the simulation are refused.
+ *
+ * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
+ * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:
+ * docs/glossary.md.
  */
 #ifndef LARIAT_H
 #define LARIAT_H
@@ -46,14 +50,14 @@ extern "C" {
 
 typedef enum lar_status {
     LAR_OK = 0,
-    LAR_ERROR_ARGUMENT,    /* a call or a command line that makes no sense */
+    LAR_ERROR_ARGUMENT,    /* an invalid argument of a call or a command line */
     LAR_ERROR_IO,          /* a file or folder that cannot be read or written */
     LAR_ERROR_FORMAT,      /* a file that is damaged or breaks its format */
     LAR_ERROR_MODEL,       /* a readable model that cannot be simulated */
-    LAR_ERROR_UNSUPPORTED, /* something sensible that Lariat does not do */
+    LAR_ERROR_UNSUPPORTED, /* a valid request that Lariat does not support */
     LAR_ERROR_MEMORY,      /* the system refuses memory */
-    LAR_ERROR_UNSTABLE,    /* a run that left the range in which its results mean something */
-    LAR_ERROR_PEER         /* another processor that is lost, silent or does not fit */
+    LAR_ERROR_UNSTABLE,    /* a run that became unstable: its results mean nothing */
+    LAR_ERROR_PEER         /* another processor that is lost, silent or incompatible */
 } lar_status;
 
 typedef struct lar_error {
@@ -145,7 +149,7 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
-/* A fine surface that rides on the mesh, for display (scene key `surface`). */
+/* A fine surface embedded in the mesh, for display (scene key `surface`). */
 typedef struct lar_embedded_info {
     int32_t vertices, triangles;
     const int32_t (*triangle)[3]; /* [triangles] vertices, counter-clockwise seen from outside */
@@ -231,7 +235,7 @@ LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
 
 /* ---- meshing: from a scan to a model ------------------------------------------------------ */
 
-/* How good a mesh is, and how well it stands for a true surface. */
+/* Mesh quality, and distance from a true surface. */
 typedef struct lar_mesh_quality {
     int32_t jacobian_bin[10];   /* elements by scaled Jacobian, bins of 0.1 from 0 */
     double above_02, above_05;  /* parts of the elements, 0..1 */
@@ -245,14 +249,14 @@ typedef struct lar_mesh_quality {
 } lar_mesh_quality;
 
 /* Compares a model's mesh with a surface (.stl .obj .vtk .vtp, in the model's metres times
- * `scale`), or with the fine surface that rides on it (against NULL); without either the deviations
+ * `scale`), or with its embedded surface (against NULL); without either the deviations
  * and true_volume are 0. */
 LAR_API lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
                                      lar_mesh_quality *quality, lar_error *error);
 
 typedef struct lar_meshing lar_meshing;
 
-/* Told now and then what is being done and how much of it is, 0..1; 0 from it asks to stop. */
+/* Progress callback: stage and fraction done (0..1). Return 0 to cancel. */
 typedef int lar_meshing_progress(void *context, const char *what, double part);
 
 typedef struct lar_meshing_options {
@@ -319,7 +323,7 @@ LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *i
 LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
                                       lar_region_info *info, lar_error *error);
 
-/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, to ride on it)
+/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, embedded in it)
  * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
  * missing; files that are there are replaced, each whole. *scene (may be NULL): the scene's path,
  * freed with the meshing. */
@@ -560,7 +564,7 @@ typedef struct lar_results lar_results;
  * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
-/* The same, and the fine surface that rides on the mesh, if any, in every frame (.vtp), which takes
+/* The same, and the embedded surface, if any, in every frame (.vtp), which takes
  * many times the room; lar_results_open writes it only where the scene's output says so. */
 LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                             lar_results **results, lar_error *error);
@@ -628,7 +632,7 @@ LAR_API int lar_model_until_rest(const lar_model *model);
  *                   tool_force <-- latest <--------    tools, steps, forces, snapshot, pace
  *                   snapshot   <-- when asked for --
  *
- * A session advances a simulation on a thread of its own, at the pace of the clock, and exchanges
+ * A session advances a simulation in real time, on a thread of its own, and exchanges
  * tools' positions and forces once in a tick. All calls may come from any thread; none makes the
  * engine wait. docs/session.md.
  */
@@ -727,17 +731,17 @@ LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t too
 LAR_API lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                                       lar_error *error);
 
-/* How a tool's device goes. Zero where its kind has no such thing. */
+/* Status of a tool's device. Zero where its kind has no such number. */
 typedef struct lar_device_status {
     const char *name;  /* as it was attached, lives as long as the session; NULL: no device */
     int port;          /* where it listens */
-    int connected;     /* not 0: somebody holds it now */
+    int connected;     /* not 0: a client is connected now */
     uint64_t received; /* positions taken */
     uint64_t answered; /* forces sent */
-    uint64_t refused;  /* packets that are none, or of somebody else */
+    uint64_t refused;  /* malformed packets, or packets from another sender */
     uint64_t late;     /* packets that came after a newer one, or twice */
     uint64_t lost;     /* sequence numbers that never came */
-    uint64_t timeouts; /* times that it fell silent */
+    uint64_t timeouts; /* times that no packet came for too long */
     double answer_p50, answer_p99, answer_p999, answer_max; /* packet in to force out [s] */
 } lar_device_status;
 
@@ -766,7 +770,7 @@ typedef enum lar_slow_cause {
 enum { LAR_TIME_BINS = 40 };
 LAR_API double lar_time_bin(int bin); /* 1.024 us for bin 0 [s] */
 
-/* How it goes. Times are of the clock, in seconds; rates over about the last second. */
+/* Status of a session. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
     uint64_t step;

@@ -51,7 +51,7 @@ static void print_report(const lar_device_client_report *r) {
            "%%\n",
            "engine", r->steps, 100 * (double)r->touching / (double)r->answered,
            100 * (double)r->holding / (double)r->answered);
-    if (r->strange) printf("%-12s%" PRIu64 " packets that are none\n", "strange", r->strange);
+    if (r->strange) printf("%-12s%" PRIu64 " malformed packets\n", "strange", r->strange);
 }
 
 static int device_main(int argc, char **argv) {

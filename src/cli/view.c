@@ -484,7 +484,7 @@ const cli_command cli_view = {
     .summary = "simulate a scene in real time, to see and to pull at in the browser",
     .arguments = "SCENE",
     .description =
-        "Simulates a scene at the pace of the clock and serves a viewer, whose address is "
+        "Simulates a scene in real time and serves a viewer, whose address is "
         "printed:\n"
         "take hold of the organ with the mouse and pull. Only this machine can reach it unless\n"
         "--listen says otherwise. Ctrl-C ends it with a report; when the run breaks, the viewer\n"

@@ -295,7 +295,7 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
             if (backend->progress) {
                 lar_status status = backend->progress(comm, peer);
                 if (load_tail(tail) == step) return LAR_OK;
-                /* The peer may obey a verdict that has not come here yet: giving up waits for it.
+                /* The peer may act on a verdict that has not come here yet: giving up waits for it.
                  */
                 if (status) return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
             } else {

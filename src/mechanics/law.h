@@ -11,7 +11,7 @@
  *   lar_lane lar_NAME_energy(F[9], J, I1, p[3])
  *       energy per reference volume (times the factor).
  *
- * No libm, no branch on the data: the same bits everywhere (DESIGN 5).
+ * No libm, no branch on the data: the same bits everywhere (docs/determinism.md).
  */
 #ifndef LAR_MECHANICS_LAW_H
 #define LAR_MECHANICS_LAW_H

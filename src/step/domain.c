@@ -304,7 +304,7 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
 }
 
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
- * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (DESIGN 5). */
+ * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (docs/theory.md). */
 static void choose_scale(lar_domain *domain) {
     const lar_model *model = domain->model;
     double characteristic = DBL_MIN;

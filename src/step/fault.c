@@ -80,7 +80,7 @@ static const char *describe_action(const lar_domain *domain, const lar_fault *fa
     if (!(fault->volume_ratio > domain->limits.min_volume)) return "turns inside out or crushes";
     if (fault->growth * domain->time_step > domain->stable_step)
         return "squeezes more than the time step allows";
-    return "loads beyond all reason";
+    return "exceeds the force limit at";
 }
 
 static lar_status report_element(const lar_domain *domain, const lar_fault *fault,
@@ -105,7 +105,7 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
         cause = "is squeezed so much that the time step has become too large for it";
         remedy = "use a smaller time step or a stiffer or finer mesh there";
     } else {
-        cause = "carries a force beyond all reason";
+        cause = "exceeds the force limit";
         remedy = "use a smaller time step, or slower or smaller loads";
     }
     return lar_fail(error, LAR_ERROR_UNSTABLE,
@@ -141,7 +141,8 @@ static lar_status report_speed(const lar_domain *domain, const lar_fault *fault,
     const lar_mesh *mesh = &domain->model->mesh;
     lar_gid node = fault->element;
     const double *place = fault->place, highest = fault->speed;
-    if (fault->tool > 0) return lar_fault_report_tool(domain, fault, "hurls away", error);
+    if (fault->tool > 0)
+        return lar_fault_report_tool(domain, fault, "exceeds the speed limit at", error);
     if (!isfinite(highest))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
@@ -199,9 +200,11 @@ static lar_status report_too_fast(const lar_domain *domain, const lar_fault *fau
               "them"
             : "";
     if (fault->tool > 0)
-        return lar_fault_report_tool(
-            domain, fault,
-            fault->too_many_pairs ? "crowds the surface and hurls away" : "hurls away", error);
+        return lar_fault_report_tool(domain, fault,
+                                     fault->too_many_pairs
+                                         ? "crowds the surface and exceeds the speed limit at"
+                                         : "exceeds the speed limit at",
+                                     error);
     if (fault->element < 0)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "unstable at step %llu (%.6g s): the surface became so fast within a few "

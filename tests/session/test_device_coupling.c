@@ -143,7 +143,7 @@ static double tremble(world *w, int ticks) {
 
 /* What was lost on the way is not credit for later; and an account that is empty fills again when
  * the hand works. */
-static void test_account_is_honest(void **state) {
+static void test_account_is_exact(void **state) {
     (void)state;
     world w = start(&PROBE, 3000, 0.01);
     for (int i = 0; i < 4000; i++) tick(&w, 0, 0.01 * cos(0.02 * i));
@@ -394,7 +394,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hand_never_gets_more_than_it_gave),
         cmocka_unit_test(test_trembling_is_not_fed),
-        cmocka_unit_test(test_account_is_honest),
+        cmocka_unit_test(test_account_is_exact),
         cmocka_unit_test(test_bunches_are_no_blow),
         cmocka_unit_test(test_unsteady_positions_are_felt),
         cmocka_unit_test(test_device_rests_on_stiff_wall),

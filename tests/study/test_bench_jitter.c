@@ -1,4 +1,4 @@
-/* Ticks are counted and add up; how punctual they are is not tested. */
+/* Ticks are counted and add up; their jitter is not tested. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

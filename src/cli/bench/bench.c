@@ -136,7 +136,7 @@ const cli_command cli_bench = {
         "  step      time of whole steps of a scene, the demonstration organ's or yours\n"
         "  comm      latency and bandwidth between processors, for every backend\n"
         "  scaling   time of a step with several processors, against one\n"
-        "  jitter    how punctual this machine is, a thousand times a second\n"
+        "  jitter    timer jitter and scheduling latency, a thousand times a second\n"
         "  precision what single precision would lose and win\n"
         "  implicit  the same slow loading, implicitly and explicitly\n"
         "and has options of its own: lariat bench kernel --help",

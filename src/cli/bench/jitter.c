@@ -1,4 +1,4 @@
-/* lariat bench jitter: how punctual this machine is. */
+/* lariat bench jitter: timer jitter and scheduling latency of this machine. */
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -106,7 +106,7 @@ static int jitter_main(int argc, char **argv) {
 
 const cli_command cli_bench_jitter = {
     .name = "bench jitter",
-    .summary = "how punctual this machine is, a thousand times a second",
+    .summary = "timer jitter and scheduling latency, a thousand times a second",
     .arguments = "",
     .description =
         "A thread wakes every millisecond as a session's does, and computes nothing, or for as\n"

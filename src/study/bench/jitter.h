@@ -1,4 +1,4 @@
-/* How punctual this machine is: a thread that wakes a thousand times a second, as a session's does
+/* Timer jitter and scheduling latency: a thread that wakes a thousand times a second, as a session's does
  * (base/deadline_clock.h), and does nothing, or computes for a given time.
  *
  *     due          due          due          due
