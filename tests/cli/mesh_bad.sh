@@ -130,7 +130,7 @@ in_short_if_sanitized || {
     expect 0 "$LARIAT" mesh liver.obj --scale 0.0005 --elements 100 --force --out units
     complains 'note: the body holds 0.1667 mm^3, less than a cubic millimetre'
 }
-# Too thin: told before the work; a needle of which half would be lost before max of it.
+# Too thin: told before the work; a needle of which half would be lost before most of it.
 leaf() { sed "s/^v 0 0 \(-*\)1\$/v 0 0 \1$1/" closed.obj; }
 leaf 0.00001 >sheet.obj
 refused 'sheet.obj: the body is too thin for solid elements: .* mm thick' sheet.obj --scale 0.05

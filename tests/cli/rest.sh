@@ -58,7 +58,7 @@ echo "no checkpoint" >"$SCRATCH/hanging/hanging.checkpoint"
 expect 1 "$LARIAT" run "$SCRATCH/hanging.yaml" --steps 10 --out "$SCRATCH/hanging"
 complains 'hanging.checkpoint: '
 
-# Any scene, on request; a time is then the max.
+# Any scene, on request; a time is then the most.
 scene damped "damping: 20" "$hold"
 expect 0 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --json
 [ "$(value_of rest.reached)" = true ] || fail "--until-rest"

@@ -94,7 +94,7 @@ complains 'above the stable step'
 expect 0 "$LARIAT" run "$scene" --time 0.001 --time-step 5e-5 --json
 [ "$(value_of steps)" = 20 ] || fail "0.001 s in steps of 5e-5 s are $(value_of steps) steps"
 
-# Pacing: 0.05 s take at min that long.
+# Pacing: 0.05 s take at least that long.
 expect 0 "$LARIAT" run "$scene" --time 0.05 --realtime --json
 has_keys --numbers deadline_misses
 [ "$(value_of realtime)" = true ] || fail "realtime"

@@ -48,7 +48,7 @@ PROCESSORS = [(208, 112, 102), (110, 160, 180), (232, 190, 110), (140, 168, 120)
               (170, 170, 120), (140, 140, 190)]
 FINE = 2  # drawn so many times larger and averaged: no jagged edges
 INK = (0.16, 0.16, 0.18)
-# Light where nothing happens, dark where max does; the lightness falls evenly.
+# Light where nothing happens, dark where most does; the lightness falls evenly.
 STOPS = [(0.00, (240, 232, 222)), (0.22, (250, 200, 140)), (0.48, (238, 118, 82)),
          (0.74, (180, 44, 92)), (1.00, (66, 16, 82))]
 

@@ -142,9 +142,9 @@ def critical(page, runs):
         cells = []
         for row in run["critical"]:
             if row["name"] == machine:
-                max = f"more than {number(run['elements_most'])}"
+                most = f"more than {number(run['elements_most'])}"
                 cells.append(number(row["elements_per_processor"])
-                             if row["elements_per_processor"] else max)
+                             if row["elements_per_processor"] else most)
         rows.append([machine] + cells)
     page.table(["machine"] + [f"`{scheme}`" for scheme in schemes], rows,
                f"Simulated: the smallest cube of elements on each of {run['processors']} "

@@ -14,7 +14,7 @@ CRITICAL_LARGE = 450         # expected inside a larger grid, 8.3.1
 
 PACKET_BYTES = 424           # mean, figure 7.2
 STEP_BYTES = 40000           # all processors, 4.3
-PROCESSOR_BANDWIDTH = 54e6   # [B/s] of the node that sends max, 8.1
+PROCESSOR_BANDWIDTH = 54e6   # [B/s] of the node that sends most, 8.1
 TOTAL_BANDWIDTH = 225e6      # [B/s] 8.1
 
 # 7.3.1: packets that reach half of the peak bandwidth, and the mean bandwidth for the packets of
