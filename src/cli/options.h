@@ -18,8 +18,8 @@
 typedef enum cli_option_kind {
     OPTION_FLAG,   /* bool *value */
     OPTION_TEXT,   /* const char **value */
-    OPTION_REAL,   /* double *value, least..most */
-    OPTION_COUNT,  /* int64_t *value, least..most */
+    OPTION_REAL,   /* double *value, min..max */
+    OPTION_COUNT,  /* int64_t *value, min..max */
     OPTION_CHOICE, /* int *value: index into choices */
     OPTION_TEXTS,  /* cli_texts *value: may be given again and again */
 } cli_option_kind;

@@ -12,7 +12,7 @@ typedef struct balancer {
     int32_t *from;  /* [processors] where the way came from; itself at its start, -1 unreached */
     int32_t *queue; /* [processors] */
     bool *touch;    /* [processors][processors] */
-    int32_t *set;   /* [incidence->most] */
+    int32_t *set;   /* [incidence->max] */
 } balancer;
 
 static int64_t cost_of_element_nodes(balancer *b, int32_t e) {

@@ -1,4 +1,4 @@
-/* The fine surface that rides on the mesh, for viewers (binary message 4 of
+/* The embedded surface, for viewers (binary message 4 of
  * docs/viewer-protocol.md): they move it themselves, by the nodes that frames carry.
  *
  *     surface's nodes 0 .. n-1 | further nodes n .. n+s-1, of the elements that carry vertices

@@ -1,6 +1,6 @@
 /* A state in a file: everything that the next step depends on, and nothing about who computes it.
  *
- *     | head | division, tools, holds | offsets | u of all nodes | v of all nodes | checksum |
+ *     | head | division, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
  *
  * Binary, words of eight bytes, described in docs/formats.md. The nodes are in the mesh's order, so
  * that a checkpoint of one grid goes on on any other; numbers are written as they are, so that the

@@ -1,4 +1,4 @@
-/* surface_000000.vtp, ... and surface.pvd: the fine surface that rides on the mesh, where it is. */
+/* surface_000000.vtp, ... and surface.pvd: the embedded surface, where it is. */
 #ifndef LAR_SIMULATION_RESULTS_SURFACE_H
 #define LAR_SIMULATION_RESULTS_SURFACE_H
 

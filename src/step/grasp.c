@@ -5,7 +5,7 @@
 
 #include "contact/tool_contact_face.h"
 
-/* All holds of one tool together [N/m]: the pads of two fingers give by about a centimetre at 5 N;
+/* All grasps of one tool together [N/m]: two finger tips give by about a centimetre at 5 N;
  * jaws are metal, and what is left is the tissue between them. */
 static const double HAND_STIFFNESS = 600, JAWS_STIFFNESS = 3000;
 

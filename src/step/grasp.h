@@ -8,7 +8,7 @@
  *
  * Points are those at which tools touch (contact/tool_contact.h). A grasp is a spring and a damper
  * between the point and where it was in the tool's own axes when it was taken, so taking hold moves
- * nothing. All holds of a tool together are as stiff as what it stands for: finger tips, or jaws.
+ * nothing. All grasps of a tool together are as stiff as what it stands for: finger tips, or jaws.
  *
  * Decided between advances by whoever has the whole state (contact/tools.h); the springs themselves
  * are contact/tool_contact.h's.

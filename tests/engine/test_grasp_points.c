@@ -1,4 +1,4 @@
-/* Holds: what hands and graspers take, that taking hold moves nothing, what pulling does, and that
+/* Grasps: what hands and graspers take, that taking hold moves nothing, what pulling does, and that
  * letting go lets go. */
 #include "engine/engine_test.h"
 #include "engine/tool_contact_test.h"

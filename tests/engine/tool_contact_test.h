@@ -1,6 +1,5 @@
-/* What the tests of planes, tools and holds share: bodies with planes and tools, energies, and what
- * is inside a body.
- * Include engine_test.h first. */
+/* What the tests of planes, tools and grasps share: bodies with planes and tools, energies, and
+ * what is inside a body. Include engine_test.h first. */
 #ifndef LAR_TESTS_TOOL_CONTACT_TEST_H
 #define LAR_TESTS_TOOL_CONTACT_TEST_H
 

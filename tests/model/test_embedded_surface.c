@@ -1,4 +1,4 @@
-/* A fine surface that rides on a coarse mesh: where it is bound, that it is exact at rest and under
+/* A fine surface embedded in a coarse mesh: where it is bound, that it is exact at rest and under
  * affine movements, and what is refused. */
 #include "testing.h"
 

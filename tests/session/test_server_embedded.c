@@ -1,4 +1,4 @@
-/* A fine surface that rides on the mesh reaches viewers: once, with what moves it, and frames carry
+/* An embedded surface reaches viewers: once, with what moves it, and frames carry
  * the nodes that it needs: docs/viewer-protocol.md, message 4. */
 #include "session/session_test.h"
 
@@ -6,7 +6,8 @@
 
 #include "meshing/shapes.h"
 
-/* Around the block's left end, within and without it; what it rides on has inner nodes too. */
+/* Around the block's left end, within and without it; what it is embedded in has inner nodes too.
+ */
 static void let_ball_ride(lar_model *model, int n) {
     static const double half[3] = {0.008, 0.012, 0.011}, centre[3] = {0.0102, 0.0098, 0.0101};
     lar_triangles ball;

@@ -25,7 +25,7 @@ typedef struct play {
     const lar_proof *proof;
     int64_t *first; /* [nodes + 2] of a node's vectors */
     vector *vector; /* of all packets, by node */
-    int32_t *set;   /* [incidence->most] processors of a node */
+    int32_t *set;   /* [incidence->max] processors of a node */
     int32_t *place; /* [processors] place of a processor in the set */
     int32_t *have;  /* [|P_k|][|P_k|], and before the stage */
 } play;

@@ -92,7 +92,7 @@ lar_status lar_boundary_from_mesh(const char *path, double scale, bool fuse, con
 lar_status lar_boundary_principal_axes(lar_boundary *boundary, lar_error *error);
 
 /* What is seen from outside: triangles whose front is outside or a cut, tag = tag of the region
- * behind; for the fine surface that rides on the mesh. Of nested surfaces those that no other one
+ * behind; for the embedded surface. Of nested surfaces those that no other one
  * holds. */
 lar_status lar_boundary_outer(const lar_boundary *boundary, lar_triangles *outer, lar_error *error);
 

@@ -1,4 +1,4 @@
-/* The key `surface`: a fine surface that rides on the mesh, for display. */
+/* The key `surface`: an embedded surface, for display. */
 #include "model/scene/scene.h"
 
 #include <stdlib.h>

@@ -17,7 +17,7 @@ void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simu
     step_clock->start = 1e-9 * (double)lar_clock_ns();
 }
 
-/* What the watch over an advance knows. */
+/* What the callback of an advance knows. */
 typedef struct stretch {
     lar_step_clock *clock;
     const lar_step_glance *glance;

@@ -163,7 +163,7 @@ export interface SurfaceMessage {
     processor: Uint32Array;
 }
 
-/* A fine surface that rides on the mesh. Frames have the surface's nodes first, then these. */
+/* An embedded surface. Frames have the surface's nodes first, then these. */
 export interface EmbeddedMessage {
     rest: Float32Array; // of the further nodes
     processor: Uint32Array; // of these

@@ -1,4 +1,4 @@
-/* A fine surface that rides on the mesh (docs/viewer-protocol.md, message 4): every vertex is the sum of
+/* An embedded surface (docs/viewer-protocol.md, message 4): every vertex is the sum of
  * eight nodes of an element by weights that never change, and its values are so too.
  *
  *     frame: nodes of the mesh --weights--> vertices --triangles--> normals

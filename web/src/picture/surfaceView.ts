@@ -1,4 +1,4 @@
-/* What is drawn of the bodies: the mesh's own surface, rounded (surface.ts), or a fine one that rides on
+/* What is drawn of the bodies: the mesh's own surface, rounded (surface.ts), or a fine one embedded in
  * the mesh (embedded.ts). Both follow the nodes that frames carry. */
 export interface SurfaceView {
     readonly nodes: number; // drawn ones
