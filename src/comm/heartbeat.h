@@ -1,4 +1,4 @@
-/* Who still lives: a thread beside the step loop, on the connections of the rendezvous.
+/* Which processes are alive: a thread beside the step loop, on the connections of the rendezvous.
  *
  *     everyone  --- heartbeat, ten times a second --->  zero  --- heartbeat --->  everyone
  *     someone   --- "p sends nothing" ---------->  zero  --- "p is lost, because" ---> everyone

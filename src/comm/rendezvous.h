@@ -9,7 +9,7 @@
  * Instead of `welcome` and `go` there may be a refusal: one sentence, the same for all, which
  * names the processor that does not fit, did not come, could not connect or died on the way. The
  * connections stay in comm->links for heartbeat.h. A stranger that connects and does not say hello
- * is shown out after a second.
+ * is disconnected after a second.
  */
 #ifndef LAR_COMM_RENDEZVOUS_H
 #define LAR_COMM_RENDEZVOUS_H

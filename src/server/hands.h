@@ -1,4 +1,5 @@
-/* Who of the viewers moves what: hands are handed out, instruments belong to whoever moves them.
+/* Which viewer moves which tool: hands are assigned on request, instruments belong to whoever moves
+ * them.
  *
  *     grab: free --> going --> closing --> holding --> (release, leave) --> free
  *                      |          '-- nothing there: missed --> free

@@ -17,7 +17,7 @@ enum {
     LAR_TOOL_WORDS = 16 /* of a tool in a frame */
 };
 
-/* The surface of a simulation's model, and what rides on it, if anything does. The caller frees
+/* The surface of a simulation's model, and its embedded surface, if it has one. The caller frees
  * the memory of both. */
 lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
                                 lar_blob *surface, lar_blob *embedded, lar_error *error);

@@ -115,7 +115,7 @@ struct lar_server {
         struct lws *wsi; /* NULL: free */
         int64_t since;
         bool viewer;
-        bool leaves; /* it has been shown the door */
+        bool leaves; /* it is being closed */
     } connection[LAR_CONNECTIONS_MAX];
 
     /* The server's thread's. */
@@ -166,7 +166,7 @@ typedef struct lar_download {
     size_t sent;
 } lar_download;
 
-/* Ends those that have become nothing for too long. */
+/* Closes those that have not become viewers in time. */
 void lar_server_sweep(lar_server *server, int64_t now);
 /* A connection has become a viewer. */
 void lar_server_promote(lar_server *server, const struct lws *wsi);

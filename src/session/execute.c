@@ -1,4 +1,4 @@
-/* What is asked of a session, done by the engine's thread between two ticks. */
+/* Executes the requests of a session, on the engine's thread between two ticks. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

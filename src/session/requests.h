@@ -1,4 +1,4 @@
-/* What is asked of the engine's thread, in its order of coming.
+/* Requests to the engine's thread, in the order of their arrival.
  *
  *     any thread: place ---> ring of requests ---> engine, between two ticks: takes the next one
  *                 waits  <--- answer, for requests that have one

@@ -356,7 +356,7 @@ static void prepare_motion(lar_domain *domain) {
         lar_mesh_corners(&model->mesh, e, corner);
         shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
     }
-    /* Two watches (LAR_WATCH_INTERVAL) apart, no hourglass mode can grow beyond the integers. */
+    /* Between two looks of the monitor, no hourglass mode can grow beyond the integers. */
     domain->leapfrog.speed = 256 * shortest / dt;
 }
 

@@ -262,7 +262,7 @@ static lar_status bind_all(binder *b, lar_error *error) {
     const int32_t vertices = embedded->surface.vertex_count;
     b->outside = lar_calloc((size_t)vertices, sizeof *b->outside);
     if (!b->outside)
-        return lar_fail_memory(error, 8 * (size_t)vertices, "a surface that rides on the mesh");
+        return lar_fail_memory(error, 8 * (size_t)vertices, "an embedded surface");
     lar_parallel_for(vertices, PORTION, bind_some, b);
     for (int32_t v = 0; v < vertices; v++) {
         if (embedded->element[v] < 0) return refuse(b, &embedded->surface, v, error);
@@ -281,7 +281,7 @@ lar_status lar_embedded_surface_bind(const lar_mesh *mesh, lar_triangles *surfac
     embedded->weight = lar_calloc(vertices, sizeof *embedded->weight);
     lar_status status = LAR_OK;
     if (!embedded->element || !embedded->weight)
-        status = lar_fail_memory(error, 36 * vertices, "a surface that rides on the mesh");
+        status = lar_fail_memory(error, 36 * vertices, "an embedded surface");
     if (!status) status = make_boxes(&b, error);
     if (!status) status = lar_surface_tree_create(mesh, &b.outer, error);
     if (!status) status = bind_all(&b, error);

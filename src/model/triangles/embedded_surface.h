@@ -1,4 +1,4 @@
-/* A fine surface that rides on a coarse mesh, for display: every vertex is bound to an element and
+/* A fine surface embedded in a coarse mesh, for display: every vertex is bound to an element and
  * moves with its eight nodes (trilinear, the same weights for ever).
  *
  * A vertex outside of all elements, within reach of the body, is bound to the nearest element and

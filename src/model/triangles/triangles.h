@@ -2,7 +2,7 @@
  *
  *     .stl .obj .vtk .vtp --> lar_triangles --> the true boundary that meshing fits
  * (meshing/boundary/boundary.h)
- *                                          '--> the fine surface that rides on a mesh
+ *                                          '--> the embedded surface of a mesh
  * (model/triangles/embedded_surface.h)
  *
  * Positions are in metres after scaling. Corners stand counter-clockwise seen from outside.
