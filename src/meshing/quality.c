@@ -72,7 +72,7 @@ static lar_status copy_embedded(const lar_embedded_info *embedded, lar_triangles
     copy->vertex = lar_calloc(vertices, sizeof *copy->vertex);
     copy->corner = lar_calloc(triangles, sizeof *copy->corner);
     if (!copy->vertex || !copy->corner)
-        return lar_fail_memory(error, vertices * sizeof *copy->vertex, "the fine surface");
+        return lar_fail_memory(error, vertices * sizeof *copy->vertex, "the embedded surface");
     memcpy(copy->vertex, embedded->rest, vertices * sizeof *copy->vertex);
     memcpy(copy->corner, embedded->triangle, triangles * sizeof *copy->corner);
     copy->vertex_count = embedded->vertices;

@@ -100,7 +100,7 @@ typedef struct lar_probe {
 typedef struct lar_output {
     double every;    /* seconds, 0: only the end */
     unsigned fields; /* lar_field bits (lariat.h) */
-    bool surface;    /* the fine surface too, in every frame */
+    bool surface;    /* the embedded surface too, in every frame */
     int probe_count;
     lar_probe *probe;
 } lar_output;

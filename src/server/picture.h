@@ -1,5 +1,5 @@
 /* What viewers see: the surface, once, and frames of it (binary messages 1 and 2 of
- * docs/viewer-protocol.md; the fine surface that may ride on it: embedded.h).
+ * docs/viewer-protocol.md; the embedded surface that may ride on it: embedded.h).
  *
  *     model ------------------> surface messages        (once)
  *     snapshot of one step ---> positions, their hash   (once for all viewers)

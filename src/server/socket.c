@@ -55,9 +55,10 @@ static void welcome(lar_server *server, lar_viewer *viewer) {
     lar_server_take_status(server); /* while nobody was there none was taken */
     if (!lar_embedded_is_too_large(server->model)) return;
     char sentence[160];
-    snprintf(sentence, sizeof sentence,
-             "The scene's fine surface is not drawn: it has more than %d triangles or vertices.",
-             LAR_EMBEDDED_MAX);
+    snprintf(
+        sentence, sizeof sentence,
+        "The scene's embedded surface is not drawn: it has more than %d triangles or vertices.",
+        LAR_EMBEDDED_MAX);
     lar_viewer_note(server, viewer, sentence);
 }
 

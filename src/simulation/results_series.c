@@ -128,5 +128,5 @@ lar_status lar_results_spare(const char *path, const lar_model *model, lar_error
     return lar_fail(error, LAR_ERROR_IO,
                     "%s: is the %s of this model and will not be overwritten by results; choose "
                     "another folder for the results",
-                    path, mesh ? "mesh" : "fine surface");
+                    path, mesh ? "mesh" : "embedded surface");
 }

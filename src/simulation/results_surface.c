@@ -27,7 +27,8 @@ lar_status lar_surface_results_open(lar_surface_results *results, const char *fo
     placed->vertex = lar_calloc(vertices, sizeof *placed->vertex);
     results->u = lar_calloc(nodes, sizeof *results->u);
     if (!placed->vertex || !results->u)
-        return lar_fail_memory(error, 24 * (vertices + nodes), "the places of the fine surface");
+        return lar_fail_memory(error, 24 * (vertices + nodes),
+                               "the places of the embedded surface");
     return lar_series_open(&results->series, folder, name_beside(taken), ".vtp", error);
 }
 

@@ -280,7 +280,7 @@ static void a_line_is_whole_or_not_there(void **state) {
     assert_int_equal(lar_probe_file_close(&file, &f->error), LAR_OK);
 }
 
-/* ---- the fine surface ------------------------------------------------------------------- */
+/* ---- the embedded surface ------------------------------------------------------------------- */
 
 static void let_ball_ride(fixture *f) {
     lar_triangles ball;
@@ -376,7 +376,7 @@ static void the_surface_it_was_read_from_is_spared(void **state) {
     assert_non_null(file);
     fclose(file);
     assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_IO);
-    assert_non_null(strstr(f->error.message, "is the fine surface of this model"));
+    assert_non_null(strstr(f->error.message, "is the embedded surface of this model"));
 }
 
 /* A checkpoint does not know of it: it is taken up with another surface, and without one. */

@@ -500,7 +500,7 @@ test('ten reloads in a row, quickly; every frame was of one step', async () => {
     await v.close();
 });
 
-test('a fine surface rides on its mesh: drawn, pulled where it stands off, and switched off', async () => {
+test('an embedded surface follows its mesh: drawn, pulled where it stands off, and switched off', async () => {
     const riding = await view(rider(), '--port', '0');
     const r = await openPage(browser, riding.url);
     assert.equal(await r.get('surface'), 'fine');

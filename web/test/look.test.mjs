@@ -68,7 +68,7 @@ test('the picture is cut open, by mouse and by keys, and what is cut away cannot
 });
 
 for (const riding of [false, true])
-    test(`organs are faded and hidden${riding ? ', also of a fine surface' : ''}, and let the pointer through`, async (t) => {
+    test(`organs are faded and hidden${riding ? ', also of an embedded surface' : ''}, and let the pointer through`, async (t) => {
         const own = await mock({ riding, organs: 'halves' });
         t.after(() => own.close());
         const v = await openPage(browser, own.url);

@@ -44,7 +44,7 @@ function pear(n = 14) {
     return { x, f, m: f.filter((_, i) => i % 4 === 0).map((_, i) => (i % 6 === 0 ? 1 : 0)) };
 }
 
-/* A fine surface that rides on a layer of elements under the mesh's surface: every quad is one's outer face,
+/* An embedded surface on a layer of elements under the mesh's surface: every quad is one's outer face,
  * its inner nodes lie halfway to the middle. Vertices stand off by `off` of the layer's depth. */
 function fineSurface(mesh, pieces = 4, off = 0.12) {
     const n = mesh.x.length / 3;

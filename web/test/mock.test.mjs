@@ -247,7 +247,7 @@ test('an organ at rest has one colour: the range has a floor', async (t) => {
     await v.close();
 });
 
-test('a fine surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
+test('an embedded surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
     const own = await mock({ riding: true });
     const v = await openPage(browser, own.url);
     assert.equal(await v.get('surface'), 'fine');
@@ -265,8 +265,8 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
     assert.notEqual(await v.get('nodes'), nodes);
     await v.page.waitForTimeout(300);
     const coarse = await width();
-    assert.ok(fine >= coarse + 4, `${fine} places of the row are fine surface, ${coarse} mesh`);
-    await v.page.getByLabel('fine surface').check();
+    assert.ok(fine >= coarse + 4, `${fine} places of the row are embedded surface, ${coarse} mesh`);
+    await v.page.getByLabel('embedded surface').check();
     await v.until(() => window.lariat.surface === 'fine');
 
     // Pulled where it is drawn; the engine hears a point of the mesh.
@@ -439,10 +439,10 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
 test('where nothing rides there is no switch for it, and its key says so', async () => {
     const v = await openPage(browser, server.url);
     assert.equal(await v.get('surface'), 'mesh');
-    assert.equal(await v.page.getByLabel('fine surface').isVisible(), false);
+    assert.equal(await v.page.getByLabel('embedded surface').isVisible(), false);
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('m');
-    await v.page.getByText('has no fine surface').waitFor({ timeout: 3000 });
+    await v.page.getByText('has no embedded surface').waitFor({ timeout: 3000 });
     await v.close();
 });
 

@@ -1,7 +1,7 @@
 /* The true boundary of what is to be meshed: triangles that know what lies on both sides.
  *
  *     label image --image.c---------.
- *     closed surfaces --boundary.c--+--> lar_boundary --> grid, fit, deviation, fine surface
+ *     closed surfaces --boundary.c--+--> lar_boundary --> grid, fit, deviation, embedded surface
  *     mesh of solids --mesh.c-------'
  *
  * Regions are numbered from 1, in the order they were asked for; 0 is outside. Where the image ends

@@ -112,7 +112,7 @@ export class View {
         this.see(this.seen);
     }
 
-    /* A fine surface that rides on the organ's mesh. */
+    /* An embedded surface of the organ's mesh. */
     setEmbedded(message: EmbeddedMessage): void {
         if (!this.mesh || this.fineOrgan) return;
         const first = this.mesh.meshNodes * 3;
@@ -142,7 +142,7 @@ export class View {
         this.instruments.update(frame);
     }
 
-    /* The fine surface, where there is one, or the mesh's own. */
+    /* The embedded surface, where there is one, or the mesh's own. */
     showFine(yes: boolean): void {
         this.fineShown = yes;
         this.arrange();
