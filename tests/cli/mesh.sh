@@ -50,7 +50,7 @@ expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title 
 [ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
 says '^Two organs: [56][0-9][0-9] elements of about [23][.0-9]* mm'
 says 'left kidney (7): [0-9]* elements'
-says '^held  *at the back, and on [1-9] pads* that bears* its weight: [0-9]* nodes'
+says '^held  *at the back, and on [1-9] extra supports* that bears* its weight: [0-9]* nodes'
 says '^volume  *[12][0-9.]* mL, the true surface holds'
 says '^shortest edge  *[0-9.]* mm$'
 says '^deviation  *mean 0\.[0-9]* mm ('

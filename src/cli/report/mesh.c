@@ -142,7 +142,7 @@ static void print_support(const mesh_report *report) {
         printf("at the %s", info->fix);
     if (bones > 0) printf("%s", nowhere ? "at its bones" : ", and at its bones");
     if (info->extra_supports > 0)
-        printf(", and on %d pad%s that bear%s its weight", (int)info->extra_supports,
+        printf(", and on %d extra support%s that bear%s its weight", (int)info->extra_supports,
                info->extra_supports == 1 ? "" : "s", info->extra_supports == 1 ? "s" : "");
     if (nowhere && bones == 0)
         printf("nowhere\n");
