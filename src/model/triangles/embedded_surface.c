@@ -261,8 +261,7 @@ static lar_status bind_all(binder *b, lar_error *error) {
     lar_embedded_surface *embedded = b->embedded;
     const int32_t vertices = embedded->surface.vertex_count;
     b->outside = lar_calloc((size_t)vertices, sizeof *b->outside);
-    if (!b->outside)
-        return lar_fail_memory(error, 8 * (size_t)vertices, "an embedded surface");
+    if (!b->outside) return lar_fail_memory(error, 8 * (size_t)vertices, "an embedded surface");
     lar_parallel_for(vertices, PORTION, bind_some, b);
     for (int32_t v = 0; v < vertices; v++) {
         if (embedded->element[v] < 0) return refuse(b, &embedded->surface, v, error);

@@ -1,5 +1,5 @@
-/* Timer jitter and scheduling latency: a thread that wakes a thousand times a second, as a session's does
- * (base/deadline_clock.h), and does nothing, or computes for a given time.
+/* Timer jitter and scheduling latency: a thread that wakes a thousand times a second, as a
+ * session's does (base/deadline_clock.h), and does nothing, or computes for a given time.
  *
  *     due          due          due          due
  *      |.|==load==|  |...|==load==|  |.|==load==|  |.........|==load=|      --seconds, --repeat
