@@ -231,7 +231,7 @@ lar_status lar_heartbeat_start(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
     size_t count = (size_t)comm->options.count;
     lar_comm_heartbeat *w = comm->heartbeat = lar_calloc(1, sizeof *w);
-    if (!w) return lar_fail_memory(error, sizeof *w, "the watch over processors");
+    if (!w) return lar_fail_memory(error, sizeof *w, "the heartbeat");
     w->comm = comm;
     w->wake[0] = w->wake[1] = -1;
     w->ended = -1;

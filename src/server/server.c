@@ -19,7 +19,7 @@
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
  */
 static const lws_usec_t INTERVAL = 5000, QUICK_INTERVAL = 2000, IDLE_INTERVAL = 100000;
-static const int64_t STATUS_EVERY = LAR_SECOND_NS / 10, WATCH_EVERY = LAR_SECOND_NS / 2;
+static const int64_t STATUS_EVERY = LAR_SECOND_NS / 10, CHECK_EVERY = LAR_SECOND_NS / 2;
 /* A picture that would show the same again is held back for so long. */
 static const int64_t STILL = LAR_SECOND_NS / 4;
 /* Pictures: not more often than this, and only every PAINT_SHARE times the time that the last one
@@ -103,9 +103,9 @@ static uint64_t bytes_received(struct lws *wsi) {
 }
 
 /* Who takes nothing, and who floods us with what is no message (pings). */
-static void watch(lar_server *server, int64_t now) {
-    double seconds = (double)(now - server->watched_at) / (double)LAR_SECOND_NS;
-    server->watched_at = now;
+static void check_session(lar_server *server, int64_t now) {
+    double seconds = (double)(now - server->checked_at) / (double)LAR_SECOND_NS;
+    server->checked_at = now;
     lar_server_sweep(server, now);
     lar_server_watch_recording(server);
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
@@ -122,7 +122,7 @@ static void on_timer(lws_sorted_usec_list_t *sul) {
     lar_server *server = lws_container_of(sul, lar_server, timer);
     int64_t now = lar_clock_ns();
     lar_server_collect(server);
-    if (now - server->watched_at >= WATCH_EVERY) watch(server, now);
+    if (now - server->checked_at >= CHECK_EVERY) check_session(server, now);
     if (server->first && now - server->status_at >= STATUS_EVERY) {
         server->status_at = now;
         lar_server_take_status(server);

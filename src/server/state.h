@@ -146,7 +146,7 @@ struct lar_server {
     char played[LAR_NAME_MAX + 1];
     lws_sorted_usec_list_t timer;
     bool reading; /* a viewer's values are being read */
-    int64_t status_at, watched_at, paint_begun, paint_cost;
+    int64_t status_at, checked_at, paint_begun, paint_cost;
 };
 
 /* ---- server.c ---- */
