@@ -46,7 +46,7 @@ static void find_tip(const lar_model *model, const lar_snapshot *snapshot, doubl
     for (int i = 0; i < 3; i++) tip[i] = position[node][i] + snapshot->u[node][i];
 }
 
-static int watch(lar_session *session, lar_snapshot *snapshot, lar_error *error) {
+static int callback(lar_session *session, lar_snapshot *snapshot, lar_error *error) {
     static const struct timespec tenth = {0, 100000000};
     lar_session_status status;
     lar_tool_force force;
@@ -77,7 +77,7 @@ static int play(const lar_model *model, lar_session *session, lar_snapshot *snap
     if (lar_session_snapshot(session, snapshot, 5, error)) return 1;
     find_tip(model, snapshot, h.from);
     if (pthread_create(&device, NULL, lead, &h)) return 1;
-    int failed = lar_session_start(session, error) || watch(session, snapshot, error);
+    int failed = lar_session_start(session, error) || callback(session, snapshot, error);
     pthread_join(device, NULL);
     if (failed) return failed;
     find_tip(model, snapshot, tip);

@@ -25,6 +25,10 @@
  * use scratch memory inside it, though never change what another call returns. A SESSION takes a
  * simulation over and computes on a thread of its own; all its calls may come from any thread.
  * While it does, calls that change the simulation are refused.
+ *
+ * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
+ * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:
+ * docs/glossary.md.
  */
 #ifndef LARIAT_H
 #define LARIAT_H
@@ -46,14 +50,14 @@ extern "C" {
 
 typedef enum lar_status {
     LAR_OK = 0,
-    LAR_ERROR_ARGUMENT,    /* a call or a command line that makes no sense */
+    LAR_ERROR_ARGUMENT,    /* an invalid argument of a call or a command line */
     LAR_ERROR_IO,          /* a file or folder that cannot be read or written */
     LAR_ERROR_FORMAT,      /* a file that is damaged or breaks its format */
     LAR_ERROR_MODEL,       /* a readable model that cannot be simulated */
-    LAR_ERROR_UNSUPPORTED, /* something sensible that Lariat does not do */
+    LAR_ERROR_UNSUPPORTED, /* a valid request that Lariat does not support */
     LAR_ERROR_MEMORY,      /* the system refuses memory */
-    LAR_ERROR_UNSTABLE,    /* a run that left the range in which its results mean something */
-    LAR_ERROR_PEER         /* another processor that is lost, silent or does not fit */
+    LAR_ERROR_UNSTABLE,    /* a run that became unstable: its results mean nothing */
+    LAR_ERROR_PEER         /* another processor that is lost, silent or incompatible */
 } lar_status;
 
 typedef struct lar_error {
@@ -145,7 +149,7 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
-/* A fine surface that rides on the mesh, for display (scene key `surface`). */
+/* A fine surface embedded in the mesh, for display (scene key `surface`). */
 typedef struct lar_embedded_info {
     int32_t vertices, triangles;
     const int32_t (*triangle)[3]; /* [triangles] vertices, counter-clockwise seen from outside */
@@ -211,18 +215,18 @@ LAR_API lar_status lar_model_tool(const lar_model *model, int32_t index, lar_too
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {
-    double force[3];  /* [N], the mean over the steps of the last advance */
-    double torque[3]; /* about the tip [N m], likewise */
-    int32_t touching; /* surface points that it touched in the last step */
-    int32_t held;     /* surface points that it has hold of */
-    double limit;     /* what it bears before it stays behind its hand [N]; 0 for hands: none */
-    double depth;     /* the deepest tissue point in it in the last advance [m]; 0: none */
-    double apart;     /* from its tip to where its hand asks the tip to be, now [m] */
-    int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
-                         back to it; else 0 */
-    double grasp;     /* what both jaws of a grasper press with on the tissue between them [N], the
-                         mean over the last advance: the smaller of what each is pushed outwards
-                         with; 0 when a jaw is not, and for other tools */
+    double force[3];    /* [N], the mean over the steps of the last advance */
+    double torque[3];   /* about the tip [N m], likewise */
+    int32_t touching;   /* surface points that it touched in the last step */
+    int32_t held;       /* surface points that it has hold of */
+    double limit;       /* what it bears before it stays behind its hand [N]; 0 for hands: none */
+    double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
+    double apart;       /* from its tip to where its hand asks the tip to be, now [m] */
+    int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
+                           back to it; else 0 */
+    double grasp_force; /* what both jaws of a grasper press with on the tissue between them [N],
+                     the mean over the last advance: the smaller of what each is pushed outwards
+                     with; 0 when a jaw is not, and for other tools */
 } lar_tool_force;
 
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
@@ -231,7 +235,7 @@ LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
 
 /* ---- meshing: from a scan to a model ------------------------------------------------------ */
 
-/* How good a mesh is, and how well it stands for a true surface. */
+/* Mesh quality, and distance from a true surface. */
 typedef struct lar_mesh_quality {
     int32_t jacobian_bin[10];   /* elements by scaled Jacobian, bins of 0.1 from 0 */
     double above_02, above_05;  /* parts of the elements, 0..1 */
@@ -239,21 +243,21 @@ typedef struct lar_mesh_quality {
     double volume, true_volume; /* of the mesh and inside the true surface [m^3]; 0: unknown */
     double deviation_mean;      /* between both surfaces, both ways, by area [m] */
     double deviation_95;        /* 95 % of the area is nearer [m] */
-    double deviation_most;      /* the largest: Hausdorff distance [m] */
+    double deviation_max;       /* the largest: Hausdorff distance [m] */
     int32_t crossings;          /* pairs of outer faces that go through each other */
     double crossing_depth;      /* of the deepest of them [m]; 0: there is none */
 } lar_mesh_quality;
 
 /* Compares a model's mesh with a surface (.stl .obj .vtk .vtp, in the model's metres times
- * `scale`), or with the fine surface that rides on it (against NULL); without either the deviations
+ * `scale`), or with its embedded surface (against NULL); without either the deviations
  * and true_volume are 0. */
 LAR_API lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
                                      lar_mesh_quality *quality, lar_error *error);
 
 typedef struct lar_meshing lar_meshing;
 
-/* Told now and then what is being done and how much of it is, 0..1; 0 from it asks to stop. */
-typedef int lar_meshing_watch(void *context, const char *what, double part);
+/* Progress callback: stage and fraction done (0..1). Return 0 to cancel. */
+typedef int lar_meshing_progress(void *context, const char *what, double part);
 
 typedef struct lar_meshing_options {
     double size;               /* edge of an element [m]; 0: from `elements` */
@@ -261,16 +265,16 @@ typedef struct lar_meshing_options {
     double scale;              /* of surfaces and meshes: metres per unit of the file; 0: 1 */
     const char *const *labels; /* of an image: numbers or names, each a region; NULL: all */
     int32_t label_count;
-    int fuse;                 /* not 0: all labels, or regions of a mesh, become one region */
-    const char *names;        /* a file of label names, "LABEL,NAME" per line; NULL: none */
-    int principal;            /* not 0: along the body's principal axes instead of the image's */
-    int voxel;                /* not 0: cubes on a grid, not fitted; size and elements 0: the
-                                 image's own voxels */
-    const char *title;        /* NULL: the only region's name, or the first file's */
-    const char *fix;          /* where the starter scene holds it: "left", "right", "back", "front",
-                                 "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
-                                 it, else "back", and pads that bear its weight */
-    lar_meshing_watch *watch; /* may be NULL */
+    int fuse;          /* not 0: all labels, or regions of a mesh, become one region */
+    const char *names; /* a file of label names, "LABEL,NAME" per line; NULL: none */
+    int principal;     /* not 0: along the body's principal axes instead of the image's */
+    int voxel;         /* not 0: cubes on a grid, not fitted; size and elements 0: the
+                          image's own voxels */
+    const char *title; /* NULL: the only region's name, or the first file's */
+    const char *fix;   /* where the starter scene holds it: "left", "right", "back", "front",
+                          "bottom", "top", "cut", "none"; NULL: "cut" where the image cuts
+                          it, else "back", and extra supports that bear its weight */
+    lar_meshing_progress *progress; /* may be NULL */
     void *context;
 } lar_meshing_options;
 
@@ -296,8 +300,8 @@ typedef struct lar_meshing_info {
     int32_t added, removed; /* cells, so that none hang together by an edge or a corner only */
     int32_t cuts;           /* flat cuts, where the image ends in an organ */
     const char *fix;        /* the rule that holds the body, as in the options */
-    int32_t pads;           /* small places that hold it besides, because its weight asks for them;
-                               not when the options say what holds it */
+    int32_t extra_supports; /* small places that hold it besides, because its weight asks for them;
+                     not when the options say what holds it */
     int32_t fixed_nodes;
     int image;      /* not 0: made from a label image, which says how large it is */
     int32_t joined; /* nodes of a mesh that stood at the place of another one, and were joined */
@@ -310,8 +314,8 @@ typedef struct lar_region_info {
     double volume, true_volume;  /* in the mesh, and in the image, surface or other mesh [m^3] */
     const char *tissue, *source; /* of the starter scene's material: which, from where */
     double shear_modulus, bulk_modulus, density;
-    int held;          /* not 0: bone, which the starter scene holds where it is */
-    double usual_most; /* more than such organs hold in anybody [m^3]; 0: not known */
+    int held;         /* not 0: bone, which the starter scene holds where it is */
+    double usual_max; /* more than such organs hold in anybody [m^3]; 0: not known */
 } lar_region_info;
 
 LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
@@ -319,7 +323,7 @@ LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *i
 LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
                                       lar_region_info *info, lar_error *error);
 
-/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, to ride on it)
+/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, embedded in it)
  * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
  * missing; files that are there are replaced, each whole. *scene (may be NULL): the scene's path,
  * freed with the meshing. */
@@ -428,12 +432,12 @@ LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t s
 
 /* Called after every step with the number of steps done, by the thread that advances; 0 ends the
  * advance: at once, or, with several processors, some steps later in the same step on all. */
-typedef int lar_watch(void *context, uint64_t step);
+typedef int lar_step_callback(void *context, uint64_t step);
 
-/* The same, watched. Ask lar_simulation_steps where it ended. */
-LAR_API lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
-                                                  lar_watch *watch, void *context,
-                                                  lar_error *error);
+/* The same with a callback. Ask lar_simulation_steps where it ended. */
+LAR_API lar_status lar_simulation_advance_with(lar_simulation *simulation, uint64_t steps,
+                                               lar_step_callback *callback, void *context,
+                                               lar_error *error);
 
 /* For processes other than processor 0: computes what processor 0 asks for, and returns when it
  * destroys its simulation, or with LAR_ERROR_PEER when a processor is lost. */
@@ -542,8 +546,8 @@ LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_
  * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
 LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
- * (`most`; may be NULL). Going back, loading and a reset do not change these. */
-LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most);
+ * (`max`; may be NULL). Going back, loading and a reset do not change these. */
+LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max);
 
 /* What the search for contact did since the start, in pairs of a node and a face. */
 typedef struct lar_contact_info {
@@ -592,7 +596,7 @@ typedef struct lar_results lar_results;
  * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
-/* The same, and the fine surface that rides on the mesh, if any, in every frame (.vtp), which takes
+/* The same, and the embedded surface, if any, in every frame (.vtp), which takes
  * many times the room; lar_results_open writes it only where the scene's output says so. */
 LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                             lar_results **results, lar_error *error);
@@ -660,7 +664,7 @@ LAR_API int lar_model_until_rest(const lar_model *model);
  *                   tool_force <-- latest <--------    tools, steps, forces, snapshot, pace
  *                   snapshot   <-- when asked for --
  *
- * A session advances a simulation on a thread of its own, at the pace of the clock, and exchanges
+ * A session advances a simulation in real time, on a thread of its own, and exchanges
  * tools' positions and forces once in a tick. All calls may come from any thread; none makes the
  * engine wait. docs/session.md.
  */
@@ -742,10 +746,10 @@ LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t to
 
 /* What a tool had to bear since the session was opened. */
 typedef struct lar_tool_load {
-    double force; /* the largest of all ticks [N] */
-    double limit; /* lar_tool_force.limit [N] */
-    int reached;  /* not 0: it was kept from following its hand (lar_tool_force.limited) */
-    double grasp; /* the largest lar_tool_force.grasp of all ticks [N] */
+    double force;       /* the largest of all ticks [N] */
+    double limit;       /* lar_tool_force.limit [N] */
+    int reached;        /* not 0: it was kept from following its hand (lar_tool_force.limited) */
+    double grasp_force; /* the largest lar_tool_force.grasp_force of all ticks [N] */
 } lar_tool_load;
 
 LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t tool,
@@ -759,17 +763,17 @@ LAR_API lar_status lar_session_tool_load(const lar_session *session, int32_t too
 LAR_API lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                                       lar_error *error);
 
-/* How a tool's device goes. Zero where its kind has no such thing. */
+/* Status of a tool's device. Zero where its kind has no such number. */
 typedef struct lar_device_status {
     const char *name;  /* as it was attached, lives as long as the session; NULL: no device */
     int port;          /* where it listens */
-    int connected;     /* not 0: somebody holds it now */
+    int connected;     /* not 0: a client is connected now */
     uint64_t received; /* positions taken */
     uint64_t answered; /* forces sent */
-    uint64_t refused;  /* packets that are none, or of somebody else */
+    uint64_t refused;  /* malformed packets, or packets from another sender */
     uint64_t late;     /* packets that came after a newer one, or twice */
     uint64_t lost;     /* sequence numbers that never came */
-    uint64_t timeouts; /* times that it fell silent */
+    uint64_t timeouts; /* times that no packet came for too long */
     double answer_p50, answer_p99, answer_p999, answer_max; /* packet in to force out [s] */
 } lar_device_status;
 
@@ -798,7 +802,7 @@ typedef enum lar_slow_cause {
 enum { LAR_TIME_BINS = 40 };
 LAR_API double lar_time_bin(int bin); /* 1.024 us for bin 0 [s] */
 
-/* How it goes. Times are of the clock, in seconds; rates over about the last second. */
+/* Status of a session. Times are of the clock, in seconds; rates over about the last second. */
 typedef struct lar_session_status {
     lar_session_state state;
     uint64_t step;
@@ -839,7 +843,7 @@ typedef struct lar_session_status {
                                           seconds that were computed [s] */
     int32_t step_parts;                /* lar_simulation_step_parts at the end of the last tick */
     uint64_t divided_steps;            /* steps that were divided, since the session was opened */
-    double step_least; /* the least processor time of a step in the last second [s]; 0: none */
+    double step_min; /* the least processor time of a step in the last second [s]; 0: none */
     lar_slow_cause slow_cause; /* of the slow motion that is now */
     char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */
 } lar_session_status;
@@ -868,10 +872,10 @@ LAR_API lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snap
                                         double seconds, lar_error *error);
 
 /* Forces on a tool, one entry per tick: copies those after tick `after` (0: from the oldest that is
- * kept), at most `most`, oldest first; the last 8192 ticks are kept. *last is the number of the
+ * kept), at most `max`, oldest first; the last 8192 ticks are kept. *last is the number of the
  * last one copied (`after` when there is none). Returns how many. */
 LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
-                                          int32_t most, float (*force)[3], uint64_t *last);
+                                          int32_t max, float (*force)[3], uint64_t *last);
 
 /* ---- recordings ----------------------------------------------------------------------------- */
 
@@ -902,11 +906,12 @@ typedef struct lar_replay_report {
  * hashes. The first difference ends it with LAR_ERROR_FORMAT, and `report` names the step. So does
  * a file that is damaged or cut off where it is; what comes before is played and compared, and
  * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
- * `broken` says whether the recording ends with that, too. `watch` may be NULL: called with the
+ * `broken` says whether the recording ends with that, too. `callback` may be NULL: called with the
  * number of steps at the beginning, after every tick, reset and load, between two advances, so that
  * it may look at the simulation; 0 ends the replay. */
-LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch,
-                              void *context, lar_replay_report *report, lar_error *error);
+LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path,
+                              lar_step_callback *callback, void *context, lar_replay_report *report,
+                              lar_error *error);
 
 /* Plays a recording in the session, at its pace, with play, pause and step; it pauses at its end.
  * Tools follow the recording and nobody else meanwhile. NULL: ends that, and the run goes on from
@@ -933,8 +938,8 @@ typedef struct lar_server_options {
                                 NULL: none */
     const char *save_folder; /* where the viewer's record and save go, made when it is missing;
                                 NULL: they are refused */
-    double save_most;        /* bytes of states and recordings that there may be in it, those from
-                                before included; 0: 4e9. One recording under way is ended there */
+    double save_max;         /* bytes of states and recordings that there may be in it, those from
+                                 before included; 0: 4e9. One recording under way is ended there */
 } lar_server_options;
 
 /* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be

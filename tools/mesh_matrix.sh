@@ -72,7 +72,7 @@ one() {
     side=$(weigh '9.81, 0, 0')
     [ "$back$feet$side" = stablestablestable ] || failed=1
     awk -v left="${pull##* }" 'BEGIN { exit !(left < 1) }' || failed=1
-    pads=$(said '.* on \([0-9]*\) pads* that .*')
+    pads=$(said '.* on \([0-9]*\) extra supports* that .*')
     cost=$(awk '{ printf "%.1f s, %d MB", $1, $2 / 1024 }' "$scratch/time")
     echo "| $name | $elements | $cost |" \
         "$(said '^deviation .*mean [^(]*(\([0-9.]* %\).*') |" \

@@ -27,13 +27,13 @@ static void put_doubles(unsigned char *at, const double *value, int count) {
     }
 }
 
-/* False when one is not finite or its size is above `most`. */
-static bool get_doubles(const unsigned char *at, double *value, int count, double most) {
+/* False when one is not finite or its size is above `max`. */
+static bool get_doubles(const unsigned char *at, double *value, int count, double max) {
     bool fine = true;
     for (int i = 0; i < count; i++) {
         uint64_t word = get(at + 8 * i, 8);
         memcpy(&value[i], &word, sizeof word);
-        fine = fine && fabs(value[i]) <= most; /* false for NaN */
+        fine = fine && fabs(value[i]) <= max; /* false for NaN */
     }
     return fine;
 }

@@ -4,7 +4,7 @@
  *   1. our own bugs: assert();
  *   2. what a user or the environment did: a lar_status returned and, beside it, one
  *      sentence in a lar_error that names file, line or element and the remedy;
- *   3. what happens while a simulation runs: the sticky trip word of step/step.h.
+ *   3. what happens while a simulation runs: the sticky fault word of step/step.h.
  *
  * The sentence is written once, where the trouble is found. Callers pass the status on
  * unchanged. Outputs are set on success only. The public types live in lariat.h, so that

@@ -20,8 +20,8 @@ static double value_in(int bin, double part) {
 }
 
 void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds) {
-    if (histogram->count == 0 || nanoseconds < histogram->least) histogram->least = nanoseconds;
-    if (nanoseconds > histogram->most) histogram->most = nanoseconds;
+    if (histogram->count == 0 || nanoseconds < histogram->min) histogram->min = nanoseconds;
+    if (nanoseconds > histogram->max) histogram->max = nanoseconds;
     histogram->count++;
     histogram->sum += nanoseconds;
     histogram->bin[bin_of(nanoseconds)]++;
@@ -29,8 +29,8 @@ void lar_histogram_add(lar_histogram *histogram, uint64_t nanoseconds) {
 
 void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other) {
     if (other->count == 0) return;
-    if (histogram->count == 0 || other->least < histogram->least) histogram->least = other->least;
-    if (other->most > histogram->most) histogram->most = other->most;
+    if (histogram->count == 0 || other->min < histogram->min) histogram->min = other->min;
+    if (other->max > histogram->max) histogram->max = other->max;
     histogram->count += other->count;
     histogram->sum += other->sum;
     for (int i = 0; i < BINS; i++) histogram->bin[i] += other->bin[i];
@@ -58,5 +58,5 @@ double lar_histogram_quantile(const lar_histogram *histogram, double share) {
     }
     double inside = (double)histogram->bin[bin];
     double part = inside > 0 ? 1 - ((double)below - wanted) / inside : 1;
-    return fmin(fmax(value_in(bin, part), (double)histogram->least), (double)histogram->most);
+    return fmin(fmax(value_in(bin, part), (double)histogram->min), (double)histogram->max);
 }

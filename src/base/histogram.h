@@ -16,7 +16,7 @@ enum { LAR_HISTOGRAM_SPLIT = 64, LAR_HISTOGRAM_OCTAVES = 40 };
 
 /* A zeroed histogram is empty. */
 typedef struct lar_histogram {
-    uint64_t count, sum, least, most; /* of the values [ns] */
+    uint64_t count, sum, min, max; /* of the values [ns] */
     uint64_t bin[LAR_HISTOGRAM_SPLIT * LAR_HISTOGRAM_OCTAVES];
 } lar_histogram;
 
@@ -31,7 +31,7 @@ void lar_histogram_merge(lar_histogram *histogram, const lar_histogram *other);
 void lar_histogram_halves(const lar_histogram *histogram, int octave, int count, uint32_t *out);
 
 /* The value below or at which `share` (0..1) of all values lie [ns]: as if those of its bin were
- * spread over the bin evenly, never outside least..most. 0 when empty. */
+ * spread over the bin evenly, never outside min..max. 0 when empty. */
 double lar_histogram_quantile(const lar_histogram *histogram, double share);
 
 #endif

@@ -23,7 +23,7 @@ void *lar_calloc_aligned(size_t count, size_t size) {
     if (bytes == 0) bytes = alignment;
     void *memory = aligned_alloc(alignment, bytes);
     if (!memory) return NULL;
-    if (alignment == HUGE_PAGE) madvise(memory, bytes, MADV_HUGEPAGE); /* a wish; may be refused */
+    if (alignment == HUGE_PAGE) madvise(memory, bytes, MADV_HUGEPAGE); /* a hint; may be refused */
     return memset(memory, 0, bytes);
 }
 

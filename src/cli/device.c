@@ -25,14 +25,14 @@ static void write_json(const lar_device_client_options *o, const lar_device_clie
     json_integer(&json, "strange", (int64_t)r->strange);
     json_integer(&json, "steps", (int64_t)r->steps);
     json_open(&json, "round_trip_us", '{');
-    json_number(&json, "p50", 1e6 * r->trip_p50);
-    json_number(&json, "p99", 1e6 * r->trip_p99);
-    json_number(&json, "p999", 1e6 * r->trip_p999);
-    json_number(&json, "max", 1e6 * r->trip_max);
+    json_number(&json, "p50", 1e6 * r->round_trip_p50);
+    json_number(&json, "p99", 1e6 * r->round_trip_p99);
+    json_number(&json, "p999", 1e6 * r->round_trip_p999);
+    json_number(&json, "max", 1e6 * r->round_trip_max);
     json_close(&json);
-    json_number(&json, "largest_force", r->force_most);
+    json_number(&json, "largest_force", r->force_max);
     json_number(&json, "mean_force", r->force_mean);
-    json_number(&json, "largest_torque", r->torque_most);
+    json_number(&json, "largest_torque", r->torque_max);
     json_integer(&json, "touching", (int64_t)r->touching);
     json_integer(&json, "holding", (int64_t)r->holding);
     json_end(&json);
@@ -43,14 +43,15 @@ static void print_report(const lar_device_client_report *r) {
            " lost\n",
            "sent", r->sent, r->seconds, (double)r->sent / r->seconds, r->answered, r->lost);
     printf("%-12sp50 %.0f us, p99 %.0f us, p99.9 %.0f us, max %.0f us\n", "round trip",
-           1e6 * r->trip_p50, 1e6 * r->trip_p99, 1e6 * r->trip_p999, 1e6 * r->trip_max);
-    printf("%-12slargest %.3f N, mean %.3f N; torque at most %.4f N m\n", "force", r->force_most,
-           r->force_mean, r->torque_most);
+           1e6 * r->round_trip_p50, 1e6 * r->round_trip_p99, 1e6 * r->round_trip_p999,
+           1e6 * r->round_trip_max);
+    printf("%-12slargest %.3f N, mean %.3f N; torque at most %.4f N m\n", "force", r->force_max,
+           r->force_mean, r->torque_max);
     printf("%-12s%" PRIu64 " steps meanwhile; it touched in %.0f %% of the answers, held in %.0f "
            "%%\n",
            "engine", r->steps, 100 * (double)r->touching / (double)r->answered,
            100 * (double)r->holding / (double)r->answered);
-    if (r->strange) printf("%-12s%" PRIu64 " packets that are none\n", "strange", r->strange);
+    if (r->strange) printf("%-12s%" PRIu64 " malformed packets\n", "strange", r->strange);
 }
 
 static int device_main(int argc, char **argv) {

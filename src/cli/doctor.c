@@ -23,7 +23,7 @@ static void write_measured(json_writer *json, const findings *f) {
     json_number(json, "p50", m->late.p50);
     json_number(json, "p99", m->late.p99);
     json_number(json, "p999", m->late.p999);
-    json_number(json, "max", m->late.most);
+    json_number(json, "max", m->late.max);
     json_close(json);
     json_number(json, "missed", m->missed);
     json_number(json, "wall_per_step_us", 1e6 * m->step);
@@ -107,7 +107,7 @@ static void print_measured(const findings *f) {
     const lar_doctor_measured *m = &f->measured;
     printf("  %-17sa thread that should wake every millisecond is late by %.*f us (median),\n"
            "  %-17s99 %% of the times by less than %.0f us, at most by %.0f us\n",
-           "", m->late.p50 < 10 ? 1 : 0, m->late.p50, "", m->late.p99, m->late.most);
+           "", m->late.p50 < 10 ? 1 : 0, m->late.p50, "", m->late.p99, m->late.max);
     if (f->here.machine.load[0] > BUSY)
         printf(
             "  %-17s%.1f threads wanted to run in the last minute: what is measured is less than\n"

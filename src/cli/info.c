@@ -31,8 +31,8 @@ static int info_main(int argc, char **argv) {
     double scale = 0;
     const cli_option options[] = {
         CLI_TEXT("--against", "FILE",
-                 "compare with a surface (.stl .obj .vtk .vtp), instead\nof the one that rides on "
-                 "the model",
+                 "compare with a surface (.stl .obj .vtk .vtp), instead\nof the model's "
+                 "embedded surface",
                  &against),
         CLI_REAL("--scale", "S", "of that surface: metres per unit of the file (1)", &scale, 1e-9,
                  1e9),

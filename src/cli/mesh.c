@@ -12,10 +12,10 @@
 #include "cli/report/mesh.h"
 #include "cli/stop.h"
 
-enum { INPUTS_MOST = 255 };
+enum { INPUTS_MAX = 255 };
 
 typedef struct mesh_settings {
-    const char *input[INPUTS_MOST];
+    const char *input[INPUTS_MAX];
     int32_t inputs;
     cli_texts labels;
     const char *names, *title, *out;
@@ -40,7 +40,7 @@ typedef struct progress {
     double start, shown; /* [s]; shown 0: nothing is on the screen */
 } progress;
 
-/* lar_meshing_watch. */
+/* lar_meshing_progress. */
 static int show_progress(void *context, const char *what, double part) {
     static const double QUIET = 1.0, EVERY = 0.1; /* shorter work says nothing [s] */
     progress *p = context;
@@ -132,26 +132,25 @@ static int inspect(mesh_report *report) {
 /* A liver of 36 cubic metres is one in another unit: says so once, and whether millimetres would
  * make it a liver. False: nothing is odd. */
 static bool doubt_units(const mesh_report *report) {
-    static const double LEAST = 1e-9, LIKELY = 1e-3; /* [m^3], and of the most that there is */
+    static const double MIN = 1e-9, LIKELY = 1e-3; /* [m^3], and of the most that there is */
     const char *remedy = report->info.image ? "look at the voxel sizes in the image's header"
                                             : "say --scale, the metres per unit of the file";
     lar_region_info r;
     double all = 0;
     for (int32_t i = 0; !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
         all += r.true_volume;
-        if (!(r.usual_most > 0 && r.true_volume > r.usual_most)) continue;
+        if (!(r.usual_max > 0 && r.true_volume > r.usual_max)) continue;
         const double millimetres = 1e-9 * r.true_volume;
-        const bool fits = !report->info.image && millimetres < r.usual_most &&
-                          millimetres > LIKELY * r.usual_most;
+        const bool fits =
+            !report->info.image && millimetres < r.usual_max && millimetres > LIKELY * r.usual_max;
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: %s holds %s, and no %s is larger than %s: the file may be in another "
                      "unit%s, or the region be something else; %s",
-                     r.name, cli_volume(r.true_volume).text, r.tissue,
-                     cli_volume(r.usual_most).text,
+                     r.name, cli_volume(r.true_volume).text, r.tissue, cli_volume(r.usual_max).text,
                      fits ? ", such as millimetres (--scale 0.001)" : "", remedy);
         return true;
     }
-    if (!(all > 0 && all < LEAST)) return false;
+    if (!(all > 0 && all < MIN)) return false;
     cli_complain(
         &cli_mesh, CLI_DONE,
         "note: the body holds %s, less than a cubic millimetre: the file may be in another "
@@ -236,7 +235,7 @@ static lar_status make(void *context, int32_t elements, lar_meshing **meshing, l
     options.voxel = s->voxel;
     options.title = s->title;
     options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
-    options.watch = show_progress;
+    options.progress = show_progress;
     options.context = &m->progress;
     lar_status status = lar_meshing_create(s->input, s->inputs, &options, meshing, error);
     clear_progress(&m->progress);
@@ -321,9 +320,9 @@ static int mesh_main(int argc, char **argv) {
         CLI_FLAG("--force", "replace files that are there", &s.force),
         CLI_FLAG("--json", "the report as one JSON object on standard output", &s.json),
         CLI_END};
-    int status = cli_parse(&cli_mesh, options, argc, argv, s.input, INPUTS_MOST);
+    int status = cli_parse(&cli_mesh, options, argc, argv, s.input, INPUTS_MAX);
     if (status >= 0) return status;
-    while (s.inputs < INPUTS_MOST && s.input[s.inputs]) s.inputs++;
+    while (s.inputs < INPUTS_MAX && s.input[s.inputs]) s.inputs++;
     if (s.list) return list_labels(&s);
     status = check_settings(&s);
     return status ? status : mesh(&s);
@@ -337,7 +336,7 @@ const cli_command cli_mesh = {
         "Meshes a label image (.nii .nii.gz .nrrd .nhdr), closed surfaces (.stl .obj .vtk .vtp),\n"
         "one region each, or the boundary and regions of a mesh of tetrahedra (.msh .vtu .vtk\n"
         ".inp .feb) with hexahedra that lie on the true boundary and run in real time. Writes the "
-        "mesh, the fine surface and a scene with materials, a support and a\n"
+        "mesh, the embedded surface and a scene with materials, a support and a\n"
         "pull, which runs as it is and says in comments what to change. Lengths are metres.",
     .examples = "  lariat mesh scan.nii.gz --list\n"
                 "  lariat mesh scan.nii.gz --label liver --names labels.csv\n"

@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "study/real_time.h"
 
-enum { START = 2000, LEAST = 60, MOST = 200000, ROUNDS = 5 };
+enum { START = 2000, MIN = 60, MAX = 200000, ROUNDS = 5 };
 static const double AIM = 0.9;    /* of what holds: the estimate is one */
 static const double ENOUGH = 0.8; /* of what holds */
 static const double LONG = 0.1;   /* a measurement on one core [s] */
@@ -36,9 +36,10 @@ static lar_status measure(lar_meshing *meshing, lar_real_time *found, lar_error 
     snprintf(folder, sizeof folder, "%s/lariat-mesh-XXXXXX", root && *root ? root : "/tmp");
     if (!mkdtemp(folder)) {
         *error = (lar_error){.status = LAR_ERROR_IO};
-        snprintf(error->message, sizeof error->message,
-                 "%.900s: a folder for trying meshes cannot be made: %s; set TMPDIR to one that can",
-                 folder, strerror(errno));
+        snprintf(
+            error->message, sizeof error->message,
+            "%.900s: a folder for trying meshes cannot be made: %s; set TMPDIR to one that can",
+            folder, strerror(errno));
         return LAR_ERROR_IO;
     }
     lar_meshing_inspect(meshing, &info);
@@ -88,7 +89,7 @@ lar_status cli_mesh_real_time(cli_make_mesh *make, void *context, lar_meshing **
         keep_better(&kept, &elements, holds, next, info.elements, info.elements <= found.holds);
         if (*holds && elements >= ENOUGH * found.holds) break;
         double asked = AIM * found.holds * wanted / info.elements; /* as meshing comes out */
-        asked = fmin(MOST, fmax(LEAST, asked));
+        asked = fmin(MAX, fmax(MIN, asked));
         if (asked == wanted) break;
         wanted = asked;
     }

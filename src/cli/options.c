@@ -65,13 +65,13 @@ static int distance(const char *a, const char *b) {
 const char *cli_nearest_name(const char *word, const char *const *names) {
     const char *nearest = NULL;
     size_t letters = strlen(word + strspn(word, "-"));
-    int limit = letters <= 4 ? 1 : 2, least = limit + 1;
+    int limit = letters <= 4 ? 1 : 2, min = limit + 1;
     for (; *names; names++) {
         int d = distance(word, *names);
         /* The beginning of a name is meant as that name. */
         if (letters >= 2 && strncmp(word, *names, strlen(word)) == 0) d = 1;
-        if (d < least) {
-            least = d;
+        if (d < min) {
+            min = d;
             nearest = *names;
         }
     }
@@ -88,12 +88,12 @@ static int refuse_value(const cli_command *command, const cli_option *option, co
 static int parse_real(const cli_command *command, const cli_option *option, const char *text) {
     char *end, expected[160];
     double value = strtod(text, &end);
-    if (end != text && *end == '\0' && isfinite(value) && value >= option->least &&
-        value <= option->most) {
+    if (end != text && *end == '\0' && isfinite(value) && value >= option->min &&
+        value <= option->max) {
         *(double *)option->value = value;
         return -1;
     }
-    snprintf(expected, sizeof expected, "a number from %g to %g", option->least, option->most);
+    snprintf(expected, sizeof expected, "a number from %g to %g", option->min, option->max);
     return refuse_value(command, option, text, expected);
 }
 
@@ -101,13 +101,13 @@ static int parse_count(const cli_command *command, const cli_option *option, con
     char *end, expected[160];
     errno = 0;
     long long value = strtoll(text, &end, 10);
-    if (end != text && *end == '\0' && errno == 0 && (double)value >= option->least &&
-        (double)value <= option->most) {
+    if (end != text && *end == '\0' && errno == 0 && (double)value >= option->min &&
+        (double)value <= option->max) {
         *(int64_t *)option->value = value;
         return -1;
     }
-    snprintf(expected, sizeof expected, "a whole number from %.0f to %.0f", option->least,
-             option->most);
+    snprintf(expected, sizeof expected, "a whole number from %.0f to %.0f", option->min,
+             option->max);
     return refuse_value(command, option, text, expected);
 }
 
@@ -128,9 +128,9 @@ static int parse_choice(const cli_command *command, const cli_option *option, co
 static int parse_texts(const cli_command *command, const cli_option *option, const char *text) {
     cli_texts *texts = option->value;
     if (!*text) return refuse_value(command, option, "\"\"", option->placeholder);
-    if (texts->count == CLI_TEXTS_MOST)
+    if (texts->count == CLI_TEXTS_MAX)
         return cli_complain(command, CLI_USAGE, "%s can be given %d times", option->name,
-                            CLI_TEXTS_MOST);
+                            CLI_TEXTS_MAX);
     texts->text[texts->count++] = text;
     return -1;
 }
@@ -158,10 +158,10 @@ static int parse_value(const cli_command *command, const cli_option *option, con
 /* ---- the command line ------------------------------------------------------------------- */
 
 static int unknown_option(const cli_command *command, const cli_option *options, const char *name) {
-    enum { MOST = 40 };
-    const char *names[MOST + 2];
+    enum { MAX = 40 };
+    const char *names[MAX + 2];
     int count = 0;
-    for (; options[count].name && count < MOST; count++) names[count] = options[count].name;
+    for (; options[count].name && count < MAX; count++) names[count] = options[count].name;
     names[count++] = "--help";
     names[count] = NULL;
     const char *meant = cli_nearest_name(name, names);
@@ -199,9 +199,9 @@ static bool asks_help(int argc, char **argv) {
 }
 
 /* How many arguments there must be, of those there may be. */
-static int least_arguments(const char *arguments, int most) {
+static int min_arguments(const char *arguments, int max) {
     if (arguments[0] == '[') return 0;
-    return strstr(arguments, "...") ? 1 : most;
+    return strstr(arguments, "...") ? 1 : max;
 }
 
 int cli_parse(const cli_command *command, const cli_option *options, int argc, char **argv,
@@ -229,7 +229,7 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
             arguments[given++] = argv[at++];
         }
     }
-    if (given < least_arguments(command->arguments, argument_count))
+    if (given < min_arguments(command->arguments, argument_count))
         return cli_complain(command, CLI_USAGE, "%s is missing; usage: lariat %s %s [OPTIONS]",
                             command->arguments, command->name, command->arguments);
     return -1;

@@ -18,17 +18,17 @@
 typedef enum cli_option_kind {
     OPTION_FLAG,   /* bool *value */
     OPTION_TEXT,   /* const char **value */
-    OPTION_REAL,   /* double *value, least..most */
-    OPTION_COUNT,  /* int64_t *value, least..most */
+    OPTION_REAL,   /* double *value, min..max */
+    OPTION_COUNT,  /* int64_t *value, min..max */
     OPTION_CHOICE, /* int *value: index into choices */
     OPTION_TEXTS,  /* cli_texts *value: may be given again and again */
 } cli_option_kind;
 
-enum { CLI_TEXTS_MOST = 64 };
+enum { CLI_TEXTS_MAX = 64 };
 
 typedef struct cli_texts {
     int count;
-    const char *text[CLI_TEXTS_MOST];
+    const char *text[CLI_TEXTS_MAX];
 } cli_texts;
 
 typedef struct cli_option {
@@ -37,7 +37,7 @@ typedef struct cli_option {
     const char *placeholder; /* of the value in the help */
     const char *help;
     void *value;
-    double least, most;
+    double min, max;
     const char *const *choices; /* NULL ends the list */
 } cli_option;
 
@@ -50,9 +50,9 @@ typedef struct cli_option {
 #define CLI_TEXTS(n, p, h, v)                                                                      \
     { CLI_VALUE(OPTION_TEXTS, n, p, h, v) }
 #define CLI_REAL(n, p, h, v, from, to)                                                             \
-    { CLI_VALUE(OPTION_REAL, n, p, h, v), .least = from, .most = to }
+    { CLI_VALUE(OPTION_REAL, n, p, h, v), .min = from, .max = to }
 #define CLI_COUNT(n, p, h, v, from, to)                                                            \
-    { CLI_VALUE(OPTION_COUNT, n, p, h, v), .least = from, .most = to }
+    { CLI_VALUE(OPTION_COUNT, n, p, h, v), .min = from, .max = to }
 #define CLI_CHOICE(n, p, h, v, names)                                                              \
     { CLI_VALUE(OPTION_CHOICE, n, p, h, v), .choices = names }
 #define CLI_END                                                                                    \

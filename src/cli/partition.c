@@ -25,17 +25,17 @@ static void write_scheme(json_writer *json, const lar_partition_scheme *s) {
     json_open(json, NULL, '{');
     json_text(json, "scheme", s->name);
     json_number(json, "vectors_mean", s->vectors_mean);
-    json_integer(json, "vectors_max", s->vectors_most);
+    json_integer(json, "vectors_max", s->vectors_max);
     json_number(json, "local_vectors_mean", s->local_mean);
-    json_integer(json, "local_vectors_max", s->local_most);
+    json_integer(json, "local_vectors_max", s->local_max);
     json_number(json, "global_vectors_mean", s->global_mean);
-    json_integer(json, "global_vectors_max", s->global_most);
+    json_integer(json, "global_vectors_max", s->global_max);
     json_number(json, "bytes_mean", s->bytes_mean);
-    json_integer(json, "bytes_max", s->bytes_most);
+    json_integer(json, "bytes_max", s->bytes_max);
     json_number(json, "packets_mean", s->packets_mean);
-    json_integer(json, "packets_max", s->packets_most);
+    json_integer(json, "packets_max", s->packets_max);
     json_number(json, "packet_bytes_mean", s->packet_bytes_mean);
-    json_integer(json, "packet_bytes_max", s->packet_bytes_most);
+    json_integer(json, "packet_bytes_max", s->packet_bytes_max);
     json_close(json);
 }
 
@@ -70,10 +70,10 @@ static void write_json(const lar_partition_report *r) {
     json_open(&json, "schedules", '{');
     json_text(&json, "scheme", r->schedules.scheme);
     json_number(&json, "batches_mean", r->schedules.batches_mean);
-    json_integer(&json, "batches_max", r->schedules.batches_most);
+    json_integer(&json, "batches_max", r->schedules.batches_max);
     json_number(&json, "waits_mean", r->schedules.waits_mean);
-    json_integer(&json, "waits_max", r->schedules.waits_most);
-    json_integer(&json, "buffer_bytes_max", r->schedules.buffer_bytes_most);
+    json_integer(&json, "waits_max", r->schedules.waits_max);
+    json_integer(&json, "buffer_bytes_max", r->schedules.buffer_bytes_max);
     json_close(&json);
     json_open(&json, "schemes", '[');
     for (int s = 0; s < LAR_PARTITION_SCHEMES; s++) write_scheme(&json, &r->scheme[s]);
@@ -103,20 +103,20 @@ static void print_schemes(const lar_partition_report *r) {
         const lar_partition_scheme *s = &r->scheme[i];
         printf("%-8s%10.1f (%6" PRId64 ")%8.1f (%6" PRId64 ")%8.1f (%6" PRId64 ")%9.0f (%7" PRId64
                ")%7.1f (%4" PRId64 ")%10.0f (%6" PRId64 ")\n",
-               s->name, s->vectors_mean, s->vectors_most, s->local_mean, s->local_most,
-               s->global_mean, s->global_most, s->bytes_mean, s->bytes_most, s->packets_mean,
-               s->packets_most, s->packet_bytes_mean, s->packet_bytes_most);
+               s->name, s->vectors_mean, s->vectors_max, s->local_mean, s->local_max,
+               s->global_mean, s->global_max, s->bytes_mean, s->bytes_max, s->packets_mean,
+               s->packets_max, s->packet_bytes_mean, s->packet_bytes_max);
     }
 }
 
 static void print_schedules(const lar_partition_report *r) {
     const lar_partition_schedules *s = &r->schedules;
     printf("\nschedules of scheme %s, per processor, mean (most)\n%-17s%.1f (%" PRId64 ")",
-           s->scheme, "batches", s->batches_mean, s->batches_most);
+           s->scheme, "batches", s->batches_mean, s->batches_max);
     if (s->threads > 1)
         printf(", on %d threads that wait for each other %.1f (%" PRId64 ") times", (int)s->threads,
-               s->waits_mean, s->waits_most);
-    printf("\n%-17s%" PRId64 " bytes at most\n", "receive buffer", s->buffer_bytes_most);
+               s->waits_mean, s->waits_max);
+    printf("\n%-17s%" PRId64 " bytes at most\n", "receive buffer", s->buffer_bytes_max);
 }
 
 static void print_table(const lar_partition_report *r) {
@@ -164,7 +164,7 @@ static int run_partition(const char *path, lar_partition_options *wanted, bool j
     if (status) return status;
     int shown = -1;
     if (isatty(STDERR_FILENO)) {
-        wanted->watch = show_progress;
+        wanted->progress = show_progress;
         wanted->context = &shown;
     }
     lar_partition_report report;

@@ -11,7 +11,7 @@
 #include "study/bench/kernel.h"
 #include "study/predict/network_trace.h"
 
-enum { ROWS_MOST = 16, MACHINES_MOST = 16, CRITICAL_EDGE = 40 };
+enum { ROWS_MAX = 16, MACHINES_MAX = 16, CRITICAL_EDGE = 40 };
 
 typedef struct predict_settings {
     const char *scene;
@@ -133,10 +133,10 @@ static int predict_scene(const predict_settings *s, const lar_model *model) {
 /* ---- growing bodies ------------------------------------------------------------------------- */
 
 static bool read_list(const char *text, int32_t *number, int32_t *count) {
-    for (*count = 0; *count < ROWS_MOST; text++) {
+    for (*count = 0; *count < ROWS_MAX; text++) {
         char *end;
         long x = strtol(text, &end, 10);
-        if (end == text || x < 1 || x > LAR_NETWORK_PROCESSORS_MOST) return false;
+        if (end == text || x < 1 || x > LAR_NETWORK_PROCESSORS_MAX) return false;
         number[(*count)++] = (int32_t)x;
         text = end;
         if (!*text) return true;
@@ -158,8 +158,8 @@ static void choose_schemes(const predict_settings *s, predict_scaling *scaling) 
 
 static int predict_growth(const predict_settings *s) {
     lar_cluster machine;
-    lar_block_prediction row[ROWS_MOST * LAR_PREDICT_SCHEMES];
-    int32_t processors[ROWS_MOST];
+    lar_block_prediction row[ROWS_MAX * LAR_PREDICT_SCHEMES];
+    int32_t processors[ROWS_MAX];
     lar_error error;
     predict_scaling scaling = {.machine = &machine, .processors = processors, .row = row};
     scaling.threads = s->parallel.threads > 0 ? (int32_t)s->parallel.threads : 1;
@@ -167,7 +167,7 @@ static int predict_growth(const predict_settings *s) {
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--scale-to %s is no list of up to %d numbers of processors from 1 to "
                             "%d, as in 100,1000,10000",
-                            s->scale, ROWS_MOST, LAR_NETWORK_PROCESSORS_MOST);
+                            s->scale, ROWS_MAX, LAR_NETWORK_PROCESSORS_MAX);
     int status = find_machine(s, &machine);
     if (status) return status;
     choose_schemes(s, &scaling);
@@ -195,21 +195,21 @@ static void tell_edge(void *context, int scheme, int32_t edge) {
 }
 
 static int predict_critical(const predict_settings *s) {
-    lar_cluster machine[MACHINES_MOST];
-    lar_critical critical[MACHINES_MOST];
+    lar_cluster machine[MACHINES_MAX];
+    lar_critical critical[MACHINES_MAX];
     lar_error error;
     lar_critical_options options = {.machine = machine,
                                     .processors = 125,
                                     .threads =
                                         s->parallel.threads ? (int32_t)s->parallel.threads : 1,
-                                    .edge_most = CRITICAL_EDGE,
+                                    .edge_max = CRITICAL_EDGE,
                                     .efficiency = 0.9,
                                     .tell = tell_edge};
-    while (s->elements && options.edge_most > 1 &&
-           (int64_t)options.edge_most * options.edge_most * options.edge_most > s->elements)
-        options.edge_most--;
+    while (s->elements && options.edge_max > 1 &&
+           (int64_t)options.edge_max * options.edge_max * options.edge_max > s->elements)
+        options.edge_max--;
     bool one = s->machine != NULL;
-    for (int i = 0; i < MACHINES_MOST && (one ? i == 0 : lar_cluster_at(i) != NULL); i++) {
+    for (int i = 0; i < MACHINES_MAX && (one ? i == 0 : lar_cluster_at(i) != NULL); i++) {
         predict_settings each = *s;
         if (!one) each.machine = lar_cluster_at(i)->name;
         int status = find_machine(&each, &machine[options.machines++]);
@@ -333,7 +333,7 @@ static int predict_main(int argc, char **argv) {
         CLI_COUNT(
             "--elements-per-processor", "N",
             "of a block of --scale-to (150); of --critical the\nlargest that is tried (64000)",
-            &s.elements, 1, LAR_PREDICT_BLOCK_MOST),
+            &s.elements, 1, LAR_PREDICT_BLOCK_MAX),
         CLI_FLAG("--critical",
                  "without a scene: the smallest block with an efficiency\nof 90 %, "
                  "for every machine and scheme",

@@ -253,7 +253,7 @@ static int replay_main(int argc, char **argv) {
     const char *arguments[2];
     const cli_option options[] = {
         CLI_TEXT("--out", "DIR", "write frames, .pvd and probes.csv there", &s.out),
-        CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
+        CLI_FLAG("--surface", "with --out: the embedded surface in every frame, too", &s.surface),
         CLI_REAL("--every", "S",
                  "simulated seconds between frames; without: what the\nscene's output says, 0.04 "
                  "when it says nothing",

@@ -18,13 +18,13 @@ static int report_model(const char *path, lar_requirements_options *wanted, bool
     lar_model *model = NULL;
     int status = cli_open_model(&cli_requirements, path, &model);
     if (status) return status;
-    if (isatty(STDERR_FILENO)) wanted->watch = show_progress;
-    lar_requirements found = {.elements_most = 0};
+    if (isatty(STDERR_FILENO)) wanted->progress = show_progress;
+    lar_requirements found = {.elements_max = 0};
     lar_model_info info;
     lar_error error;
     bool failed = lar_model_inspect(model, &info, &error) ||
                   lar_requirements_of(model, wanted, &found, &error);
-    if (wanted->watch) wanted->watch(NULL, NULL);
+    if (wanted->progress) wanted->progress(NULL, NULL);
     if (failed) {
         status = cli_complain(&cli_requirements, CLI_FAILED, "%s", error.message);
     } else {

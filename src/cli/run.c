@@ -431,7 +431,7 @@ static int run_main(int argc, char **argv) {
         CLI_TEXT("--out", "DIR",
                  "write frames, .pvd, probes.csv, the last state\n(.checkpoint) and run.json there",
                  &s.out),
-        CLI_FLAG("--surface", "with --out: the fine surface in every frame, too", &s.surface),
+        CLI_FLAG("--surface", "with --out: the embedded surface in every frame, too", &s.surface),
         CLI_TEXT("--resume", "FILE",
                  "go on from a saved state of this scene (.checkpoint);\n--time and --steps count "
                  "from there",

@@ -20,7 +20,7 @@ typedef struct view_settings {
         *scan;
     cli_texts devices; /* TOOL=SPEC */
     int64_t port, priority;
-    double pace, seconds, time_step, save_most;
+    double pace, seconds, time_step, save_max;
     int isa;
     bool paused, open, json, force;
     cli_parallel parallel;
@@ -145,7 +145,7 @@ static int open_server(view *v) {
                                   .scan = s->scan,
                                   .folder = s->viewer,
                                   .save_folder = s->save_folder,
-                                  .save_most = 1e9 * s->save_most};
+                                  .save_max = 1e9 * s->save_max};
     lar_error error, first;
     lar_status status = lar_server_open(v->session, v->model, &options, &v->server, &first);
     error = first;
@@ -233,11 +233,11 @@ static void show_progress(view *v, const lar_session_status *s, double at) {
     v->progress_at = at;
 }
 
-static const double RATHER_NOT_AGAIN = 5; /* [s] */
+static const double REPEAT_LIMIT = 5; /* [s] */
 
 /* The run went back to a sound state; when it does so often, only now and then. */
 static void announce_recovery(view *v, const lar_session_status *s, double at) {
-    if (s->recoveries == v->recoveries || at < v->recovered_told + RATHER_NOT_AGAIN) return;
+    if (s->recoveries == v->recoveries || at < v->recovered_told + REPEAT_LIMIT) return;
     clear_progress(v);
     cli_complain(&cli_view, CLI_DONE, "note: the run became unstable and %s", s->recovery);
     v->recoveries = s->recoveries;
@@ -266,7 +266,7 @@ static void announce_slow(view *v, const lar_session_status *s, double at) {
     v->slow = s->slow_motion != 0;
     if (s->slow_cause != LAR_SLOW_NOT) v->report.slow_cause = s->slow_cause;
     if (!v->slow || s->slow_cause == LAR_SLOW_NOT || at < v->slow_since + KNOWN ||
-        at < v->slow_told + RATHER_NOT_AGAIN || v->slow_told > v->slow_since ||
+        at < v->slow_told + REPEAT_LIMIT || v->slow_told > v->slow_since ||
         s->real_time_factor_now > 0.99 * s->pace)
         return;
     clear_progress(v);
@@ -340,7 +340,7 @@ static void look_after(view *v) {
         nanosleep(&nap, NULL);
         lar_session_status_get(v->session, &status);
         int32_t viewers = lar_server_viewers(v->server);
-        if (viewers > v->report.viewers_most) v->report.viewers_most = viewers;
+        if (viewers > v->report.viewers_max) v->report.viewers_max = viewers;
         announce(v, &status, now());
         show_progress(v, &status, now());
         if (v->browser && waitpid(v->browser, NULL, WNOHANG)) v->browser = 0;
@@ -418,7 +418,7 @@ static int view_main(int argc, char **argv) {
                        .argv = argv,
                        .port = 8000,
                        .pace = 1,
-                       .save_most = 4};
+                       .save_max = 4};
     const cli_option options[] = {
         CLI_COUNT("--port", "N",
                   "where the viewer is served (8000; when it is taken the next\none that is free); "
@@ -451,7 +451,7 @@ static int view_main(int argc, char **argv) {
                  &s.save_folder),
         CLI_REAL("--save-most", "GB",
                  "how much states and recordings may take there, those from\nbefore included (4)",
-                 &s.save_most, 1e-3, 1e6),
+                 &s.save_max, 1e-3, 1e6),
         CLI_TEXT(
             "--scan", "IMAGE",
             "the segmented image that the scene was meshed from: its\nslices can be seen beside "
@@ -491,7 +491,7 @@ const cli_command cli_view = {
     .summary = "simulate a scene in real time, to see and to pull at in the browser",
     .arguments = "SCENE",
     .description =
-        "Simulates a scene at the pace of the clock and serves a viewer, whose address is "
+        "Simulates a scene in real time and serves a viewer, whose address is "
         "printed:\n"
         "take hold of the organ with the mouse and pull. Only this machine can reach it unless\n"
         "--listen says otherwise. Ctrl-C ends it with a report; when the run breaks, the viewer\n"

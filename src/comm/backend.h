@@ -2,9 +2,9 @@
  * table and a row in comm.c.
  *
  *     lar_comm_open   open()       own receive buffer; what others need to reach it -> own address
- *                     (meeting)    processor zero gathers and distributes all addresses (T 7.5.7)
+ *                     (rendezvous) processor zero gathers and distributes all addresses (T 7.5.7)
  *                     connect()    reach every peer; where its memory can be written: peer.direct
- *                     (meeting)    everyone is connected
+ *                     (rendezvous) everyone is connected
  *                     begin()      names and listeners that nobody needs any more go
  *     lar_comm_put    put()        only to peers without `direct`: payload, then tail
  *     lar_comm_wait   progress()   when the hardware does not write the receive buffer by itself
@@ -32,7 +32,7 @@ typedef struct lar_comm_address {
 typedef struct lar_comm_backend {
     const char *name, *summary, *missing; /* as in lar_comm_backend_info */
     lar_comm_start start;
-    bool meets; /* open and connect bring the processors together; otherwise meeting.h does */
+    bool meets; /* open and connect bring the processors together; otherwise rendezvous.h does */
     int polls;  /* before yielding */
     lar_status (*open)(lar_comm *comm, lar_error *error);
     lar_status (*connect)(lar_comm *comm, lar_error *error);
@@ -66,9 +66,9 @@ struct lar_comm {
     uint64_t token;              /* a number that only this computer's processors know */
     uint64_t *verdict;           /* who is lost; 0: nobody. Atomic, may be shared */
     uint64_t own_verdict;        /* where *verdict stands when it is not shared */
-    int *links;                  /* [count] the meeting's connections, -1: none */
+    int *links;                  /* [count] the rendezvous's connections, -1: none */
     int32_t *waiting; /* [count], atomic: whom each waits for, plus 1. Of the team; else NULL */
-    struct lar_comm_watch *watch;
+    struct lar_comm_heartbeat *heartbeat;
     void *state; /* the backend's */
 };
 

@@ -10,8 +10,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "comm/backend.h"
-#include "comm/meeting.h"
-#include "comm/watch.h"
+#include "comm/rendezvous.h"
+#include "comm/heartbeat.h"
 
 /* ---- the backends ------------------------------------------------------------------------ */
 
@@ -65,9 +65,9 @@ bool lar_comm_is_local(const lar_comm *comm) {
 
 static lar_status check_options(const lar_comm_options *o, const lar_comm_backend *backend,
                                 lar_error *error) {
-    if (o->count < 1 || o->count > LAR_COMM_PROCESSORS_MOST)
+    if (o->count < 1 || o->count > LAR_COMM_PROCESSORS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d processors; take 1 to %d", (int)o->count,
-                        LAR_COMM_PROCESSORS_MOST);
+                        LAR_COMM_PROCESSORS_MAX);
     if (o->self < 0 || o->self >= o->count)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "processor %d of %d; they count from 0",
                         (int)o->self, (int)o->count);
@@ -88,18 +88,18 @@ static lar_status check_options(const lar_comm_options *o, const lar_comm_backen
     return LAR_OK;
 }
 
-/* Connects to the peers between two meetings: before, all addresses are known; after, everyone can
- * reach everyone. */
+/* Connects to the peers between two parts of the rendezvous: before, all addresses are known;
+ * after, everyone can reach everyone. */
 static lar_status come_together(lar_comm *comm, lar_error *error) {
     const lar_comm_backend *backend = comm->backend;
     if (backend->meets) return backend->connect(comm, error);
-    lar_status status = lar_meeting_gather(comm, error);
+    lar_status status = lar_rendezvous_gather(comm, error);
     if (status) return status;
     for (int32_t p = 0; p < comm->options.count; p++)
         comm->peers[p].half = comm->addresses[p].receive_bytes;
     lar_error own;
     status = backend->connect(comm, &own);
-    return lar_meeting_ready(comm, status ? &own : NULL, error);
+    return lar_rendezvous_ready(comm, status ? &own : NULL, error);
 }
 
 static lar_status open_parts(lar_comm *comm, lar_error *error) {
@@ -117,7 +117,7 @@ static lar_status open_parts(lar_comm *comm, lar_error *error) {
     if (comm->backend->begin) comm->backend->begin(comm);
     /* What a processor sends to itself needs no network. */
     comm->peers[comm->options.self] = (lar_comm_peer){comm->receive, comm->options.receive_bytes};
-    return comm->backend->meets ? LAR_OK : lar_watch_start(comm, error);
+    return comm->backend->meets ? LAR_OK : lar_heartbeat_start(comm, error);
 }
 
 lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_error *error) {
@@ -151,7 +151,7 @@ void lar_comm_close(lar_comm *comm) {
     if (!comm) return;
     if (comm->backend->leave) comm->backend->leave(comm);
     /* Goodbyes first: a connection that ends after one is no loss. */
-    lar_watch_stop(comm);
+    lar_heartbeat_stop(comm);
     if (comm->backend->close) comm->backend->close(comm);
     for (int32_t p = 0; comm->links && p < comm->options.count; p++)
         if (comm->links[p] >= 0) close(comm->links[p]);
@@ -223,7 +223,7 @@ lar_status lar_comm_give_up(lar_comm *comm, int32_t processor, lar_comm_loss los
                             lar_error *error) {
     if (!__atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE)) {
         /* Processor zero decides among processes; without it everyone decides alone. */
-        if (comm->watch) lar_watch_report(comm, processor, loss, step);
+        if (comm->heartbeat) lar_heartbeat_report(comm, processor, loss, step);
         if (loss == LAR_LOSS_STALLED) processor = end_of_chain(comm, processor);
         uint64_t nobody = 0;
         __atomic_compare_exchange_n(comm->verdict, &nobody, lar_comm_verdict(processor, loss),
@@ -296,7 +296,7 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
             if (backend->progress) {
                 lar_status status = backend->progress(comm, peer);
                 if (load_tail(tail) == step) return LAR_OK;
-                /* The peer may obey a verdict that has not come here yet: giving up waits for it.
+                /* The peer may act on a verdict that has not come here yet: giving up waits for it.
                  */
                 if (status) return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
             } else {
@@ -321,8 +321,8 @@ static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *t
     /* [s] Longer than from one tick of a session to the next (1 ms): commands follow each other,
      * and who sleeps hears them late. */
     static const double POLLING = 2.5e-3;
-    enum { SLEEP_LEAST = 50000, SLEEP_MOST = 1000000 /* [ns] */ };
-    struct timespec sleep = {.tv_nsec = SLEEP_LEAST};
+    enum { SLEEP_MIN = 50000, SLEEP_MAX = 1000000 /* [ns] */ };
+    struct timespec sleep = {.tv_nsec = SLEEP_MIN};
     const lar_comm_backend *backend = comm->backend;
     double until = lar_comm_now() + POLLING;
     for (;;) {
@@ -338,7 +338,7 @@ static lar_status poll_and_sleep(lar_comm *comm, int32_t peer, const uint64_t *t
             continue;
         }
         nanosleep(&sleep, NULL);
-        sleep.tv_nsec = 2 * sleep.tv_nsec < SLEEP_MOST ? 2 * sleep.tv_nsec : SLEEP_MOST;
+        sleep.tv_nsec = 2 * sleep.tv_nsec < SLEEP_MAX ? 2 * sleep.tv_nsec : SLEEP_MAX;
     }
 }
 

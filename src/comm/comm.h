@@ -22,10 +22,10 @@
  * progress. Every poll lets the backend work where it must (sockets). Every wait has a deadline.
  *
  * Who is lost. Processors of one process share a word. Processes keep the connections of the
- * start-up open, a star around processor zero; a thread of its own in each process (watch.h) says
- * ten times a second that it lives and hears who does not. The first verdict holds for everyone:
- * all waits end with a message that names the same processor. The step loop itself only reads a
- * word in memory.
+ * start-up open, a star around processor zero; a thread of its own in each process (heartbeat.h)
+ * says ten times a second that it lives and hears who does not. The first verdict holds for
+ * everyone: all waits end with a message that names the same processor. The step loop itself only
+ * reads a word in memory.
  *
  * Threads. Several threads of a processor may put and wait at the same time, each on its own
  * packets. Opening, closing and lar_comm_abort belong to one thread.
@@ -41,7 +41,7 @@
 
 #include "base/error.h"
 
-enum { LAR_COMM_PROCESSORS_MOST = 4096, LAR_COMM_ADDRESS_TEXT = 80 };
+enum { LAR_COMM_PROCESSORS_MAX = 4096, LAR_COMM_ADDRESS_TEXT = 80 };
 
 /* One processor's end of the parallel computer. */
 typedef struct lar_comm lar_comm;
@@ -117,7 +117,7 @@ lar_status lar_comm_put(lar_comm *comm, int32_t peer, size_t offset, const void 
  * nothing: the peer's memory, where it can be written from here. NULL: gather elsewhere. */
 void *lar_comm_room(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step);
 
-/* Hints, for places that are right. Where processors share memory they bring cache lines near while
+/* Hints, for places that are right. Where processors share memory they prefetch cache lines while
  * something else is computed: parts of a packet that will be put soon; whether a packet has come
  * (without letting the backend work), and then parts of it. Before that its lines are the sender's
  * to write. */

@@ -86,7 +86,7 @@ lar_status lar_comm_job_end(lar_comm_job *job, bool failed, lar_error *error) {
     return alone ? LAR_OK : lar_mpi_leave(failed, lar_comm_options_default().timeout, error);
 }
 
-/* ---- meeting -------------------------------------------------------------------------------- */
+/* ---- rendezvous ------------------------------------------------------------------------------ */
 
 static uint64_t hash_text(uint64_t hash, const char *text) {
     for (; *text; text++) hash = lar_hash_word(hash, (unsigned char)*text);

@@ -2,12 +2,12 @@
  *
  *     lar_comm_job_find      the launcher's environment; MPI is joined when there are several
  *     lar_comm_job_meet      zero listens, MPI tells everyone where   --+   for every
- *     lar_comm_open          the ordinary meeting, any backend        --+   lar_comm
+ *     lar_comm_open          the ordinary rendezvous, any backend        --+   lar_comm
  *     lar_comm_close
  *     lar_comm_job_end       before the process ends
  *
- * Only the address travels through MPI (T 7.5.7); everything after that, the watch over the
- * processors included, is the same as without a launcher, for every backend.
+ * Only the address travels through MPI (T 7.5.7); everything after that, the heartbeat
+ * included, is the same as without a launcher, for every backend.
  *
  * A processor that fails ends with a status other than 0 and without leaving MPI: launchers then
  * end all others. They also do when a process is killed, and say so; MPICH's is so quick that the

@@ -25,7 +25,7 @@
 #include "comm/backend.h"
 #include "comm/mpi_world.h"
 
-enum { RECEIVES_MOST = 16, RECEIVE_BYTES = 8 << 20, SENDS = 1024, POOL_LEAST = 1 << 16 };
+enum { RECEIVES_MAX = 16, RECEIVE_BYTES = 8 << 20, SENDS = 1024, POOL_MIN = 1 << 16 };
 
 typedef struct message {
     uint64_t offset, bytes, step, token;
@@ -47,11 +47,11 @@ typedef struct mpi_state {
     int tag;
     int *ranks; /* [count] */
     bool begun;
-    bool broken;          /* MPI has failed; who is lost is the watch's to say */
+    bool broken;          /* MPI has failed; who is lost is the heartbeat's to say */
     int receives, oldest; /* the ring */
     size_t receive_bytes; /* of one */
     unsigned char *incoming;
-    lar_mpi_request posted[RECEIVES_MOST];
+    lar_mpi_request posted[RECEIVES_MAX];
     unsigned char *pool;
     size_t pool_bytes, pool_at;
     int first_sent, sents; /* a ring, too */
@@ -82,7 +82,7 @@ static lar_status mpi_open(lar_comm *comm, lar_error *error) {
     if (!state || !comm->receive) return lar_fail_memory(error, 2 * bytes, "a receive buffer");
     state->world = world;
     lar_mpi_lock(world);
-    mpi_address own = {.rank = world->rank, .tag = world->tags_used % world->tag_most};
+    mpi_address own = {.rank = world->rank, .tag = world->tags_used % world->tag_max};
     world->tags_used++;
     lar_mpi_unlock(world);
     lar_comm_address *address = &comm->addresses[o->self];
@@ -93,15 +93,15 @@ static lar_status mpi_open(lar_comm *comm, lar_error *error) {
 
 static lar_status take_memory(lar_comm *comm, lar_error *error) {
     mpi_state *state = comm->state;
-    size_t count = (size_t)comm->options.count, most = comm->options.receive_bytes;
-    state->receive_bytes = sizeof(message) + most;
+    size_t count = (size_t)comm->options.count, max = comm->options.receive_bytes;
+    state->receive_bytes = sizeof(message) + max;
     state->receives = (int)(RECEIVE_BYTES / state->receive_bytes);
-    if (state->receives > RECEIVES_MOST) state->receives = RECEIVES_MOST;
+    if (state->receives > RECEIVES_MAX) state->receives = RECEIVES_MAX;
     if (state->receives < 2) state->receives = 2;
     /* Two steps of packets to someone who takes the most; heads may be more than payload. */
     for (size_t p = 0; p < count; p++)
-        if (comm->peers[p].half > most) most = comm->peers[p].half;
-    state->pool_bytes = 4 * (sizeof(message) + most) + POOL_LEAST;
+        if (comm->peers[p].half > max) max = comm->peers[p].half;
+    state->pool_bytes = 4 * (sizeof(message) + max) + POOL_MIN;
     state->ranks = lar_calloc(count, sizeof *state->ranks);
     state->goodbyes = lar_calloc(count, sizeof *state->goodbyes);
     state->incoming = lar_calloc_aligned((size_t)state->receives, state->receive_bytes);

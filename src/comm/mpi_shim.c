@@ -21,8 +21,8 @@ static int keep(lar_mpi_request *r, MPI_Request request, int failed) {
     return failed;
 }
 
-static int start(int *rank, int *size, int *tag_most) {
-    int there = 0, level = MPI_THREAD_SINGLE, *most = NULL, found = 0;
+static int start(int *rank, int *size, int *tag_max) {
+    int there = 0, level = MPI_THREAD_SINGLE, *max = NULL, found = 0;
     int failed = MPI_Initialized(&there);
     if (!failed && !there) failed = MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &level);
     if (failed) return failed;
@@ -34,8 +34,8 @@ static int start(int *rank, int *size, int *tag_most) {
     if (!failed) failed = MPI_Comm_set_errhandler(world, MPI_ERRORS_RETURN);
     if (!failed) failed = MPI_Comm_rank(world, rank);
     if (!failed) failed = MPI_Comm_size(world, size);
-    if (!failed) failed = MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_TAG_UB, (void *)&most, &found);
-    *tag_most = !failed && found ? *most : 32767; /* what the standard promises */
+    if (!failed) failed = MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_TAG_UB, (void *)&max, &found);
+    *tag_max = !failed && found ? *max : 32767; /* what the standard promises */
     return failed;
 }
 

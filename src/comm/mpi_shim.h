@@ -28,8 +28,8 @@ typedef struct lar_mpi_request {
 typedef struct lar_mpi {
     int version;
     const char *name; /* "Open MPI 4.1.4" */
-    /* Starts MPI unless the program has done so. *tag_most: tags are 0..*tag_most. */
-    int (*start)(int *rank, int *size, int *tag_most);
+    /* Starts MPI unless the program has done so. *tag_max: tags are 0..*tag_max. */
+    int (*start)(int *rank, int *size, int *tag_max);
     /* `matched`: complete only when the receiver has taken it. */
     int (*send)(const void *data, int bytes, int to, int tag, bool matched, lar_mpi_request *r);
     int (*receive)(void *data, int bytes, int tag, lar_mpi_request *r); /* from anyone */

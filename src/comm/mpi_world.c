@@ -132,7 +132,7 @@ static lar_status join(const char *wanted, lar_error *error) {
     if (!status) status = load_module(path, &mpi, error);
     if (status) return status;
     lar_mpi_world world = {.mpi = mpi};
-    int failed = mpi->start(&world.rank, &world.size, &world.tag_most);
+    int failed = mpi->start(&world.rank, &world.size, &world.tag_max);
     if (failed) return complain(mpi, failed, "start", error);
     only = world;
     where = INSIDE;

@@ -15,7 +15,7 @@
 
 typedef struct lar_mpi_world {
     const lar_mpi *mpi;
-    int rank, size, tag_most;
+    int rank, size, tag_max;
     int tags_used;
     int busy, senders; /* atomic: the lock, and who waits for it */
     void *abandoned;   /* memory that MPI may still touch after a loss */

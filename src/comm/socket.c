@@ -18,24 +18,24 @@
 #include "comm/backend.h"
 
 /* A number that is no port would be cut to 16 bits, and be another one. Names are looked up. */
-static bool is_port(const char *text, int least) {
+static bool is_port(const char *text, int min) {
     char *rest;
     long port = strtol(text, &rest, 10);
     if (rest == text) return true;
-    return *rest == '\0' && *text != '+' && port >= least && port <= 65535;
+    return *rest == '\0' && *text != '+' && port >= min && port <= 65535;
 }
 
-lar_status lar_socket_check(const char *address, int least, lar_error *error) {
+lar_status lar_socket_check(const char *address, int min, lar_error *error) {
     const char *colon = strrchr(address, ':');
     if (!colon || !colon[1])
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is no address of processor 0; write host:port, as in localhost:7077",
                         address);
-    if (is_port(colon + 1, least)) return LAR_OK;
+    if (is_port(colon + 1, min)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "%s is no address of processor 0: a port is a number from %d to 65535, as in "
                     "localhost:7077",
-                    address, least);
+                    address, min);
 }
 
 /* "host:port" or "[v6]:port" to addresses; the caller frees with freeaddrinfo. */
@@ -80,7 +80,7 @@ lar_status lar_socket_listen(const char *address, int *listener, lar_error *erro
         prepare(fd);
         setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
         good = bind(fd, found->ai_addr, found->ai_addrlen) == 0 &&
-               listen(fd, LAR_COMM_PROCESSORS_MOST) == 0;
+               listen(fd, LAR_COMM_PROCESSORS_MAX) == 0;
     }
     freeaddrinfo(found);
     if (good) {

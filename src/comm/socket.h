@@ -11,8 +11,8 @@ typedef enum lar_socket_end {
     LAR_SOCKET_LATE    /* the deadline has passed */
 } lar_socket_end;
 
-/* Whether an address has the form host:port, with a port of at least `least`. */
-lar_status lar_socket_check(const char *address, int least, lar_error *error);
+/* Whether an address has the form host:port, with a port of at least `min`. */
+lar_status lar_socket_check(const char *address, int min, lar_error *error);
 /* Listens at host:port; port 0 takes a free one. */
 lar_status lar_socket_listen(const char *address, int *listener, lar_error *error);
 /* The port that a listener got. */

@@ -19,7 +19,7 @@
 
 #include "base/memory.h"
 #include "comm/backend.h"
-#include "comm/meeting.h"
+#include "comm/rendezvous.h"
 #include "comm/socket.h"
 
 enum { CHUNK = 65536, ALL_EVERY = 16 };
@@ -94,7 +94,7 @@ static lar_status call(lar_comm *comm, int32_t p, double deadline, lar_error *er
         if (look > deadline) look = deadline;
         lar_status status = lar_socket_connect(address, look, socket, error);
         if (!status) break;
-        if (lar_comm_now() > deadline || lar_meeting_check(comm, error)) return LAR_ERROR_PEER;
+        if (lar_comm_now() > deadline || lar_rendezvous_check(comm, error)) return LAR_ERROR_PEER;
     }
     caller c = {.token = comm->token, .self = comm->options.self};
     if (lar_socket_send(*socket, &c, sizeof c, deadline))
@@ -108,7 +108,7 @@ static lar_status call(lar_comm *comm, int32_t p, double deadline, lar_error *er
 static lar_status take_call(lar_comm *comm, double deadline, int32_t *missing, lar_error *error) {
     tcp_state *state = comm->state;
     int socket;
-    lar_status status = lar_meeting_accept(comm, state->listener, deadline, &socket, error);
+    lar_status status = lar_rendezvous_accept(comm, state->listener, deadline, &socket, error);
     if (status) return status;
     if (socket < 0)
         return lar_fail(error, LAR_ERROR_PEER,

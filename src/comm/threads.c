@@ -17,9 +17,9 @@ struct lar_comm_team {
 };
 
 lar_status lar_comm_team_create(int32_t count, lar_comm_team **out, lar_error *error) {
-    if (count < 1 || count > LAR_COMM_PROCESSORS_MOST)
+    if (count < 1 || count > LAR_COMM_PROCESSORS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d processors; take 1 to %d", (int)count,
-                        LAR_COMM_PROCESSORS_MOST);
+                        LAR_COMM_PROCESSORS_MAX);
     size_t n = (size_t)count;
     lar_comm_team *team = lar_calloc(1, sizeof *team);
     if (team) {

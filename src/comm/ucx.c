@@ -30,7 +30,7 @@
  * here needs a lock anyway.
  *
  * Losses. An endpoint that fails says so here and ends the waits for that peer; who is silent is
- * noticed by watch.h. UCX itself neither prints nor catches signals nor ends the process.
+ * noticed by heartbeat.h. UCX itself neither prints nor catches signals nor ends the process.
  */
 #include "comm/backend.h"
 

@@ -11,7 +11,7 @@
 #endif
 
 #include "base/memory.h"
-#include "comm/meeting.h"
+#include "comm/rendezvous.h"
 #include "comm/ucx_state.h"
 
 static const double LOOK = 0.05; /* while connecting, whether all are still there [s] */
@@ -292,7 +292,7 @@ lar_status lar_ucx_connect(lar_comm *comm, lar_error *error) {
     do {
         now = lar_comm_now();
         if (lar_ucx_work_until(comm, all_have_greeted, now + LOOK)) break;
-    } while (now < deadline && !(status = lar_meeting_check(comm, error)));
+    } while (now < deadline && !(status = lar_rendezvous_check(comm, error)));
     if (status) return status;
     state->links[comm->options.self].greeted = state->links[comm->options.self].writes = true;
     for (int32_t p = 0; p < count; p++) {

@@ -199,10 +199,10 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
 
 /* How far a node is outside a face's box without the skin, along some axis. */
 static double outside(const lar_box *box, double skin, const double x[3]) {
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (int i = 0; i < 3; i++)
-        most = greater(most, greater(box->lower[i] + skin - x[i], x[i] - (box->upper[i] - skin)));
-    return most;
+        max = greater(max, greater(box->lower[i] + skin - x[i], x[i] - (box->upper[i] - skin)));
+    return max;
 }
 
 /* Cuts the faces of a node into groups of one body each. A group of mute faces pushes nobody. */
@@ -218,7 +218,7 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
             gap = lesser(gap, outside(&search->face_box[search->place[face[to]]], list->skin, x));
         }
         if (!active) continue;
-        if (list->group_count == list->group_room || to - from > LAR_GROUP_FACES_MOST) return false;
+        if (list->group_count == list->group_room || to - from > LAR_GROUP_FACES_MAX) return false;
         list->group[list->group_count++] =
             (lar_contact_group){node, list->face_count + kept, to - from, (float)(0.999 * gap)};
         for (int32_t i = from; i < to; i++) face[kept++] = face[i];
@@ -327,20 +327,21 @@ typedef struct overlap {
 } overlap;
 
 /* What contact would do to the node of a group at rest: of its faces within reach the closest one
- * counts, of equally close ones the one over or under whose plane it is farthest (collide.h). */
+ * counts, of equally close ones the one over or under whose plane it is farthest (body_contact.h).
+ */
 static void find_overlap(const lar_contact_surface *s, const lar_contact_list *list,
                          const lar_contact_group *group, overlap *deepest) {
     const int32_t *face = list->face + group->first;
-    double reach = lar_contact_reach(s, &s->node[group->node], &s->face[face[0]]), least = reach;
+    double reach = lar_contact_reach(s, &s->node[group->node], &s->face[face[0]]), min = reach;
     lar_face_point point, chosen = {0};
     int32_t at = -1;
     for (int32_t i = 0; i < group->count; i++) {
         stand_at_rest(s, group->node, face[i], &point);
-        least = lesser(least, point.distance);
+        min = lesser(min, point.distance);
     }
     for (int32_t i = 0; i < group->count; i++) {
         stand_at_rest(s, group->node, face[i], &point);
-        if (point.distance > least + LAR_FACE_TIE * s->face[face[i]].size) continue;
+        if (point.distance > min + LAR_FACE_TIE * s->face[face[i]].size) continue;
         if (at >= 0 && !lar_face_point_before(&point, &chosen)) continue;
         chosen = point;
         at = face[i];

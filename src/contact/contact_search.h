@@ -14,7 +14,7 @@
  * made a few nodes at a time, for the places at its beginning, while the last list is still good.
  *
  * What is found depends on the skin, what touches does not: a list with more pairs than another
- * gives the same contacts (collide.h). A search asks for no memory: lists have room for
+ * gives the same contacts (body_contact.h). A search asks for no memory: lists have room for
  * LAR_PAIRS_PER_NODE pairs per node; where that is not enough, it is made again with a thinner
  * skin.
  */
@@ -23,7 +23,7 @@
 
 #include "contact/contact_surface.h"
 
-enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MOST = 128 };
+enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MAX = 128 };
 
 /* A node and faces of one body: entries first .. first + count - 1 of lar_contact_list.face. */
 typedef struct lar_contact_group {

@@ -10,7 +10,7 @@
 #include "mechanics/hex8.h"
 
 /* While it is put together. */
-typedef struct draft {
+typedef struct workspace {
     const lar_model *model;
     lar_contact_surface *surface;
     lar_incidence incidence;
@@ -21,9 +21,9 @@ typedef struct draft {
     int32_t *index_of; /* [nodes of the model] contact node, -1: none */
     int32_t *face_of;  /* [faces of the model's surface] contact face, -1: none */
     int32_t *seen;     /* [elements] the last node, plus 1, that went by */
-} draft;
+} workspace;
 
-static void clear_draft(draft *d) {
+static void clear_workspace(workspace *d) {
     lar_incidence_clear(&d->incidence);
     free(d->body);
     free(d->passes);
@@ -34,7 +34,7 @@ static void clear_draft(draft *d) {
     free(d->seen);
 }
 
-static lar_status allocate_draft(draft *d, lar_error *error) {
+static lar_status allocate_workspace(workspace *d, lar_error *error) {
     size_t nodes = (size_t)d->model->mesh.node_count;
     size_t faces = (size_t)d->model->surface.face_count;
     d->body = lar_calloc(nodes, sizeof *d->body);
@@ -61,7 +61,7 @@ static void find_bodies(const lar_mesh *mesh, int32_t *body) {
 
 /* ---- passes --------------------------------------------------------------------------------- */
 
-static void add_pass(draft *d, const int32_t *slave, int32_t slave_count, const int32_t *master,
+static void add_pass(workspace *d, const int32_t *slave, int32_t slave_count, const int32_t *master,
                      int32_t master_count, uint64_t pass) {
     const lar_surface *surface = &d->model->surface;
     for (int32_t i = 0; i < slave_count; i++) {
@@ -75,17 +75,17 @@ static void add_pass(draft *d, const int32_t *slave, int32_t slave_count, const 
     }
 }
 
-static lar_status add_passes(draft *d, lar_error *error) {
+static lar_status add_passes(workspace *d, lar_error *error) {
     const lar_model *model = d->model;
     int used = 0;
     for (int i = 0; i < model->contact_count; i++) {
         const lar_contact *c = &model->contact[i];
         if (c->kind == LAR_CONTACT_PLANE) continue;
-        if (used > LAR_CONTACT_PASSES_MOST - 2)
+        if (used > LAR_CONTACT_PASSES_MAX - 2)
             return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                             "%s: there are more than %d contacts of bodies; put surfaces together "
                             "in one contact of a set with itself",
-                            lar_model_source(model), LAR_CONTACT_PASSES_MOST / 2);
+                            lar_model_source(model), LAR_CONTACT_PASSES_MAX / 2);
         bool self = c->kind == LAR_CONTACT_SELF;
         const int32_t *against = self ? c->face : c->against;
         int32_t count = self ? c->face_count : c->against_count;
@@ -95,7 +95,7 @@ static lar_status add_passes(draft *d, lar_error *error) {
     return LAR_OK;
 }
 
-static uint64_t touched_by(const draft *d, int32_t face) {
+static uint64_t touched_by(const workspace *d, int32_t face) {
     const int32_t *corner = d->model->surface.corner[face];
     return d->touched[corner[0]] | d->touched[corner[1]] | d->touched[corner[2]] |
            d->touched[corner[3]];
@@ -129,19 +129,20 @@ static double thickness(const lar_mesh *mesh, int32_t face) {
 }
 
 static double size_of(const lar_mesh *mesh, const int32_t corner[4]) {
-    double most = 0;
+    double max = 0;
     for (int a = 0; a < 2; a++) {
         double square = 0;
         for (int i = 0; i < 3; i++) {
             double d = mesh->position[corner[a]][i] - mesh->position[corner[a + 2]][i];
             square += d * d;
         }
-        most = fmax(most, sqrt(square));
+        max = fmax(max, sqrt(square));
     }
-    return most;
+    return max;
 }
 
-static lar_status list_nodes(draft *d, const double *mass, const int32_t *local, lar_error *error) {
+static lar_status list_nodes(workspace *d, const double *mass, const int32_t *local,
+                             lar_error *error) {
     const lar_mesh *mesh = &d->model->mesh;
     lar_contact_surface *s = d->surface;
     for (int32_t n = 0; n < mesh->node_count; n++)
@@ -161,7 +162,7 @@ static lar_status list_nodes(draft *d, const double *mass, const int32_t *local,
     return LAR_OK;
 }
 
-static lar_status list_faces(draft *d, lar_error *error) {
+static lar_status list_faces(workspace *d, lar_error *error) {
     const lar_surface *surface = &d->model->surface;
     lar_contact_surface *s = d->surface;
     for (int32_t f = 0; f < surface->face_count; f++)
@@ -184,7 +185,7 @@ static lar_status list_faces(draft *d, lar_error *error) {
 }
 
 /* Bodies count from 0, in the order of their first nodes. */
-static lar_status number_bodies(draft *d, lar_error *error) {
+static lar_status number_bodies(workspace *d, lar_error *error) {
     lar_contact_surface *s = d->surface;
     int32_t *number = d->index_of; /* read no more: by the node that stands for a body */
     memset(number, -1, (size_t)d->model->mesh.node_count * sizeof *number);
@@ -208,14 +209,14 @@ static lar_status number_bodies(draft *d, lar_error *error) {
     s->reach = INFINITY;
     for (int32_t b = 0; b < s->body_count; b++) {
         s->reach = fmin(s->reach, s->body[b].reach[0]);
-        if (s->body[b].reach[1] < INFINITY)
-            s->reach_most = fmax(s->reach_most, s->body[b].reach[1]);
+        if (s->body[b].reach[1] < INFINITY) s->reach_max = fmax(s->reach_max, s->body[b].reach[1]);
     }
     return LAR_OK;
 }
 
 /* Nodes of slaves that are on no face of a pass' other side count too. */
-static lar_status list_all(draft *d, const double *mass, const int32_t *local, lar_error *error) {
+static lar_status list_all(workspace *d, const double *mass, const int32_t *local,
+                           lar_error *error) {
     lar_contact_surface *s = d->surface;
     lar_status status = list_faces(d, error);
     for (int32_t n = 0; n < d->model->mesh.node_count; n++)
@@ -228,8 +229,8 @@ static lar_status list_all(draft *d, const double *mass, const int32_t *local, l
 }
 
 static void count_possible(lar_contact_surface *s) {
-    uint64_t nodes[LAR_CONTACT_PASSES_MOST] = {0}, faces[LAR_CONTACT_PASSES_MOST] = {0};
-    for (int pass = 0; pass < LAR_CONTACT_PASSES_MOST; pass++) {
+    uint64_t nodes[LAR_CONTACT_PASSES_MAX] = {0}, faces[LAR_CONTACT_PASSES_MAX] = {0};
+    for (int pass = 0; pass < LAR_CONTACT_PASSES_MAX; pass++) {
         for (int32_t n = 0; n < s->node_count; n++) nodes[pass] += s->node[n].passes >> pass & 1;
         for (int32_t f = 0; f < s->face_count; f++) faces[pass] += s->face[f].active >> pass & 1;
         s->possible += nodes[pass] * faces[pass];
@@ -243,7 +244,7 @@ static void count_possible(lar_contact_surface *s) {
 static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
                              lar_contact_surface *s, lar_error *error) {
     const lar_mesh *mesh = &model->mesh;
-    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), most = 0;
+    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), max = 0;
     if (!fastest) return lar_fail_memory(error, 8 * (size_t)mesh->node_count, "springs of contact");
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
@@ -252,7 +253,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, material, &hex8);
         double frequency = lar_hex8_frequency(&hex8, material);
-        most = fmax(most, frequency);
+        max = fmax(max, frequency);
         for (int a = 0; a < 8; a++) {
             double *of = &fastest[mesh->element[e][a]];
             *of = fmax(*of, frequency);
@@ -260,7 +261,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
     }
     double body = lar_contact_law_for(time_step, stable_step).stiffness;
     for (int32_t n = 0; n < s->node_count; n++) {
-        double stable = stable_step * most / fastest[s->node[n].node];
+        double stable = stable_step * max / fastest[s->node[n].node];
         s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
     }
     lar_contact_edges_fit(s);
@@ -275,8 +276,8 @@ lar_status lar_contact_surface_fit(const lar_model *model, double time_step, dou
     static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
     for (int32_t b = 0; b < s->body_count; b++) {
         lar_contact_body *body = &s->body[b];
-        double least = NEAREST * body->reach[1], most = FARTHEST * body->reach[1];
-        double wanted = fmin(fmax(SPEED * time_step, least), most);
+        double min = NEAREST * body->reach[1], max = FARTHEST * body->reach[1];
+        double wanted = fmin(fmax(SPEED * time_step, min), max);
         body->standoff = fmin(wanted, body->clear);
     }
     return fit_masses(model, time_step, stable_step, s, error);
@@ -308,7 +309,7 @@ static bool append(numbers *list, int32_t value) {
 }
 
 /* The contact faces of an element: at most one per local face. */
-static bool append_faces_of(const draft *d, int32_t element, numbers *list) {
+static bool append_faces_of(const workspace *d, int32_t element, numbers *list) {
     for (int f = 0; f < 6; f++) {
         int32_t face = lar_surface_find(&d->model->surface, element * 6 + f);
         if (face >= 0 && d->face_of[face] >= 0 && !append(list, d->face_of[face])) return false;
@@ -317,7 +318,7 @@ static bool append_faces_of(const draft *d, int32_t element, numbers *list) {
 }
 
 /* Faces of all elements around the elements around a node. */
-static bool append_neighbours(draft *d, int32_t node, numbers *list) {
+static bool append_neighbours(workspace *d, int32_t node, numbers *list) {
     const lar_incidence *around = &d->incidence;
     const lar_mesh *mesh = &d->model->mesh;
     for (int64_t i = around->first[node]; i < around->first[node + 1]; i++)
@@ -333,7 +334,7 @@ static bool append_neighbours(draft *d, int32_t node, numbers *list) {
     return true;
 }
 
-static lar_status list_apart(draft *d, lar_error *error) {
+static lar_status list_apart(workspace *d, lar_error *error) {
     lar_contact_surface *s = d->surface;
     numbers list = {0};
     s->apart_first = lar_calloc((size_t)s->node_count + 1, sizeof *s->apart_first);
@@ -398,15 +399,15 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
                                       lar_error *error) {
     *surface = (lar_contact_surface){0};
     if (!asked_for(model)) return LAR_OK;
-    draft d = {.model = model, .surface = surface};
-    lar_status status = allocate_draft(&d, error);
+    workspace d = {.model = model, .surface = surface};
+    lar_status status = allocate_workspace(&d, error);
     if (!status) find_bodies(&model->mesh, d.body);
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);
     if (!status) status = lar_contact_surface_edges(surface, error);
     if (!status) status = list_apart(&d, error);
     if (!status) count_possible(surface);
-    clear_draft(&d);
+    clear_workspace(&d);
     if (status) lar_contact_surface_clear(surface);
     return status;
 }

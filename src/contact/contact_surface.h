@@ -24,7 +24,7 @@
 
 #include "model/model.h"
 
-enum { LAR_CONTACT_PASSES_MOST = 64 };
+enum { LAR_CONTACT_PASSES_MAX = 64 };
 
 typedef struct lar_contact_face {
     int32_t corner[4]; /* contact nodes, counter-clockwise seen from outside */
@@ -70,7 +70,7 @@ typedef struct lar_contact_surface {
     int64_t *apart_first;     /* [node_count + 1] faces that are never together with a node: */
     int32_t *apart;           /* ascending for each node */
     double reach;             /* the least of all bodies [m] */
-    double reach_most;        /* the largest [m] */
+    double reach_max;         /* the largest [m] */
     uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
 } lar_contact_surface;
 

@@ -14,9 +14,9 @@ static bool is_taken(const lar_tool_list *list, const char *name) {
     return taken;
 }
 
-int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MOST]) {
+int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MAX]) {
     int32_t needed = 0;
-    for (int32_t k = 0; k < LAR_SPARES_MOST; k++)
+    for (int32_t k = 0; k < LAR_SPARES_MAX; k++)
         if (spare[k].placed) needed = k + 1;
     return needed;
 }
@@ -33,13 +33,13 @@ void lar_spares_name(lar_tool_list *list) {
             int number = k + 1;
             do {
                 snprintf(name, sizeof list->name[k][shape], "%s %d", shape_word[shape], number);
-                number += LAR_SPARES_MOST;
+                number += LAR_SPARES_MAX;
             } while (is_taken(list, name));
         }
     }
 }
 
-lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spares[LAR_SPARES_MOST],
+lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spares[LAR_SPARES_MAX],
                            int32_t index) {
     int32_t place = lar_spare_of(list, index);
     if (place < 0) return list->tool[index];
@@ -106,11 +106,11 @@ static bool good(const lar_spare_tool *spare) {
     if (spare->serial < 0 || spare->padding != 0) return false;
     if (!spare->placed) return spare->shape == 0;
     return spare->placed == 1 && spare->shape >= 0 && spare->shape < LAR_TOOL_HAND &&
-           !lar_tool_size_fault(&tool);
+           !lar_tool_size_problem(&tool);
 }
 
-bool lar_spares_good(const lar_spare_tool spare[LAR_SPARES_MOST], int32_t spares) {
+bool lar_spares_good(const lar_spare_tool spare[LAR_SPARES_MAX], int32_t spares) {
     bool fine = lar_spares_needed(spare) <= spares;
-    for (int k = 0; k < LAR_SPARES_MOST; k++) fine = fine && good(&spare[k]);
+    for (int k = 0; k < LAR_SPARES_MAX; k++) fine = fine && good(&spare[k]);
     return fine;
 }

@@ -33,7 +33,7 @@ static inline int32_t lar_spare_serial(const lar_tool_list *list, const lar_tool
 }
 
 /* How many spares must be there for what is placed: those up to the last one. */
-int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MOST]);
+int32_t lar_spares_needed(const lar_spare_tool spare[LAR_SPARES_MAX]);
 
 /* Whether there is a tool at all. */
 static inline bool lar_spares_any(const lar_tool_list *list, const lar_tools *tools) {
@@ -48,7 +48,7 @@ void lar_spares_name(lar_tool_list *list);
 bool lar_spares_take(const lar_tools *tools, lar_tool_list *list);
 
 /* What tool `index` is when the spares are these, whatever the list has there now. */
-lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spare[LAR_SPARES_MOST],
+lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spare[LAR_SPARES_MAX],
                            int32_t index);
 
 /* Places a tool, at rest, in a free place, or clears a place. The list follows. */
@@ -56,6 +56,6 @@ void lar_spare_put(int32_t place, const lar_tool *tool, lar_tool_list *list, lar
 void lar_spare_clear(int32_t place, lar_tool_list *list, lar_tools *tools);
 
 /* Whether these can be, for what comes from files and from other processes. */
-bool lar_spares_good(const lar_spare_tool spare[LAR_SPARES_MOST], int32_t spares);
+bool lar_spares_good(const lar_spare_tool spare[LAR_SPARES_MAX], int32_t spares);
 
 #endif

@@ -10,9 +10,9 @@
 
 /* Pressure that tissue bears under a tool, in shear moduli; on the tool's cross-section and half an
  * element around it. */
-static const double PRESSURE_MOST = 6;
+static const double PRESSURE_MAX = 6;
 /* Contact must bear the limit at a depth at which the tool's middle is well outside. */
-static const double DEPTH_MOST = 0.5, BEARS = 0.45;
+static const double DEPTH_MAX = 0.5, BEARS = 0.45;
 /* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
 static const double BORNE_RATE = 100;
 static const double GRASP_SHARE = 0.5;
@@ -25,7 +25,7 @@ static const double DRAG = 16;
 uint64_t lar_tool_interval(double time_step) {
     static const double SECONDS = 4e-4;
     uint64_t steps = 1;
-    while (steps < LAR_INTERVAL_MOST && (double)(2 * steps) * time_step <= SECONDS) steps *= 2;
+    while (steps < LAR_INTERVAL_MAX && (double)(2 * steps) * time_step <= SECONDS) steps *= 2;
     return steps;
 }
 
@@ -39,16 +39,17 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
         const lar_tool *tool = &list->tool[i];
         lar_tool_limits *limits = &list->limits[i];
         double reach = tool->radius + 0.5 * scale->edge;
-        double tissue = PRESSURE_MOST * scale->shear * shadow(reach, tool->length);
+        double tissue = PRESSURE_MAX * scale->shear * shadow(reach, tool->length);
         double nodes = shadow(tool->radius, tool->length) / (scale->edge * scale->edge);
         double contact = BEARS * tool->radius * scale->stiffness * fmax(nodes, 1);
         *limits = (lar_tool_limits){.force = fmin(tissue, contact),
-                                    .depth = DEPTH_MOST * tool->radius,
+                                    .depth = DEPTH_MAX * tool->radius,
                                     .lever = fmax(tool->radius, 0.5 * tool->length),
                                     .travel = 0.5 * tool->spread * tool->length,
                                     .drag = DRAG * scale->stiffness * scale->interval};
-        limits->grasp = GRASP_SHARE * limits->force;
-        limits->pinch = fmin(limits->grasp, PINCH * scale->shear * tool->radius * tool->length);
+        limits->grasp_force = GRASP_SHARE * limits->force;
+        limits->pinch =
+            fmin(limits->grasp_force, PINCH * scale->shear * tool->radius * tool->length);
     }
 }
 
@@ -69,7 +70,7 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 typedef struct mean_load {
     double force[3], torque[3]; /* [N] [N m] */
     double squeeze;             /* [N] */
-    double grasp;               /* how hard jaws may close [N] */
+    double grasp_force;         /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
 } mean_load;
 
@@ -77,13 +78,13 @@ typedef struct mean_load {
  * two jaws tissue gives way to nowhere but out of them. (Steeper in `need` and jaws swing.) */
 static double grasp_limit(const lar_tool_limits *limits, double need) {
     double share = need > SOUND_RATE ? SOUND_RATE / need : 1;
-    return fmax(limits->pinch, limits->grasp * share * share);
+    return fmax(limits->pinch, limits->grasp_force * share * share);
 }
 
 /* `closes`: its jaws are asked to be closer than they can be pushed apart. */
 static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, bool closes,
                          double need, double unit, double *load) {
-    mean_load mean = {.excess = 1, .grasp = grasp_limit(limits, need)};
+    mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
         mean.force[i] = (double)felt->force[i] * share;
@@ -92,12 +93,12 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     mean.squeeze = (double)felt->squeeze * share;
     double force = lar_length(mean.force) / limits->force;
     double turn = lar_length(mean.torque) / (limits->force * limits->lever);
-    double grasp = closes ? mean.squeeze / mean.grasp : 0;
+    double grasp = closes ? mean.squeeze / mean.grasp_force : 0;
     double depth = felt->depth / limits->depth;
-    double most = fmax(fmax(force, turn), grasp);
-    double other = fmax(depth, most > 0 ? need / BORNE_RATE : 0);
-    *load = fmax(most, other);
-    if (other > 1 && other > most && most > 0) mean.excess = other / most;
+    double max = fmax(fmax(force, turn), grasp);
+    double other = fmax(depth, max > 0 ? need / BORNE_RATE : 0);
+    *load = fmax(max, other);
+    if (other > 1 && other > max && max > 0) mean.excess = other / max;
     return mean;
 }
 
@@ -114,13 +115,13 @@ static double length_of(int count, const double *v) {
 }
 
 /* The way along `count` coordinates: `gap` is what is left to go, `pushed` what the tissue pushes
- * with, `most` what the hand may. True when all of it is gone. */
+ * with, `max` what the hand may. True when all of it is gone. */
 static bool go(const follow_law *law, int count, const double *gap, const double *pushed,
-               double most, double *way) {
+               double max, double *way) {
     double drawn[3];
     for (int i = 0; i < count; i++) drawn[i] = law->drag * gap[i] / law->seconds - pushed[i];
     double length = length_of(count, drawn);
-    double share = length > most ? most / length : 1;
+    double share = length > max ? max / length : 1;
     for (int i = 0; i < count; i++)
         way[i] = law->seconds / law->drag * (drawn[i] * share + pushed[i]);
     if (share < 1 || length_of(count, gap) > law->farthest) {
@@ -171,7 +172,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
     pushed[0] = mean->excess * mean->squeeze;
-    if (!go(law, 1, gap, pushed, mean->grasp, way))
+    if (!go(law, 1, gap, pushed, mean->grasp_force, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
 
@@ -232,7 +233,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
             depth = fmin(depth, SOFT);
         deepest = fmax(deepest, depth);
     }
-    if (deepest > SOFT) return fmin((1 + seconds / RISE) * hardness, LAR_HARDNESS_MOST);
+    if (deepest > SOFT) return fmin((1 + seconds / RISE) * hardness, LAR_HARDNESS_MAX);
     return deepest < HARD ? fmax(1, fading * hardness) : hardness;
 }
 
@@ -244,12 +245,12 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness = harden(list, tools, d->hardness, fading, seconds, unit);
     bool close = lar_division_is_close(d);
-    d->lately = fmax(fmin(d->need, LAR_NEED_MOST), fading * d->lately);
+    d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
     double asked = d->lately + room->springs * hardness;
     int32_t wanted = d->base;
-    while (wanted < LAR_PARTS_MOST &&
-           (asked > room->most * wanted * wanted || hardness > wanted * wanted))
+    while (wanted < LAR_PARTS_MAX &&
+           (asked > room->max * wanted * wanted || hardness > wanted * wanted))
         wanted *= 2;
     bool changed =
         hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);

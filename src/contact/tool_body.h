@@ -36,11 +36,11 @@ typedef struct lar_tissue_scale {
 /* Limits for all tools of a list. Without a surface (edge 0) there are none. */
 void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
-/* Steps of an interval: a power of two, at most LAR_INTERVAL_MOST. */
-enum { LAR_INTERVAL_MOST = 8, LAR_PARTS_MOST = LAR_STEP_SHARES };
+/* Steps of an interval: a power of two, at most LAR_INTERVAL_MAX. */
+enum { LAR_INTERVAL_MAX = 8, LAR_PARTS_MAX = LAR_STEP_SHARES };
 /* How hard tools become, and up to what elements' need is remembered: more than any number of parts
  * bears makes no difference, and must be over some time. */
-enum { LAR_HARDNESS_MOST = 64, LAR_NEED_MOST = LAR_PARTS_MOST * LAR_PARTS_MOST };
+enum { LAR_HARDNESS_MAX = 64, LAR_NEED_MAX = LAR_PARTS_MAX * LAR_PARTS_MAX };
 uint64_t lar_tool_interval(double time_step);
 
 /* Asks a tool to go where `motion` says; it does when nothing keeps it. */
@@ -50,7 +50,7 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
  * springs of tools take of it that are as hard as at rest: nothing where no tool touches. Parts of
  * a step bear their square times as much; springs do not become stiffer with them. */
 typedef struct lar_step_room {
-    double most, springs;
+    double max, springs;
 } lar_step_room;
 
 /* Divides steps, or no longer, at the beginning of an interval. Elements: `division->need`, which

@@ -6,24 +6,24 @@
 #include "contact/spares.h"
 
 static const char *const hand_name[] = {"hand", "hand 2", "hand 3", "hand 4"};
-enum { HANDS_MOST = sizeof hand_name / sizeof hand_name[0] };
+enum { HANDS_MAX = sizeof hand_name / sizeof hand_name[0] };
 
 /* How far a hand reaches: about a finger's breadth. */
 static const double HAND_RADIUS = 0.008;
 
 lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t spares,
                                 lar_tool_list *list, lar_error *error) {
-    if (hands < 0 || hands > HANDS_MOST)
+    if (hands < 0 || hands > HANDS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld hands; there can be 0 to %d", (long)hands,
-                        (int)HANDS_MOST);
-    if (spares < 0 || spares > LAR_SPARES_MOST)
+                        (int)HANDS_MAX);
+    if (spares < 0 || spares > LAR_SPARES_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld spare tools; there can be 0 to %d",
-                        (long)spares, LAR_SPARES_MOST);
-    const int most = LAR_TOOLS_MOST - LAR_SPARES_MOST;
-    if (model->tool_count + hands > most)
+                        (long)spares, LAR_SPARES_MAX);
+    const int max = LAR_TOOLS_MAX - LAR_SPARES_MAX;
+    if (model->tool_count + hands > max)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: %d tools and %ld hands; there can be %d together",
-                        lar_model_source(model), model->tool_count, (long)hands, most);
+                        lar_model_source(model), model->tool_count, (long)hands, max);
     *list = (lar_tool_list){.count = model->tool_count + hands + spares, .spares = spares};
     if (model->tool_count)
         memcpy(list->tool, model->tool, (size_t)model->tool_count * sizeof *list->tool);

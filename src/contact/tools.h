@@ -8,7 +8,7 @@
  * checkpoints as they are. Changed between advances only, when no processor computes (so the change
  * takes effect in the same step everywhere, T 6.5.1); read by all threads within them.
  *
- * Who holds what is decided here too, by whoever has the whole state: a hold binds a point of a
+ * Who holds what is decided here too, by whoever has the whole state: a grasp binds a point of a
  * face to the tool's own axes (docs/theory.md, contact).
  */
 #ifndef LAR_CONTACT_TOOLS_H
@@ -19,7 +19,7 @@
 
 #include "model/settings.h"
 
-enum { LAR_SPARES_MOST = 4, LAR_TOOLS_MOST = 16 + LAR_SPARES_MOST, LAR_HOLDS_MOST = 256 };
+enum { LAR_SPARES_MAX = 4, LAR_TOOLS_MAX = 16 + LAR_SPARES_MAX, LAR_GRASPS_MAX = 256 };
 
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
@@ -29,13 +29,13 @@ typedef struct lar_tool_motion {
 } lar_tool_motion;
 
 /* A surface point that a tool has hold of. */
-typedef struct lar_hold {
+typedef struct lar_grasp {
     int32_t tool;
     int32_t face;     /* index into the model's surface */
     double weight[4]; /* of the face's corners, sum 1 */
     double anchor[3]; /* where the point is kept, in the tool's own axes [m] */
     double stiffness; /* [N/m] */
-} lar_hold;
+} lar_grasp;
 
 /* What a tool has felt of the tissue since the present interval began (contact/tool_body.h). Whole
  * numbers, so that it does not matter who felt it nor where an advance ended. */
@@ -88,33 +88,33 @@ typedef struct lar_spare_tool {
 } lar_spare_tool;
 
 typedef struct lar_tools {
-    int32_t count, hold_count;
+    int32_t count, grasp_count;
     lar_step_division division;
     lar_settings settings;
-    lar_spare_tool spare[LAR_SPARES_MOST];
-    lar_tool_motion motion[LAR_TOOLS_MOST]; /* where tools really go */
-    lar_hold hold[LAR_HOLDS_MOST];
-    lar_tool_follower follower[LAR_TOOLS_MOST]; /* of processor zero only */
+    lar_spare_tool spare[LAR_SPARES_MAX];
+    lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
+    lar_grasp grasps[LAR_GRASPS_MAX];
+    lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only */
 } lar_tools;
 
 /* What a tool may bear before it stays behind its hand, and how it then moves. */
 typedef struct lar_tool_limits {
-    double force;  /* [N] */
-    double depth;  /* tissue in the tool [m] */
-    double lever;  /* [m]: torques are forces at this distance from the tip */
-    double grasp;  /* of closing jaws, at their ends [N] */
-    double pinch;  /* the same where elements are crushed [N] */
-    double travel; /* of a jaw's end from open to closed [m] */
-    double drag;   /* of a tool on its own way [N s/m] */
+    double force;       /* [N] */
+    double depth;       /* tissue in the tool [m] */
+    double lever;       /* [m]: torques are forces at this distance from the tip */
+    double grasp_force; /* of closing jaws, at their ends [N] */
+    double pinch;       /* the same where elements are crushed [N] */
+    double travel;      /* of a jaw's end from open to closed [m] */
+    double drag;        /* of a tool on its own way [N s/m] */
 } lar_tool_limits;
 
 /* What a tool is: the model's, then hands, then spares. The same on all processors; constant but
  * for the spares, which follow lar_tools.spare. */
 typedef struct lar_tool_list {
     int32_t count, spares;
-    lar_tool tool[LAR_TOOLS_MOST]; /* names are borrowed from the model, static, or `name` */
-    lar_tool_limits limits[LAR_TOOLS_MOST];
-    char name[LAR_SPARES_MOST][LAR_TOOL_HAND][LAR_TOOL_NAME_MOST + 1]; /* by place and shape */
+    lar_tool tool[LAR_TOOLS_MAX]; /* names are borrowed from the model, static, or `name` */
+    lar_tool_limits limits[LAR_TOOLS_MAX];
+    char name[LAR_SPARES_MAX][LAR_TOOL_HAND][LAR_TOOL_NAME_MAX + 1]; /* by place and shape */
 } lar_tool_list;
 
 /* The model's tools, so many hands and so many spares; too many are an error. */
@@ -130,7 +130,7 @@ static inline bool lar_tool_touches(const lar_tool *tool) {
 
 /* Bytes of the used part, from the beginning on: what travels. */
 static inline size_t lar_tools_bytes(const lar_tools *tools) {
-    return offsetof(lar_tools, hold) + (size_t)tools->hold_count * sizeof tools->hold[0];
+    return offsetof(lar_tools, grasps) + (size_t)tools->grasp_count * sizeof tools->grasps[0];
 }
 
 /* Pose and velocity (of the tip, [m/s]; may be NULL) of a tool at a step. */

@@ -12,7 +12,7 @@ typedef struct balancer {
     int32_t *from;  /* [processors] where the way came from; itself at its start, -1 unreached */
     int32_t *queue; /* [processors] */
     bool *touch;    /* [processors][processors] */
-    int32_t *set;   /* [incidence->most] */
+    int32_t *set;   /* [incidence->max] */
 } balancer;
 
 static int64_t cost_of_element_nodes(balancer *b, int32_t e) {
@@ -89,16 +89,16 @@ static void find_ways(balancer *b, int32_t p) {
  * number of rounds is bounded by the number of elements. */
 static void balance(balancer *b) {
     for (;;) {
-        int32_t most = 0, least = 0;
+        int32_t max = 0, min = 0;
         for (int32_t p = 1; p < b->processors; p++) {
-            if (b->load[p] > b->load[most]) most = p;
-            if (b->load[p] < b->load[least]) least = p;
+            if (b->load[p] > b->load[max]) max = p;
+            if (b->load[p] < b->load[min]) min = p;
         }
-        if (b->load[most] - b->load[least] <= 1) return;
+        if (b->load[max] - b->load[min] <= 1) return;
         find_touching(b);
-        find_ways(b, most);
-        if (b->from[least] < 0) b->from[least] = most;
-        for (int32_t q = least; q != most; q = b->from[q]) move_one(b, b->from[q], q);
+        find_ways(b, max);
+        if (b->from[min] < 0) b->from[min] = max;
+        for (int32_t q = min; q != max; q = b->from[q]) move_one(b, b->from[q], q);
     }
 }
 
@@ -113,7 +113,7 @@ lar_status lar_balance(const lar_mesh *mesh, const lar_incidence *incidence, int
                   .from = lar_calloc(n, sizeof *b.from),
                   .queue = lar_calloc(n, sizeof *b.queue),
                   .touch = lar_calloc(n * n, sizeof *b.touch),
-                  .set = lar_calloc((size_t)incidence->most, sizeof *b.set)};
+                  .set = lar_calloc((size_t)incidence->max, sizeof *b.set)};
     lar_status status = LAR_OK;
     if (b.load && b.from && b.queue && b.touch && b.set) {
         for (int32_t e = 0; e < mesh->element_count; e++) b.load[processor[e]]++;

@@ -32,12 +32,12 @@ static inline bool lar_cost_less(lar_cost a, lar_cost b) {
     return a.worst != b.worst ? a.worst < b.worst : a.total < b.total;
 }
 
-/* The processors that have node k, P_k, ascending, into set[] (room for incidence->most). Returns
+/* The processors that have node k, P_k, ascending, into set[] (room for incidence->max). Returns
  * how many. processor[e] is the distribution. */
 int32_t lar_node_processors(const lar_incidence *incidence, const int32_t *processor, int32_t k,
                             int32_t *set);
 
-/* Cost of a distribution. set[incidence->most] and pays[processors] are scratch; pays[] is then
+/* Cost of a distribution. set[incidence->max] and pays[processors] are scratch; pays[] is then
  * what each processor pays. */
 lar_cost lar_cost_measure(const lar_incidence *incidence, const int32_t *processor,
                           int32_t processors, int32_t *set, int64_t *pays);

@@ -64,11 +64,11 @@ lar_status lar_distribution_random(const lar_mesh *mesh, const lar_grid *grid, u
 
 bool lar_distribution_load(const lar_distribution *distribution, int32_t *count) {
     int32_t processors = distribution->grid.count;
-    int32_t most = (distribution->element_count + processors - 1) / processors;
+    int32_t max = (distribution->element_count + processors - 1) / processors;
     bool balanced = true;
     memset(count, 0, (size_t)processors * sizeof *count);
     for (int32_t e = 0; e < distribution->element_count; e++)
-        balanced &= ++count[distribution->processor[e]] <= most;
+        balanced &= ++count[distribution->processor[e]] <= max;
     return balanced;
 }
 

@@ -90,7 +90,7 @@ static lar_status give_places(const lar_incidence *incidence, lar_distribution *
     size_t n = (size_t)d->grid.count;
     int64_t *common = lar_calloc(n * n, sizeof *common);
     int32_t *place = lar_calloc(n, sizeof *place);
-    int32_t *set = lar_calloc((size_t)incidence->most, sizeof *set);
+    int32_t *set = lar_calloc((size_t)incidence->max, sizeof *set);
     lar_status status = LAR_OK;
     if (common && place && set) {
         for (int32_t k = 0; k < incidence->node_count; k++) {
@@ -150,7 +150,7 @@ lar_status lar_distribution_metis(const lar_mesh *mesh, const lar_incidence *inc
     if (grid->count > 1) {
         metis_input in = {0};
         metis_trial trial = {lar_calloc((size_t)mesh->element_count, sizeof *trial.part),
-                             lar_calloc((size_t)incidence->most, sizeof *trial.set),
+                             lar_calloc((size_t)incidence->max, sizeof *trial.set),
                              lar_calloc((size_t)grid->count, sizeof *trial.pays)};
         if (trial.part && trial.set && trial.pays)
             status = input_build(mesh, &in, error);

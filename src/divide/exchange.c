@@ -9,7 +9,7 @@ lar_status lar_exchange_create(const lar_mesh *mesh, const lar_incidence *incide
         .mesh = mesh,
         .incidence = incidence,
         .processors = processors,
-        .set = lar_calloc((size_t)incidence->most, sizeof *x->set),
+        .set = lar_calloc((size_t)incidence->max, sizeof *x->set),
         .waiting = lar_calloc(pairs, sizeof *x->waiting),
         .pays = lar_calloc((size_t)processors, sizeof *x->pays),
     };

@@ -18,7 +18,7 @@ typedef struct lar_exchange {
     const lar_mesh *mesh;
     const lar_incidence *incidence;
     int32_t processors;
-    int32_t *set;     /* [incidence->most] scratch */
+    int32_t *set;     /* [incidence->max] scratch */
     int32_t *waiting; /* [processors][processors]: an element of p seen beside q, -1 */
     int64_t *pays;    /* [processors] what each pays now */
 } lar_exchange;

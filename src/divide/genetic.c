@@ -8,7 +8,7 @@
 #include "divide/cut.h"
 #include "divide/exchange.h"
 
-enum { POPULATION_MOST = 1000, TRIBES = 6 };
+enum { POPULATION_MAX = 1000, TRIBES = 6 };
 
 typedef struct individual {
     double (*logical)[3];
@@ -47,10 +47,10 @@ lar_genetic_options lar_genetic_options_default(void) {
 }
 
 static lar_status check_options(const lar_genetic_options *o, lar_error *error) {
-    if (o->population < 2 || o->population > POPULATION_MOST || o->population % 2)
+    if (o->population < 2 || o->population > POPULATION_MAX || o->population % 2)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a population of %d cannot be paired; give an even number from 2 to %d",
-                        (int)o->population, POPULATION_MOST);
+                        (int)o->population, POPULATION_MAX);
     if (!(o->seconds >= 0) || o->generations < 0 || (o->seconds == 0 && o->generations == 0))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a genetic search needs an end; limit its seconds or its generations");
@@ -116,8 +116,8 @@ static int64_t next_gap(search *s) {
 }
 
 static void mutate(search *s, individual *one) {
-    static const double LEAST_RATE = 1e-12; /* below it nothing ever mutates */
-    if (s->options.rate < LEAST_RATE) return;
+    static const double MIN_RATE = 1e-12; /* below it nothing ever mutates */
+    if (s->options.rate < MIN_RATE) return;
     double *coordinate = &one->logical[0][0];
     int64_t count = 3 * (int64_t)s->mesh->element_count;
     bool changed = false;
@@ -251,7 +251,7 @@ static void search_run(search *s, lar_genetic_result *result) {
         progress.seconds = lar_clock_seconds() - s->began;
         progress.best = s->best.cost;
         s->done = share_done(o, &progress);
-        if (o->watch && !o->watch(o->context, &progress)) more = false;
+        if (o->callback && !o->callback(o->context, &progress)) more = false;
     }
     *result = (lar_genetic_result){progress.start, s->best.cost, progress.generation,
                                    lar_clock_seconds() - s->began};

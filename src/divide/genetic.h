@@ -30,7 +30,7 @@ typedef struct lar_genetic_progress {
     double seconds;
     lar_cost start, best;
 } lar_genetic_progress;
-typedef bool lar_genetic_watch(void *context, const lar_genetic_progress *progress);
+typedef bool lar_genetic_callback(void *context, const lar_genetic_progress *progress);
 
 typedef struct lar_genetic_options {
     uint64_t seed;
@@ -44,7 +44,7 @@ typedef struct lar_genetic_options {
     double shaping;      /* share of the search that comes before polishing */
     int32_t exchanges;   /* polishing: pairs looked at, in per cent of the number of elements */
     double slack;        /* polishing: share of the power by which it may rise at first */
-    lar_genetic_watch *watch; /* may be NULL */
+    lar_genetic_callback *callback; /* may be NULL */
     void *context;
 } lar_genetic_options;
 

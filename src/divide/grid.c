@@ -8,17 +8,17 @@ lar_status lar_grid_make(int64_t nx, int64_t ny, int64_t nz, lar_grid *grid, lar
     const int64_t edge[3] = {nx, ny, nz};
     int64_t count = 1;
     for (int i = 0; i < 3; i++) {
-        if (edge[i] < 1 || edge[i] > LAR_GRID_MOST)
+        if (edge[i] < 1 || edge[i] > LAR_GRID_MAX)
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "a grid has no edge of %" PRId64 " processors; give 1 to %d along x, "
                             "y and z, e.g. 2x2x3",
-                            edge[i], LAR_GRID_MOST);
+                            edge[i], LAR_GRID_MAX);
         count *= edge[i];
     }
-    if (count > LAR_GRID_MOST)
+    if (count > LAR_GRID_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a grid of %" PRId64 " processors is too large; at most %d are possible",
-                        count, LAR_GRID_MOST);
+                        count, LAR_GRID_MAX);
     *grid = (lar_grid){{(int32_t)nx, (int32_t)ny, (int32_t)nz}, (int32_t)count};
     return LAR_OK;
 }
@@ -77,7 +77,7 @@ int32_t lar_grid_distance(const lar_grid *grid, int32_t p1, int32_t p2) {
 /* |a| + |b| + |c| is the greatest of the sums with any signs: four of them, up to the sign of the
  * whole. So the greatest distance is the greatest range of x +- y +- z, without visiting pairs. */
 int32_t lar_grid_spread(const lar_grid *grid, const int32_t *set, int32_t count) {
-    int32_t most = 0;
+    int32_t max = 0;
     for (int signs = 0; signs < 4; signs++) {
         int32_t low = INT32_MAX, high = INT32_MIN;
         for (int32_t i = 0; i < count; i++) {
@@ -87,9 +87,9 @@ int32_t lar_grid_spread(const lar_grid *grid, const int32_t *set, int32_t count)
             if (sum < low) low = sum;
             if (sum > high) high = sum;
         }
-        if (count > 0 && high - low > most) most = high - low;
+        if (count > 0 && high - low > max) max = high - low;
     }
-    return most;
+    return max;
 }
 
 void lar_grid_spread_along(const lar_grid *grid, const int32_t *set, int32_t count,

@@ -15,11 +15,11 @@
 
 #include "base/error.h"
 
-enum { LAR_GRID_MOST = 1024, LAR_GRID_TEXT = 40 };
+enum { LAR_GRID_MAX = 1024, LAR_GRID_TEXT = 40 };
 
 typedef struct lar_grid {
     int32_t edge[3]; /* nx, ny, nz, each at least 1 */
-    int32_t count;   /* their product, at most LAR_GRID_MOST */
+    int32_t count;   /* their product, at most LAR_GRID_MAX */
 } lar_grid;
 
 /* A grid of the given edges; LAR_ERROR_ARGUMENT when one is below 1 or there are too many. */

@@ -13,7 +13,7 @@ typedef struct grid_search {
     int32_t *set;
     int64_t *pays;
     lar_grid best;
-    lar_cost least;
+    lar_cost min;
 } grid_search;
 
 static lar_status try_grid(grid_search *s, int32_t nx, int32_t ny, int32_t nz, lar_error *error) {
@@ -24,9 +24,9 @@ static lar_status try_grid(grid_search *s, int32_t nx, int32_t ny, int32_t nz, l
     if (!status) {
         lar_cost cost =
             lar_cost_measure(&s->incidence, distribution.processor, grid.count, s->set, s->pays);
-        if (s->best.count == 0 || lar_cost_less(cost, s->least)) {
+        if (s->best.count == 0 || lar_cost_less(cost, s->min)) {
             s->best = grid;
-            s->least = cost;
+            s->min = cost;
         }
     }
     lar_distribution_clear(&distribution);
@@ -38,7 +38,7 @@ lar_status lar_grid_cheapest(const lar_mesh *mesh, int32_t count, lar_grid *grid
     grid_search s = {.mesh = mesh};
     lar_status status = lar_incidence_build(mesh, &s.incidence, error);
     if (!status) {
-        s.set = lar_calloc((size_t)s.incidence.most, sizeof *s.set);
+        s.set = lar_calloc((size_t)s.incidence.max, sizeof *s.set);
         s.pays = lar_calloc((size_t)count, sizeof *s.pays);
         if (!s.set || !s.pays) status = lar_fail_memory(error, (size_t)count * 8, "a grid");
     }

@@ -19,7 +19,7 @@ lar_status lar_incidence_build(const lar_mesh *mesh, lar_incidence *out, lar_err
     for (int32_t e = 0; e < mesh->element_count; e++)
         for (int a = 0; a < 8; a++) start[mesh->element[e][a] + 1]++;
     for (int32_t k = 0; k < mesh->node_count; k++) {
-        if (start[k + 1] > out->most) out->most = (int32_t)start[k + 1];
+        if (start[k + 1] > out->max) out->max = (int32_t)start[k + 1];
         start[k + 1] += start[k];
     }
     for (int32_t e = 0; e < mesh->element_count; e++)

@@ -12,7 +12,7 @@
 
 typedef struct lar_incidence {
     int32_t node_count, element_count;
-    int32_t most;     /* elements at one node, at most */
+    int32_t max;      /* elements at one node, at most */
     int64_t *first;   /* [node_count + 1] */
     int32_t *element; /* [first[node_count]], owned as first is */
 } lar_incidence;

@@ -49,8 +49,8 @@ LAR_INLINE unsigned lar_yeoh_stiffened(lar_lane J, lar_lane I1, lar_lane area, c
     lar_lane wider = area * lar_lane_set(1.0 / 3), longer = wider / (J * J);
     lar_lane shear = (p[0] + lar_lane_max(slope, none)) * lar_lane_max(longer, lar_lane_set(1)) +
                      lar_lane_max(rise, none) * D2;
-    lar_lane most = (share + lar_lane_set(1)) * lar_lane_fma(part, p[0], p[3]);
-    return ~lar_lane_not_greater(lar_lane_fma(part, shear, p[3] * wider), most) &
+    lar_lane max = (share + lar_lane_set(1)) * lar_lane_fma(part, p[0], p[3]);
+    return ~lar_lane_not_greater(lar_lane_fma(part, shear, p[3] * wider), max) &
            ((1U << LAR_LANES) - 1);
 }
 

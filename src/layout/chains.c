@@ -50,18 +50,18 @@ void lar_chains_destroy(lar_chains *chains) {
 }
 
 static int trace_chain(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front,
-                       int most, int32_t *run, int32_t (*corner)[8]) {
+                       int max, int32_t *run, int32_t (*corner)[8]) {
     const lar_chains *chains = ways->map;
     const bool *usable = draft->open;
     (void)front; /* there is only one */
     lar_gid first = e, at;
-    for (int steps = 0; steps < most / 2; steps++) {
+    for (int steps = 0; steps < max / 2; steps++) {
         lar_gid behind = chains->previous[first] - 1;
         if (behind < 0 || !usable[behind] || behind == e) break;
         first = behind;
     }
     int length = 0;
-    for (at = first; at >= 0 && usable[at] && length < most; at = chains->next[at] - 1) {
+    for (at = first; at >= 0 && usable[at] && length < max; at = chains->next[at] - 1) {
         if (length > 0 && at == first) break;
         memcpy(corner[length], chains->corner[at], sizeof corner[0]);
         run[length++] = at;

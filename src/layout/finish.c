@@ -17,7 +17,7 @@ double lar_layout_cost(const lar_layout *layout) {
     return cost;
 }
 
-double lar_layout_least_cost(int32_t elements) {
+double lar_layout_min_cost(int32_t elements) {
     return rows_cost[LAR_ROWS_EIGHT] * elements / LAR_BLOCK;
 }
 

@@ -12,6 +12,6 @@ bool lar_finish_layout(lar_draft *draft, bool general);
 /* What the blocks cost in a step, a row of eight being 1. */
 double lar_layout_cost(const lar_layout *layout);
 /* The least that `elements` elements can cost. */
-double lar_layout_least_cost(int32_t elements);
+double lar_layout_min_cost(int32_t elements);
 
 #endif

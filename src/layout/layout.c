@@ -11,7 +11,7 @@
 /* Local nodes are addressed by 32-bit offsets, four values each, and faces by 32-bit numbers, six
  * of an element. A line of five and more nodes may need a spare one before it, so a quarter of the
  * nodes at most is added to those of the model. */
-enum { NODES_MOST = 1 << 28, ELEMENTS_MOST = INT32_MAX / 6 };
+enum { NODES_MAX = 1 << 28, ELEMENTS_MAX = INT32_MAX / 6 };
 
 /* Ways of looking for rows. The first serves models too large to try them all. */
 static const lar_row_habit habits[] = {{1, 0.3}, {0, 0.3}, {2, 0.3}, {1, 0.2}, {0, 0.2},
@@ -45,17 +45,17 @@ static bool build(const lar_model *model, const lar_gid *order, const lar_row_wa
 static bool choose_habit(const lar_model *model, const lar_gid *order, const lar_row_ways *ways,
                          lar_row_habit *best) {
     int32_t elements = model->mesh.element_count;
-    double least = DBL_MAX, perfect = lar_layout_least_cost(elements);
+    double min = DBL_MAX, perfect = lar_layout_min_cost(elements);
     *best = habits[0];
     if (elements > TRY_ALL_ELEMENTS) return true;
-    for (int h = 0; h < HABITS && least > perfect; h++) {
+    for (int h = 0; h < HABITS && min > perfect; h++) {
         lar_layout trial;
         bool built = build(model, order, ways, habits[h], LAR_LAYOUT_ROWS, &trial);
         double cost = lar_layout_cost(&trial);
         lar_layout_destroy(&trial);
         if (!built) return false;
-        if (cost < least) {
-            least = cost;
+        if (cost < min) {
+            min = cost;
             *best = habits[h];
         }
     }
@@ -69,12 +69,12 @@ lar_status lar_layout_create(const lar_model *model, lar_layout *layout, lar_err
 lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style style,
                                     lar_layout *layout, lar_error *error) {
     *layout = (lar_layout){0};
-    if (model->mesh.node_count > NODES_MOST || model->mesh.element_count > ELEMENTS_MOST)
+    if (model->mesh.node_count > NODES_MAX || model->mesh.element_count > ELEMENTS_MAX)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: %d nodes and %d elements are more than can be numbered (%d and %d); "
                         "use a coarser mesh",
                         lar_model_source(model), (int)model->mesh.node_count,
-                        (int)model->mesh.element_count, NODES_MOST, ELEMENTS_MOST);
+                        (int)model->mesh.element_count, NODES_MAX, ELEMENTS_MAX);
     size_t elements = (size_t)model->mesh.element_count;
     lar_gid *order = lar_calloc(elements, sizeof *order);
     int32_t *neighbour = NULL;

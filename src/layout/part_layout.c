@@ -96,16 +96,16 @@ static bool build(const sources *from, int way, lar_layout *layout) {
 /* The cheapest of all ways. */
 static bool build_best(const sources *from, lar_layout *best) {
     int ways = from->count > TRY_ALL_ELEMENTS ? 1 : ORDERS * PATIENCES;
-    double least = DBL_MAX, perfect = lar_layout_least_cost(from->count);
-    for (int way = 0; way < ways && least > perfect; way++) {
+    double min = DBL_MAX, perfect = lar_layout_min_cost(from->count);
+    for (int way = 0; way < ways && min > perfect; way++) {
         lar_layout trial;
         bool built = build(from, way, &trial);
         double cost = built ? lar_layout_cost(&trial) : 0;
-        lar_layout *loser = built && cost < least ? best : &trial;
+        lar_layout *loser = built && cost < min ? best : &trial;
         lar_layout_destroy(loser);
         if (!built) return false;
         if (loser == best) {
-            least = cost;
+            min = cost;
             *best = trial;
         }
     }

@@ -26,8 +26,8 @@ typedef const int32_t (*corners)[8];
  */
 
 static int trace_faces(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front,
-                       int most, int32_t *run, int32_t (*corner)[8]) {
-    return lar_rows_trace(&draft->model->mesh, ways->map, draft->open, e, front, most, run, corner);
+                       int max, int32_t *run, int32_t (*corner)[8]) {
+    return lar_rows_trace(&draft->model->mesh, ways->map, draft->open, e, front, max, run, corner);
 }
 
 static lar_gid beyond_faces(const lar_row_ways *ways, const lar_draft *draft, lar_gid *e,
@@ -67,10 +67,10 @@ static void begin_check(planner *plan) {
 static int feasible_length(planner *plan, int from, int length) {
     corners corner = (corners)plan->run_corner + from;
     const lar_lid *local = plan->draft->layout->local;
-    int fits = 0, most = length - from;
+    int fits = 0, max = length - from;
     begin_check(plan);
-    for (int k = 0; k <= most; k++) {
-        if (k < most && !plan->draft->open[plan->run[from + k]]) most = k;
+    for (int k = 0; k <= max; k++) {
+        if (k < max && !plan->draft->open[plan->run[from + k]]) max = k;
         for (int line = 0; line < 4; line++) {
             lar_gid node = line_node(corner, length - from, line, k);
             lar_gid begin = corner[0][lar_line_left[line]];

@@ -36,7 +36,7 @@ struct lar_row_ways {
     const void *map;
     bool turned; /* layout->corner is settled: the way through an element is its xi direction */
     /* As lar_rows_trace and lar_rows_beyond (rows.h). */
-    int (*trace)(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front, int most,
+    int (*trace)(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front, int max,
                  int32_t *run, int32_t (*corner)[8]);
     lar_gid (*beyond)(const lar_row_ways *ways, const lar_draft *draft, lar_gid *e, lar_gid from,
                       lar_gid to);

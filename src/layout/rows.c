@@ -70,10 +70,10 @@ static bool turn_to_follow(const int32_t node[8], int entry, const int32_t previ
 }
 
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
-                   int front, int most, int32_t *run, int32_t (*corner)[8]) {
+                   int front, int max, int32_t *run, int32_t (*corner)[8]) {
     /* Back to the beginning: `front` is always the face that leads forward. */
     int32_t first = e;
-    for (int steps = 0; steps < most / 2; steps++) {
+    for (int steps = 0; steps < max / 2; steps++) {
         int32_t behind = neighbour[6 * first + opposite(front)];
         if (behind < 0 || !usable[behind / 6] || behind / 6 == e) break;
         first = behind / 6;
@@ -85,7 +85,7 @@ int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *u
     for (;;) {
         run[length++] = at;
         int32_t ahead = neighbour[6 * at + front];
-        if (length == most || ahead < 0 || !usable[ahead / 6] || ahead / 6 == first) return length;
+        if (length == max || ahead < 0 || !usable[ahead / 6] || ahead / 6 == first) return length;
         int32_t next = ahead / 6;
         if (!turn_to_follow(mesh->element[next], ahead % 6, corner[length - 1], corner[length]))
             return length;
@@ -113,11 +113,11 @@ int lar_rows_face(const int32_t node[8], int32_t from, int32_t to) {
 
 int32_t lar_rows_beyond(const lar_mesh *mesh, const int32_t *neighbour, int32_t *e, int32_t from,
                         int32_t to) {
-    enum { MOST_AROUND_EDGE = 8 };
+    enum { MAX_AROUND_EDGE = 8 };
     for (int sense = 0; sense < 2; sense++) { /* around the edge one way, then the other */
         int32_t at = *e;
         int entered = -1;
-        for (int i = 0; i < MOST_AROUND_EDGE; i++) {
+        for (int i = 0; i < MAX_AROUND_EDGE; i++) {
             const int32_t *node = mesh->element[at];
             int end = local_of(node, to), face = lar_rows_face(node, from, to);
             int32_t ahead = neighbour[6 * at + face];

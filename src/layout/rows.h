@@ -9,11 +9,11 @@
 lar_status lar_rows_neighbours(const lar_mesh *mesh, int32_t **neighbour, lar_error *error);
 
 /* The run of elements through e that leaves it by its local face `front`: elements for which
- * usable[element] is true, at most `most`, in run[], first to last; corner[k] gets the nodes of
+ * usable[element] is true, at most `max`, in run[], first to last; corner[k] gets the nodes of
  * run[k] turned so that the row is its xi direction. A run that begins with e and leaves it by xi+
  * keeps the order of e's nodes. Returns the length. */
 int lar_rows_trace(const lar_mesh *mesh, const int32_t *neighbour, const bool *usable, int32_t e,
-                   int front, int most, int32_t *run, int32_t (*corner)[8]);
+                   int front, int max, int32_t *run, int32_t (*corner)[8]);
 
 /* The node that continues the edge from `from` to `to` of element *e, in a neighbour of *e or of
  * another element around that edge; -1 at the end of the mesh. *e becomes the element that has the

@@ -3,8 +3,8 @@
  * The table drives allocation, freeing, and (as the engine grows) checkpoint, hash and
  * comparison: an array that is not in it does not exist. Nodes are in the domain's local order,
  * four values each (x, y, z, 0), padded to an even number of nodes and aligned to 64 bytes. The
- * fourth value of u is the node's level in contact of its body with itself (collide.h), which the
- * kernels leave as it is.
+ * fourth value of u is the node's offset in contact of its body with itself (body_contact.h), which
+ * the kernels leave as it is.
  */
 #ifndef LAR_LAYOUT_STATE_H
 #define LAR_LAYOUT_STATE_H

@@ -20,7 +20,7 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
 }
 
-/* Of the 4 (1 - s^2) that elements leave, holds take a sixth, and tools all the rest: beta
+/* Of the 4 (1 - s^2) that elements leave, grasps take a sixth, and tools all the rest: beta
  * (1 + 2 lead). So much of it is the damper's that a hand does not feel the spring tremble. */
 lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
     static const double REST = 10.0 / 3, LEAD = 0.3, SOFTEST_TOOL = 0.12;

@@ -21,7 +21,7 @@ typedef struct lar_contact_law {
 } lar_contact_law;
 
 /* For a time step and the stable step of the elements [s]. Three kinds of springs of this law may
- * meet at a node (body, tool, hold) as long as the stiffness of each kind is at most
+ * meet at a node (body, tool, grasp) as long as the stiffness of each kind is at most
  * law.stiffness times the node's mass (row sums: of k w_a over all springs of the kind, w_a being
  * the node's share of a spring's end). */
 lar_contact_law lar_contact_law_for(double time_step, double stable_step);

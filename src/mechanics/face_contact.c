@@ -97,16 +97,16 @@ static double toward_of(const double x[3], const double corner[4][3], const doub
     bool is_middle = weight[other] == 0.25 && weight[t] == 0.25 && weight[next] == 0.25;
     if (weight[t] != 1 && weight[next] != 1 && !is_middle) return 0;
     const double *ends[3] = {corner[t], corner[next], middle};
-    double point[3], away[3], along[3], most = -1;
+    double point[3], away[3], along[3], max = -1;
     lar_face_mean(corner, weight, point);
     between(point, x, away);
     double distance = sqrt(dot(away, away));
     for (int i = 0; i < 3; i++) {
         between(point, ends[i], along);
         double length = sqrt(dot(along, along));
-        if (length > tie && distance > 0) most = fmax(most, dot(along, away) / (length * distance));
+        if (length > tie && distance > 0) max = fmax(max, dot(along, away) / (length * distance));
     }
-    return most;
+    return max;
 }
 
 static void middle_of(const double corner[4][3], double middle[3]) {
@@ -115,18 +115,18 @@ static void middle_of(const double corner[4][3], double middle[3]) {
 }
 
 double lar_face_distance(const double x[3], const double corner[4][3]) {
-    double middle[3], weight[4], least = INFINITY;
+    double middle[3], weight[4], min = INFINITY;
     middle_of(corner, middle);
     for (int t = 0; t < 4; t++) {
         closest_of_part(x, corner, middle, t, weight);
-        least = fmin(least, distance_to(x, corner, weight));
+        min = fmin(min, distance_to(x, corner, weight));
     }
-    return least;
+    return min;
 }
 
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point) {
-    double middle[3], least = INFINITY;
+    double middle[3], min = INFINITY;
     lar_face_point part[4];
     middle_of(corner, middle);
     for (int t = 0; t < 4; t++) {
@@ -134,11 +134,11 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
         part[t].distance = distance_to(x, corner, part[t].weight);
         part[t].height = part[t].toward = NAN;
         part[t].triangle = t;
-        least = fmin(least, part[t].distance);
+        min = fmin(min, part[t].distance);
     }
     const lar_face_point *chosen = NULL; /* stays so where there are no numbers */
     for (int t = 0; t < 4; t++) {
-        if (!(part[t].distance <= least + tie)) continue;
+        if (!(part[t].distance <= min + tie)) continue;
         part[t].height = height_over(x, corner, middle, t, part[t].weight);
         part[t].toward = toward_of(x, corner, middle, t, part[t].weight, tie);
         if (!chosen || lar_face_point_before(&part[t], chosen)) chosen = &part[t];
@@ -260,32 +260,31 @@ static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
 static double within(const double x[3], const double corner[4][3], const double middle[3], int t,
                      const double weight[4], double distance, bool closest) {
     int next = (t + 1) % 4, other = (t + 2) % 4;
-    double place[3][3], slope[3][3], least = INFINITY;
+    double place[3][3], slope[3][3], min = INFINITY;
     double part[3] = {weight[t] - weight[other], weight[next] - weight[other], 4 * weight[other]};
     memcpy(place[0], corner[t], sizeof place[0]);
     memcpy(place[1], corner[next], sizeof place[1]);
     memcpy(place[2], middle, sizeof place[2]);
     if (part[0] > NOTHING && part[1] > NOTHING && part[2] > NOTHING) {
         triangle_slopes((const double(*)[3])place, slope);
-        for (int c = 0; c < 3; c++)
-            least = fmin(least, share(part[c], sqrt(dot(slope[c], slope[c]))));
-        return least;
+        for (int c = 0; c < 3; c++) min = fmin(min, share(part[c], sqrt(dot(slope[c], slope[c]))));
+        return min;
     }
     if (!closest) return 0;
     double height = height_over(x, corner, middle, t, weight);
     return sqrt(fmax(distance * distance - height * height, 0));
 }
 
-double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
+double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4]) {
     double middle[3], weight[4], all = 0;
     middle_of(corner, middle);
     for (int t = 0; t < 4; t++) {
         closest_of_part(x, corner, middle, t, weight);
         double distance = distance_to(x, corner, weight);
-        double count = 1 - (distance - least) / fade;
+        double count = 1 - (distance - min) / fade;
         if (!(count > 0)) continue;
-        count *= within(x, corner, middle, t, weight, distance, distance <= least);
+        count *= within(x, corner, middle, t, weight, distance, distance <= min);
         if (!(count > 0)) continue;
         for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
         all += count;

@@ -62,11 +62,11 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
                               lar_face_segment *closest);
 
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
- * points of all triangles that are about as close to x as the closest of all, `least` away. Adds
+ * points of all triangles that are about as close to x as the closest of all, `min` away. Adds
  * those of one face: to sum[] their weights of its corners, times how much each of them counts, all
- * of which is returned. A triangle counts 1 - (distance - least) / fade, and next to nothing where
+ * of which is returned. A triangle counts 1 - (distance - min) / fade, and next to nothing where
  * x is not straight above it. */
-double lar_face_blend(const double x[3], const double corner[4][3], double least, double fade,
+double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4]);
 
 /* A number at the closest point of a face that is `value` at its corners and, last, in its middle,

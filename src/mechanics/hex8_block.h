@@ -99,30 +99,30 @@ typedef struct lar_block_run {
 
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
-    double least_volume;     /* det F must stay above this */
+    double min_volume;       /* det F must stay above this */
     double stress_square;    /* what a law's stress returns, scaled as `modulus`, must stay below */
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 
-/* What a watch says of an element's strain: det F, |F|^2 and |cof F|^2, 1, 3 and 3 at rest. */
+/* What a monitor says of an element's strain: det F, |F|^2 and |cof F|^2, 1, 3 and 3 at rest. */
 enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
 
 /* Elements that are strained so much that they must be looked at more closely (hex8_guard.h):
  * squeezed, or bent by their hourglass modes, by about a fifth. */
-typedef struct lar_hex8_watch {
+typedef struct lar_hex8_monitor {
     const double *limit; /* [8 for each block of the run] of lar_hex8_corner_limit, squared units of
                             force */
     int32_t count;
     int32_t *lane; /* [8 for each block of the run] block * 8 + lane, ascending */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [as many] of each */
-} lar_hex8_watch;
+} lar_hex8_monitor;
 
 /* Recovers a run: adds the internal forces for the displacements `u` [nodes][4] to `force`
  * [nodes][4]. Returns -1, or where the first block with elements beyond the limits is:
- * block << 8 | a bit for each lane; all forces are added in any case. With `watch` (may be NULL)
+ * block << 8 | a bit for each lane; all forces are added in any case. With `monitor` (may be NULL)
  * hourglass forces are compared with their limit, and strained elements are listed. */
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
-                                    const lar_hex8_limits *limits, lar_hex8_watch *watch);
+                                    const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
 
 /* Looks at the corners of block `block` of a run, with nodes at `rest` and displaced by `u`, both
  * [nodes][4]. A corner's volume is what its edges span. Returns a bit for each lane where one is
@@ -131,22 +131,22 @@ typedef unsigned (*lar_hex8_corners)(const lar_block_run *run, int32_t block, co
                                      const double *u, const double share[2]);
 
 /* How nodes move in one leapfrog step of length dt with mass-proportional damping. */
-typedef struct lar_motion {
+typedef struct lar_leapfrog {
     double keep;     /* (1 - c dt/2) / (1 + c dt/2) */
     double dt;       /* [s] */
     double speed;    /* no node may be this fast along an axis [m/s] */
     double drift[4]; /* gravity g dt / (1 + c dt/2) [m/s]; the fourth value is 0 */
     double push;     /* how many times lar_node_update's `push` counts: 1 but for divided steps */
-} lar_motion;
+} lar_leapfrog;
 
 /* Moves nodes first..end-1 (both even) by one step and clears their forces:
  *     v' = keep v - push f + drift,   u' = u + dt v',   f = 0
  * u, v, f are [nodes][4], aligned to 64 bytes; push [nodes] is dt / (m (1 + c dt/2)) times the
- * force unit, and counts motion->push times. With `mass` (not NULL; [nodes], kg) *damped grows by
+ * force unit, and counts leapfrog->push times. With `mass` (not NULL; [nodes], kg) *damped grows by
  * sum m |v + v'|^2, for the energy that damping takes. *fastest becomes the largest |v'| of an axis
  * where that is more: nothing has moved further than sqrt(3) dt of it, which is what the search for
  * contact builds on. Returns false when a node reached `speed`; *fastest then says nothing. */
-typedef bool (*lar_node_update)(const lar_motion *motion, int32_t first, int32_t end, double *u,
+typedef bool (*lar_node_update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u,
                                 double *v, int64_t *force, const double *push, const double *mass,
                                 double *damped, double *fastest);
 

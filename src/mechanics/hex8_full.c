@@ -26,19 +26,19 @@ static gauss gauss_at(int g, const double corner[8][3], const double u[8][3]) {
 
 double lar_hex8_full_force(const double corner[8][3], const lar_material *material,
                            const double u[8][3], double force[8][3]) {
-    double least = INFINITY;
+    double min = INFINITY;
     memset(force, 0, FREEDOMS * sizeof(double));
     for (int g = 0; g < LAR_GAUSS_POINTS; g++) {
         gauss point = gauss_at(g, corner, u);
         double P[3][3];
         double J = lar_law_stress(material, (const double(*)[3])point.F, P);
-        if (J < least || isnan(J)) least = J; /* a NaN stays: nothing is less */
+        if (J < min || isnan(J)) min = J; /* a NaN stays: nothing is less */
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++)
                     force[a][i] += point.volume * P[i][j] * point.gradient[a][j];
     }
-    return least;
+    return min;
 }
 
 double lar_hex8_full_energy(const double corner[8][3], const lar_material *material,

@@ -10,7 +10,7 @@
 
 /* Part of K + 4/3 G. */
 static const double KAPPA = 0.5;
-static const double LEAST = 0.3; /* of START: where the parabola begins */
+static const double MIN = 0.3; /* of START: where the parabola begins */
 
 /* The neighbours of a corner along xi, eta, zeta, in an order in which a sound element's three
  * edges are right-handed. */
@@ -27,13 +27,13 @@ static double span(const double x[8][3], int a, double edge[3][3]) {
 
 /* Energy, and its first and second derivative by j, per kappa V/8. */
 static void barrier(double j, double *energy, double *slope, double *curvature) {
-    double x = j / LAR_GUARD_START, least = fmax(x, LEAST);
-    double s = LAR_GUARD_START, inverse = 1 / least;
-    *energy = 0.5 * s * s * (inverse + least - 2);
+    double x = j / LAR_GUARD_START, min = fmax(x, MIN);
+    double s = LAR_GUARD_START, inverse = 1 / min;
+    *energy = 0.5 * s * s * (inverse + min - 2);
     *slope = -0.5 * s * (inverse * inverse - 1);
     *curvature = inverse * inverse * inverse;
-    if (x >= LEAST) return;
-    double beyond = j - LEAST * s;
+    if (x >= MIN) return;
+    double beyond = j - MIN * s;
     *energy += *slope * beyond + 0.5 * *curvature * beyond * beyond;
     *slope += *curvature * beyond;
 }
@@ -72,11 +72,11 @@ void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const
                           const lar_material *material, double lead, double force[8][3],
                           lar_guard *guard) {
     double modulus = KAPPA * wave_modulus(material) / 8;
-    *guard = (lar_guard){.least = INFINITY};
+    *guard = (lar_guard){.min = INFINITY};
     for (int a = 0; a < 8; a++) {
         corner_span c = {0};
         span_corner(rest, now, a, &c);
-        if (!(c.j >= guard->least)) guard->least = c.j;
+        if (!(c.j >= guard->min)) guard->min = c.j;
         if (!(c.j < LAR_GUARD_START) || !(c.volume > 0)) continue;
         double energy, slope, curvature, weight = modulus * c.volume, square = 0, rate = 0;
         barrier(c.j, &energy, &slope, &curvature);

@@ -10,7 +10,7 @@
  *     w = kappa V/8 START^2 (1/x + x - 2)/2,   dw/dj = -kappa V/8 START/2 (1/x^2 - 1)
  *
  * a barrier as in incremental potential contact (Li and others 2020), with a rational function that
- * needs no library and has the second derivative kappa V/8 / x^3. Below x = LEAST it goes on as a
+ * needs no library and has the second derivative kappa V/8 / x^3. Below x = MIN it goes on as a
  * parabola: a corner that is inside out all the same is pushed back as well (invertible elements:
  * Irving, Teran, Fedkiw 2004). Above START it is zero, exactly; a body whose corners keep START of
  * their volume has the same bits with and without it.
@@ -30,7 +30,7 @@
 #define LAR_GUARD_START 0.3
 
 typedef struct lar_guard {
-    double least;     /* the least j of the corners */
+    double min;       /* the least j of the corners */
     double energy;    /* [J] */
     double taken;     /* power of the damping, at most 0 [W] */
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
@@ -53,7 +53,7 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]);
 
 /* How the square of an element's highest frequency has grown with its strain, barrier apart: the
  * volume term goes with |cof F|^2 and the law's own slope, shear with |F^-1|^2. `strain`: what a
- * watch says (hex8_block.h), of the mean gradient. Infinite where that is turned over. */
+ * monitor says (hex8_block.h), of the mean gradient. Infinite where that is turned over. */
 double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]);
 
 #endif

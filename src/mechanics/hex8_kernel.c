@@ -144,7 +144,7 @@ typedef unsigned (*lane_stiffened)(lar_lane J, lar_lane I1, lar_lane area, const
 static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_SHEAR = 0.4,
                     STRAINED_CORNER = 0.09;
 
-/* What a watch says of the strain of some lanes (hex8_block.h). */
+/* What a monitor says of the strain of some lanes (hex8_block.h). */
 typedef struct lane_strain {
     lar_lane number[LAR_STRAIN_NUMBERS];
 } lane_strain;
@@ -174,15 +174,15 @@ LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_reco
     }
     lar_lane stress = law(record->F, P, J, I1, p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
-    unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->least_volume)) |
+    unsigned beyond = lar_lane_not_greater(J, lar_lane_set(limits->min_volume)) |
                       lar_lane_not_greater(lar_lane_set(limits->stress_square), stress);
     if (limit) {
         lar_lane sum = lar_lane_set(0);
         UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
             sum = lar_lane_fma(record->cq[m][i], record->cq[m][i], sum);
         beyond |= lar_lane_not_greater(lar_lane_set(limits->hourglass_square), sum);
-        lar_lane most = lar_lane_set(STRAINED_CORNER) * lar_lane_load(limit);
-        *strained |= lar_lane_not_greater(most, sum);
+        lar_lane max = lar_lane_set(STRAINED_CORNER) * lar_lane_load(limit);
+        *strained |= lar_lane_not_greater(max, sum);
     }
     return beyond;
 }
@@ -346,21 +346,21 @@ LAR_INLINE void ask_for_next_chunk(const char *blocks, size_t bytes) {
 }
 
 /* Lists the strained elements of a chunk that begins with block b. */
-static void list_strained(lar_hex8_watch *watch, int32_t b, unsigned strained,
+static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned strained,
                           const lane_strain *strain) {
-    for (; strained; strained &= strained - 1, watch->count++) {
+    for (; strained; strained &= strained - 1, monitor->count++) {
         int lane = __builtin_ctz(strained);
         double values[LAR_LANES] __attribute__((aligned(64)));
         for (int k = 0; k < LAR_STRAIN_NUMBERS; k++) {
             lar_lane_store(values, strain[lane / LAR_LANES].number[k]);
-            watch->strain[watch->count][k] = (float)values[lane % LAR_LANES];
+            monitor->strain[monitor->count][k] = (float)values[lane % LAR_LANES];
         }
-        watch->lane[watch->count] = b * LAR_BLOCK + lane;
+        monitor->lane[monitor->count] = b * LAR_BLOCK + lane;
     }
 }
 
 static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
-                       const lar_hex8_limits *limits, lar_hex8_watch *watch) {
+                       const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
     lane_record record[CHUNK * PARTS];
     lane_strain strains[CHUNK * PARTS];
     strain_phase strain = strain_table[run->shape][run->rows];
@@ -374,12 +374,12 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         strain(blocks, count, run->turn, u, record);
         if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
         unsigned strained = 0;
-        const double *limit = watch ? watch->limit + b * LAR_BLOCK : NULL;
+        const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
         const lar_block_more *more = run->more ? run->more + b : NULL;
         unsigned beyond =
             stress(blocks, more, count, size, record, limits, limit, strains, &strained);
         forces(blocks, count, run->turn, record, force);
-        if (__builtin_expect(strained != 0, 0)) list_strained(watch, b, strained, strains);
+        if (__builtin_expect(strained != 0, 0)) list_strained(monitor, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
             int block = __builtin_ctz(beyond) / LAR_BLOCK;
             first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);
@@ -444,17 +444,17 @@ static unsigned corners(const lar_block_run *run, int32_t b, const double *rest,
 /* ---- nodes --------------------------------------------------------------------------------- */
 
 /* Nodes are runs of four values (the last always 0), so every value is treated alike. */
-LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t end, double *u,
+LAR_INLINE bool update_values(const lar_leapfrog *leapfrog, int64_t first, int64_t end, double *u,
                               double *v, int64_t *force, const double *push, bool divided,
                               const double *mass, double *damped, double *fastest) {
-    const lar_lane keep = lar_lane_set(motion->keep), dt = lar_lane_set(motion->dt);
-    const lar_lane speed = lar_lane_set(motion->speed), factor = lar_lane_set(motion->push);
-    lar_lane sum = lar_lane_set(0), most = lar_lane_set(0);
+    const lar_lane keep = lar_lane_set(leapfrog->keep), dt = lar_lane_set(leapfrog->dt);
+    const lar_lane speed = lar_lane_set(leapfrog->speed), factor = lar_lane_set(leapfrog->push);
+    lar_lane sum = lar_lane_set(0), max = lar_lane_set(0);
     unsigned beyond = 0;
     for (int64_t k = 4 * first; k < 4 * end; k += LAR_LANES) {
         lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
         lar_lane before = lar_lane_load(v + k);
-        lar_lane after = lar_lane_fma(keep, before, lar_lane_repeat4(motion->drift, k));
+        lar_lane after = lar_lane_fma(keep, before, lar_lane_repeat4(leapfrog->drift, k));
         lar_lane pushed = lar_lane_per_node(push, k);
         after = lar_lane_fnma(f, divided ? factor * pushed : pushed, after);
         lar_lane_store(v + k, after);
@@ -462,7 +462,7 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_ilane_store(force + k, (lar_ilane){0});
         lar_lane size = lar_lane_abs(after);
         beyond |= lar_lane_not_greater(speed, size);
-        most = lar_lane_max(most, size);
+        max = lar_lane_max(max, size);
         if (mass) {
             lar_lane twice = before + after;
             sum = lar_lane_fma(lar_lane_per_node(mass, k) * twice, twice, sum);
@@ -473,19 +473,19 @@ LAR_INLINE bool update_values(const lar_motion *motion, int64_t first, int64_t e
         lar_lane_store(values, sum);
         for (int i = 0; i < LAR_LANES; i++) *damped += values[i];
     }
-    lar_lane_store(values, most);
+    lar_lane_store(values, max);
     for (int i = 0; i < LAR_LANES; i++)
         if (values[i] > *fastest) *fastest = values[i];
     return beyond == 0;
 }
 
-static bool update(const lar_motion *motion, int32_t first, int32_t end, double *u, double *v,
+static bool update(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u, double *v,
                    int64_t *force, const double *push, const double *mass, double *damped,
                    double *fastest) {
     /* Four loops: what is not wanted costs nothing. */
 #define VALUES(divided, mass)                                                                      \
-    update_values(motion, first, end, u, v, force, push, divided, mass, damped, fastest)
-    if (motion->push != 1) return mass ? VALUES(true, mass) : VALUES(true, NULL);
+    update_values(leapfrog, first, end, u, v, force, push, divided, mass, damped, fastest)
+    if (leapfrog->push != 1) return mass ? VALUES(true, mass) : VALUES(true, NULL);
     return mass ? VALUES(false, mass) : VALUES(false, NULL);
 #undef VALUES
 }

@@ -116,7 +116,7 @@ static void add_geometric_part(const double gradient[8][3], const double S[3][3]
 
 double lar_hex8_matrix_build(const double corner[8][3], const lar_material *material,
                              const double u[8][3], double K[24][24]) {
-    double least = INFINITY;
+    double min = INFINITY;
     memset(K, 0, FREEDOMS * sizeof K[0]);
     for (int g = 0; g < LAR_GAUSS_POINTS; g++) {
         double at[3], gradient[8][3], H[3][3], S[3][3];
@@ -125,22 +125,22 @@ double lar_hex8_matrix_build(const double corner[8][3], const lar_material *mate
         const double(*slopes)[3] = (const double(*)[3])gradient;
         displacement_gradient(slopes, u, H);
         double J = second_piola(material, (const double(*)[3])H, S);
-        if (J < least || isnan(J)) least = J; /* a NaN stays: nothing is less */
+        if (J < min || isnan(J)) min = J; /* a NaN stays: nothing is less */
         add_material_part(material, slopes, (const double(*)[3])H, (const double(*)[3])S, volume,
                           K);
         add_geometric_part(slopes, (const double(*)[3])S, volume, K);
     }
-    return least;
+    return min;
 }
 
 double lar_hex8_matrix_force(const double corner[8][3], const lar_material *material,
                              const double u[8][3], double force[8][3]) {
     double K[FREEDOMS][FREEDOMS];
-    double least = lar_hex8_matrix_build(corner, material, u, K);
+    double min = lar_hex8_matrix_build(corner, material, u, K);
     for (int n = 0; n < FREEDOMS; n++) {
         double sum = 0;
         for (int m = 0; m < FREEDOMS; m++) sum += K[n][m] * u[m / 3][m % 3];
         force[n / 3][n % 3] = sum;
     }
-    return least;
+    return min;
 }

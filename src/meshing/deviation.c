@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "model/triangles/tree.h"
 
 /* Samples in each direction, about; samples along a side of a face or triangle, at most; samples
  * along the edge of a face, of the surface or, where its triangles are smaller, of the face. */
-enum { SAMPLES_MOST = 200000, CUTS_MOST = 16, CUTS_PER_EDGE = 8 };
+enum { SAMPLES_MAX = 200000, CUTS_MAX = 16, CUTS_PER_EDGE = 8 };
 
 typedef struct sample {
     double point[3], distance, weight;
@@ -64,7 +64,7 @@ static void measure(samples *all, const lar_triangle_tree *tree) {
     enum { PORTION = 1024 };
     all->tree = tree;
     halve_weights(all);
-    lar_share((int32_t)(all->count - all->first), PORTION, measure_some, all);
+    lar_parallel_for((int32_t)(all->count - all->first), PORTION, measure_some, all);
     all->first = all->count;
 }
 
@@ -88,16 +88,16 @@ static double place_on_face(const double corner[4][3], double u, double v, doubl
     return lar_length(normal);
 }
 
-/* Samples along a side of a face or triangle of some area, for about SAMPLES_MOST in all. */
-static int cuts_for(double area, double area_of_all, double least_spacing) {
-    const double spacing = fmax(sqrt(area_of_all / SAMPLES_MOST), least_spacing);
+/* Samples along a side of a face or triangle of some area, for about SAMPLES_MAX in all. */
+static int cuts_for(double area, double area_of_all, double min_spacing) {
+    const double spacing = fmax(sqrt(area_of_all / SAMPLES_MAX), min_spacing);
     const double cuts = spacing > 0 ? ceil(sqrt(area) / spacing) : 1;
-    return cuts < 1 ? 1 : cuts > CUTS_MOST ? CUTS_MOST : (int)cuts;
+    return cuts < 1 ? 1 : cuts > CUTS_MAX ? CUTS_MAX : (int)cuts;
 }
 
 /* Where many small faces would give more samples than that, every n-th one is looked at. */
 static int32_t stride_for(int32_t count) {
-    return 1 + count / (2 * SAMPLES_MOST);
+    return 1 + count / (2 * SAMPLES_MAX);
 }
 
 /* The face's corners and its middle as four triangles around the middle. */
@@ -143,7 +143,7 @@ static lar_status sample_faces(const lar_mesh *mesh, const int32_t *face, int32_
         face_corners(mesh, face[f], corner);
         const double own = place_on_face((const double(*)[3])corner, 0.5, 0.5, point);
         int cuts = cuts_for(own, area, finest);
-        if (cuts < 2 && count < SAMPLES_MOST) cuts = 2;
+        if (cuts < 2 && count < SAMPLES_MAX) cuts = 2;
         for (int s = 0; !status && s < cuts * cuts; s++) {
             const double u = (s % cuts + 0.5) / cuts, v = (s / cuts + 0.5) / cuts;
             const double weight = place_on_face((const double(*)[3])corner, u, v, point);
@@ -213,7 +213,7 @@ static void summarise(samples *all, lar_deviation *deviation) {
     }
     for (size_t s = 0; s < all->count && reached < 0.95 * weight; s++) {
         reached += all->one[s].weight;
-        deviation->most_95 = all->one[s].distance;
+        deviation->max_95 = all->one[s].distance;
     }
     if (weight > 0) deviation->mean /= weight;
     if (all->count > 0) deviation->hausdorff = all->one[all->count - 1].distance;

@@ -8,7 +8,7 @@
 /* Distances between two surfaces [m]. */
 typedef struct lar_deviation {
     double mean;      /* over both directions, weighted by area */
-    double most_95;   /* 95 % of the area is nearer */
+    double max_95;    /* 95 % of the area is nearer */
     double hausdorff; /* the largest */
 } lar_deviation;
 
@@ -22,7 +22,7 @@ lar_status lar_deviation_measure(const lar_mesh *mesh, const int32_t *face, int3
  * the mean, and the parts above 0.2 and 0.5. */
 typedef struct lar_jacobians {
     int32_t bin[10];
-    double least, mean, above_02, above_05;
+    double min, mean, above_02, above_05;
     int32_t worst; /* element index */
 } lar_jacobians;
 void lar_jacobians_count(const lar_mesh *mesh, lar_jacobians *jacobians);

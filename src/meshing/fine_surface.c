@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/union_find.h"
-#include "model/triangles/skin.h"
+#include "model/triangles/surface_tree.h"
 
 /* In cells. */
 static const double NEAR = 0.5, FAR = 1;
@@ -25,7 +25,7 @@ typedef struct shells {
 /* Asking where the mesh is, for every vertex. */
 typedef struct question {
     lar_triangles *surface;
-    lar_mesh_skin skin;
+    lar_surface_tree outer;
     double size;
     bool *is_near; /* [vertices] */
 } question;
@@ -34,12 +34,12 @@ static void find_near(void *context, int32_t first, int32_t end) {
     const question *q = context;
     for (int32_t v = first; v < end; v++)
         q->is_near[v] =
-            lar_triangle_tree_is_near(q->skin.tree, q->surface->vertex[v], NEAR * q->size);
+            lar_triangle_tree_is_near(q->outer.tree, q->surface->vertex[v], NEAR * q->size);
 }
 
 static void find_shells(question *q, shells *found) {
     const lar_triangles *surface = q->surface;
-    lar_share(surface->vertex_count, PORTION, find_near, q);
+    lar_parallel_for(surface->vertex_count, PORTION, find_near, q);
     lar_union_start(found->parent, surface->vertex_count);
     for (int32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 1; k < 3; k++)
@@ -75,14 +75,14 @@ lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, lar_triangle
                     .count = lar_calloc(vertices, sizeof *found.count),
                     .near = lar_calloc(vertices, sizeof *found.near)};
     bool good = q.is_near && found.parent && found.count && found.near;
-    lar_status status = good ? lar_mesh_skin_create(mesh, &q.skin, error)
+    lar_status status = good ? lar_surface_tree_create(mesh, &q.outer, error)
                              : lar_fail_memory(error, 3 * vertices * sizeof(int32_t), "shells");
     if (!status) {
         find_shells(&q, &found);
         drop_shells(surface, &found);
     }
     if (!status && surface->triangle_count < before) status = lar_triangles_join(surface, error);
-    lar_mesh_skin_clear(&q.skin);
+    lar_surface_tree_clear(&q.outer);
     free(q.is_near);
     free(found.parent);
     free(found.count);
@@ -97,8 +97,8 @@ static void draw_some(void *context, int32_t first, int32_t end) {
     for (int32_t v = first; v < end; v++) {
         double *vertex = q->surface->vertex[v];
         lar_nearest nearest;
-        if (lar_triangle_tree_is_near(q->skin.tree, vertex, FAR * q->size)) continue;
-        if (!lar_triangle_tree_nearest(q->skin.tree, vertex, INFINITY, &nearest)) continue;
+        if (lar_triangle_tree_is_near(q->outer.tree, vertex, FAR * q->size)) continue;
+        if (!lar_triangle_tree_nearest(q->outer.tree, vertex, INFINITY, &nearest)) continue;
         if (nearest.distance > FAR * q->size) memcpy(vertex, nearest.point, sizeof nearest.point);
     }
 }
@@ -106,8 +106,8 @@ static void draw_some(void *context, int32_t first, int32_t end) {
 lar_status lar_fine_surface_draw(const lar_mesh *mesh, double size, lar_triangles *surface,
                                  lar_error *error) {
     question q = {.surface = surface, .size = size};
-    lar_status status = lar_mesh_skin_create(mesh, &q.skin, error);
-    if (!status) lar_share(surface->vertex_count, PORTION, draw_some, &q);
-    lar_mesh_skin_clear(&q.skin);
+    lar_status status = lar_surface_tree_create(mesh, &q.outer, error);
+    if (!status) lar_parallel_for(surface->vertex_count, PORTION, draw_some, &q);
+    lar_surface_tree_clear(&q.outer);
     return status;
 }

@@ -1,4 +1,4 @@
-/* The true surface, made fit to ride on a mesh (model/triangles/embedding.h). */
+/* The true surface, made fit to ride on a mesh (model/triangles/embedded_surface.h). */
 #ifndef LAR_MESHING_FINE_SURFACE_H
 #define LAR_MESHING_FINE_SURFACE_H
 

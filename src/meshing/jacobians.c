@@ -3,7 +3,7 @@
 #include "meshing/deviation.h"
 
 void lar_jacobians_count(const lar_mesh *mesh, lar_jacobians *jacobians) {
-    *jacobians = (lar_jacobians){.least = mesh->element_count > 0 ? INFINITY : 0};
+    *jacobians = (lar_jacobians){.min = mesh->element_count > 0 ? INFINITY : 0};
     double sum = 0;
     int32_t above_02 = 0, above_05 = 0;
     for (int32_t e = 0; e < mesh->element_count; e++) {
@@ -17,8 +17,8 @@ void lar_jacobians_count(const lar_mesh *mesh, lar_jacobians *jacobians) {
         above_02 += jacobian > 0.2;
         above_05 += jacobian > 0.5;
         sum += jacobian;
-        if (jacobian >= jacobians->least) continue;
-        jacobians->least = jacobian;
+        if (jacobian >= jacobians->min) continue;
+        jacobians->min = jacobian;
         jacobians->worst = e;
     }
     if (mesh->element_count == 0) return;

@@ -1,20 +1,20 @@
 /* From label images, closed surfaces or other meshes to a hexahedral mesh: the public calls, and
- * the line of steps behind them (meshing/grid/lattice.h draws it). */
+ * the line of steps behind them (meshing/grid/voxel_grid.h draws it). */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit/fit.h"
-#include "meshing/grid/lattice_check.h"
+#include "meshing/grid/voxel_grid_check.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 
 /* The mesh that is made when nothing is said, and the smallest that is one. */
-enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_LEAST = 8 };
+enum { ELEMENTS_DEFAULT = 5000, ELEMENTS_MIN = 8 };
 
 lar_meshing_options lar_meshing_options_default(void) {
     return (lar_meshing_options){.elements = ELEMENTS_DEFAULT, .scale = 1};
@@ -42,9 +42,9 @@ typedef struct work {
     lar_meshing_options options;
     lar_meshing *meshing;
     lar_image image;
-    lar_lattice lattice;
+    lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error *error;
 } work;
 
@@ -122,7 +122,7 @@ static lar_status check_options(work *w) {
 /* Tells the one who waits; refuses to go on when he says so. */
 static lar_status tell(const work *w, const char *what, double part) {
     const lar_meshing_options *o = &w->options;
-    if (!o->watch || o->watch(o->context, what, part)) return LAR_OK;
+    if (!o->progress || o->progress(o->context, what, part)) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_ARGUMENT, "stopped as asked, while %s", what);
 }
 
@@ -139,9 +139,9 @@ static char *name_of_file(const char *path) {
 
 /* As a file's name that needs no quotes anywhere. */
 static char *stem_of(const char *title) {
-    enum { MOST = 100 }; /* with an ending it is still a name that every file system takes */
+    enum { MAX = 100 }; /* with an ending it is still a name that every file system takes */
     char *stem = lar_strdup(title);
-    if (stem && strlen(stem) > MOST) stem[MOST] = 0;
+    if (stem && strlen(stem) > MAX) stem[MAX] = 0;
     for (char *c = stem; c && *c; c++) {
         bool plain = (unsigned char)*c < 128 && isalnum((unsigned char)*c);
         if (!plain && *c != '-' && *c != '.') *c = '_';
@@ -242,7 +242,7 @@ static lar_status make_boundary(work *w) {
 
 /* ---- from there to a mesh ------------------------------------------------------------------ */
 
-static lar_status fill_lattice(work *w) {
+static lar_status fill_voxel_grid(work *w) {
     const lar_meshing_options *o = &w->options;
     const lar_boundary *boundary = &w->meshing->boundary;
     int32_t elements = o->elements > 0 ? o->elements : ELEMENTS_DEFAULT;
@@ -252,45 +252,46 @@ static lar_status fill_lattice(work *w) {
                           "the image's own voxels lie along the image's axes, not the "
                           "body's; give a size or a number of elements with principal "
                           "axes");
-        return lar_lattice_from_image(&w->image, boundary, &w->lattice, w->error);
+        return lar_voxel_grid_from_image(&w->image, boundary, &w->voxel_grid, w->error);
     }
-    if (o->size > 0) return lar_lattice_fill(boundary, o->size, &w->lattice, w->error);
+    if (o->size > 0) return lar_voxel_grid_fill(boundary, o->size, &w->voxel_grid, w->error);
     lar_status status =
-        lar_lattice_check_thickness(boundary, &w->meshing->outer, elements, w->error);
+        lar_voxel_grid_check_thickness(boundary, &w->meshing->outer, elements, w->error);
     if (status) return status;
-    return lar_lattice_fill_count(boundary, elements, &w->lattice, w->error);
+    return lar_voxel_grid_fill_count(boundary, elements, &w->voxel_grid, w->error);
 }
 
 static lar_status check_count(const work *w) {
-    int32_t count = w->draft.mesh.element_count;
-    if (count >= ELEMENTS_LEAST) return LAR_OK;
+    int32_t count = w->unfitted.mesh.element_count;
+    if (count >= ELEMENTS_MIN) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.200s: elements of %.3g m are too large: the body becomes %d of them, at "
                     "least %d are a mesh; ask for a smaller size (in metres) or for more elements",
-                    w->path[0], w->draft.size, (int)count, ELEMENTS_LEAST);
+                    w->path[0], w->unfitted.size, (int)count, ELEMENTS_MIN);
 }
 
-static bool watch_fit(void *context, double part) {
+static bool fit_progress(void *context, double part) {
     const work *w = context;
     return tell(w, "fitting", part) == LAR_OK;
 }
 
 static lar_status make_mesh(work *w) {
     lar_meshing *m = w->meshing;
-    const lar_fit_options fit = {.watch = watch_fit, .context = w};
+    const lar_fit_options fit = {.progress = fit_progress, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
-    if (!status) status = fill_lattice(w);
+    if (!status) status = fill_voxel_grid(w);
     lar_image_clear(&w->image);
     if (!status) status = tell(w, "cleaning", 0);
-    if (!status) status = lar_lattice_clean(&w->lattice, &w->cleaning, w->error);
-    if (!status) status = lar_lattice_check_reach(&m->boundary, &m->outer, &w->lattice, w->error);
-    if (!status) status = lar_draft_create(&w->lattice, &m->boundary, &w->draft, w->error);
-    lar_lattice_clear(&w->lattice);
+    if (!status) status = lar_voxel_grid_clean(&w->voxel_grid, &w->cleaning, w->error);
+    if (!status)
+        status = lar_voxel_grid_check_reach(&m->boundary, &m->outer, &w->voxel_grid, w->error);
+    if (!status) status = lar_unfitted_create(&w->voxel_grid, &m->boundary, &w->unfitted, w->error);
+    lar_voxel_grid_clear(&w->voxel_grid);
     if (!status) status = check_count(w);
     m->fitted = !w->options.voxel;
-    if (!status && m->fitted) status = lar_fit(&m->boundary, &w->draft, &fit, w->error);
-    m->info.size = w->draft.size;
-    if (!status) status = lar_draft_finish(&w->draft, &m->boundary, &m->mesh, w->error);
+    if (!status && m->fitted) status = lar_fit(&m->boundary, &w->unfitted, &fit, w->error);
+    m->info.size = w->unfitted.size;
+    if (!status) status = lar_unfitted_finish(&w->unfitted, &m->boundary, &m->mesh, w->error);
     return status;
 }
 
@@ -311,7 +312,7 @@ static void count_regions(lar_meshing *m) {
                                     .bulk_modulus = 2 * g * (1 + v) / (3 * (1 - 2 * v)),
                                     .density = tissue->density,
                                     .held = tissue->rigid,
-                                    .usual_most = tissue->most};
+                                    .usual_max = tissue->max};
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -335,9 +336,9 @@ static lar_status measure(const work *w, lar_error *error) {
  */
 static lar_status check_volume(const work *w) {
     const lar_mesh_quality *quality = &w->meshing->info.quality;
-    const double most = w->meshing->fitted ? 0.2 : 0.5;
+    const double max = w->meshing->fitted ? 0.2 : 0.5;
     const double off = quality->volume / quality->true_volume - 1;
-    if (!(quality->true_volume > 0) || fabs(off) <= most) return LAR_OK;
+    if (!(quality->true_volume > 0) || fabs(off) <= max) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "
                     "are thinner than an element of %.3g mm; ask for more elements or a smaller "
@@ -378,7 +379,7 @@ static lar_status describe(work *w) {
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
     judging both = {.work = w};
-    if (!status) lar_share(2, 1, judge, &both);
+    if (!status) lar_parallel_for(2, 1, judge, &both);
     for (int i = 0; !status && i < 2; i++) {
         status = both.status[i];
         if (status) *w->error = both.error[i];
@@ -403,8 +404,8 @@ lar_status lar_meshing_create(const char *const *paths, int32_t count,
     if (!status) status = make_mesh(&w);
     if (!status) status = describe(&w);
     lar_image_clear(&w.image);
-    lar_lattice_clear(&w.lattice);
-    lar_draft_clear(&w.draft);
+    lar_voxel_grid_clear(&w.voxel_grid);
+    lar_unfitted_clear(&w.unfitted);
     if (status)
         lar_meshing_destroy(w.meshing);
     else

@@ -2,9 +2,9 @@
  *
  *     meshing.c     reads, meshes, measures ------------------------.
  *     support.c     node sets: what holds it, where it is pulled    +--> starter.c  the scene
- *     pads.c        what carries it besides                         |    write.c    all files
- *     motion.c      how slowly it moves                             |
- *     quality.c     how good it is ---------------------------------'
+ *     extra supports.c        what carries it besides                         |    write.c    all
+ * files motion.c      how slowly it moves                             | quality.c     how good it
+ * is ---------------------------------'
  */
 #ifndef LAR_MESHING_MESHING_H
 #define LAR_MESHING_MESHING_H
@@ -16,15 +16,15 @@
 
 /* What holds the body, and where the starter scene pulls at it. */
 typedef struct lar_support {
-    const char *rule;    /* "left", ..., "cut", "none" */
-    bool held;           /* there is a node set "support" */
-    int32_t pads;        /* in the node set "pads"; 0: there is none */
-    bool carried;        /* it was seen to that all this bears the body's weight */
-    int32_t fixed_nodes; /* of both and of rigid regions */
-    const char *handle;  /* the side of the node set "handle"; NULL: there is none */
-    bool opposed;        /* "handle_opposite" is pulled the other way: nothing holds the body */
-    double pull[3];      /* [N] at "handle" */
-    double slowest;      /* [1/s] angular frequency of the slowest motion; 0: not known */
+    const char *rule;       /* "left", ..., "cut", "none" */
+    bool held;              /* there is a node set "support" */
+    int32_t extra_supports; /* in the node set "pads"; 0: there is none */
+    bool carried;           /* it was seen to that all this bears the body's weight */
+    int32_t fixed_nodes;    /* of both and of rigid regions */
+    const char *handle;     /* the side of the node set "handle"; NULL: there is none */
+    bool opposed;           /* "handle_opposite" is pulled the other way: nothing holds the body */
+    double pull[3];         /* [N] at "handle" */
+    double slowest;         /* [1/s] angular frequency of the slowest motion; 0: not known */
 } lar_support;
 
 struct lar_meshing {
@@ -46,8 +46,8 @@ struct lar_meshing {
 /* Whether the rule is one, or NULL. */
 lar_status lar_support_check(const char *rule, lar_error *error);
 
-/* Adds the node sets "support", "pads" and "handle" to the mesh. `rule` as lar_meshing_options.fix.
- * The regions' information must be there. */
+/* Adds the node sets "support", "pads" (extra supports) and "handle" to the mesh. `rule` as
+ * lar_meshing_options.fix. The regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
 
 /* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */

@@ -24,8 +24,8 @@ static lar_status measure_deviation(const lar_mesh *mesh, const int32_t *face, i
     lar_status status = lar_deviation_measure(mesh, face, count, surface, &deviation, error);
     if (status) return status;
     quality->deviation_mean = deviation.mean;
-    quality->deviation_95 = deviation.most_95;
-    quality->deviation_most = deviation.hausdorff;
+    quality->deviation_95 = deviation.max_95;
+    quality->deviation_max = deviation.hausdorff;
     return LAR_OK;
 }
 
@@ -72,7 +72,7 @@ static lar_status copy_embedded(const lar_embedded_info *embedded, lar_triangles
     copy->vertex = lar_calloc(vertices, sizeof *copy->vertex);
     copy->corner = lar_calloc(triangles, sizeof *copy->corner);
     if (!copy->vertex || !copy->corner)
-        return lar_fail_memory(error, vertices * sizeof *copy->vertex, "the fine surface");
+        return lar_fail_memory(error, vertices * sizeof *copy->vertex, "the embedded surface");
     memcpy(copy->vertex, embedded->rest, vertices * sizeof *copy->vertex);
     memcpy(copy->corner, embedded->triangle, triangles * sizeof *copy->corner);
     copy->vertex_count = embedded->vertices;

@@ -1,5 +1,5 @@
-/* A meshing on disk: mesh, fine surface and scene, all three or none. They are written beside the
- * places that they shall have, and get their names when the last one is whole. */
+/* A meshing on disk: mesh, embedded surface and scene, all three or none. They are written beside
+ * the places that they shall have, and get their names when the last one is whole. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -32,23 +32,23 @@ static bool finite3(const double v[3]) {
 
 /* ---- contact -------------------------------------------------------------------------------- */
 
-bool lar_face_list_fault(const lar_model *model, const int32_t *face, int32_t count,
-                         char fault[LAR_FAULT_SIZE]) {
+bool lar_face_list_problem(const lar_model *model, const int32_t *face, int32_t count,
+                           char problem[LAR_PROBLEM_SIZE]) {
     const lar_mesh *mesh = &model->mesh;
     if (count <= 0 || !face) {
-        snprintf(fault, LAR_FAULT_SIZE, "there is no face in this contact; name at least one");
+        snprintf(problem, LAR_PROBLEM_SIZE, "there is no face in this contact; name at least one");
         return true;
     }
     for (int32_t i = 0; i < count; i++) {
         if (i > 0 && face[i] <= face[i - 1]) {
-            snprintf(fault, LAR_FAULT_SIZE, "its faces must be in ascending order, each once");
+            snprintf(problem, LAR_PROBLEM_SIZE, "its faces must be in ascending order, each once");
             return true;
         }
         if (lar_surface_find(&model->surface, face[i]) >= 0) continue;
         if (face[i] < 0 || face[i] / 6 >= mesh->element_count)
-            snprintf(fault, LAR_FAULT_SIZE, "there is no face %d in the mesh", (int)face[i]);
+            snprintf(problem, LAR_PROBLEM_SIZE, "there is no face %d in the mesh", (int)face[i]);
         else
-            snprintf(fault, LAR_FAULT_SIZE,
+            snprintf(problem, LAR_PROBLEM_SIZE,
                      "face %d of element %lld is inside the body, where nothing can touch it; take "
                      "faces of the outer surface only, for example {all: [NAME, {surface: true}]}",
                      (int)(face[i] % 6), (long long)mesh->element_id[face[i] / 6]);
@@ -62,9 +62,10 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static bool between_fault(const lar_model *model, const lar_contact *contact,
-                          char fault[LAR_FAULT_SIZE]) {
-    if (lar_face_list_fault(model, contact->against, contact->against_count, fault)) return true;
+static bool between_problem(const lar_model *model, const lar_contact *contact,
+                            char problem[LAR_PROBLEM_SIZE]) {
+    if (lar_face_list_problem(model, contact->against, contact->against_count, problem))
+        return true;
     int32_t shared = 0, first = 0;
     for (int32_t i = 0; i < contact->face_count; i++)
         if (bsearch(&contact->face[i], contact->against, (size_t)contact->against_count,
@@ -72,20 +73,20 @@ static bool between_fault(const lar_model *model, const lar_contact *contact,
             if (!shared++) first = contact->face[i];
         }
     if (shared)
-        snprintf(fault, LAR_FAULT_SIZE,
+        snprintf(problem, LAR_PROBLEM_SIZE,
                  "the two sets of faces have %d in common (one is face %d of element %lld); "
                  "contact of a surface with itself is {self: FACES}",
                  (int)shared, (int)(first % 6), (long long)model->mesh.element_id[first / 6]);
     return shared > 0;
 }
 
-static bool plane_fault(const lar_model *model, const lar_contact *contact,
-                        char fault[LAR_FAULT_SIZE]) {
+static bool plane_problem(const lar_model *model, const lar_contact *contact,
+                          char problem[LAR_PROBLEM_SIZE]) {
     const lar_mesh *mesh = &model->mesh;
     const double *p = contact->through, *n = contact->normal;
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), deepest = 0;
     if (!finite3(p) || !(fabs(length - 1) < 1e-9)) {
-        snprintf(fault, LAR_FAULT_SIZE,
+        snprintf(problem, LAR_PROBLEM_SIZE,
                  "the plane needs a finite point and a normal of length one");
         return true;
     }
@@ -102,39 +103,40 @@ static bool plane_fault(const lar_model *model, const lar_contact *contact,
     }
     if (deepest <= ROUNDING * size_of(mesh)) return false;
     snprintf(
-        fault, LAR_FAULT_SIZE,
+        problem, LAR_PROBLEM_SIZE,
         "node %lld lies %.3g m behind this plane at the start; move the plane, turn its normal "
         "to the side where the body is, or leave those faces out",
         (long long)mesh->node_id[worst], deepest);
     return true;
 }
 
-bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
-                       char fault[LAR_FAULT_SIZE]) {
-    if (lar_face_list_fault(model, contact->face, contact->face_count, fault)) return true;
+bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
+                         char problem[LAR_PROBLEM_SIZE]) {
+    if (lar_face_list_problem(model, contact->face, contact->face_count, problem)) return true;
     if (contact->kind == LAR_CONTACT_SELF) return false;
-    if (contact->kind == LAR_CONTACT_BETWEEN) return between_fault(model, contact, fault);
-    return plane_fault(model, contact, fault);
+    if (contact->kind == LAR_CONTACT_BETWEEN) return between_problem(model, contact, problem);
+    return plane_problem(model, contact, problem);
 }
 
 /* ---- tools ---------------------------------------------------------------------------------- */
 
-bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]) {
+bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {
     static const char hand[] = "hand";
     size_t length = strlen(name), word = sizeof hand - 1;
     bool reserved = strncmp(name, hand, word) == 0 && (name[word] == '\0' || name[word] == ' ');
-    if (length > 0 && length <= LAR_TOOL_NAME_MOST && !reserved) return false;
+    if (length > 0 && length <= LAR_TOOL_NAME_MAX && !reserved) return false;
     if (reserved)
-        snprintf(fault, LAR_FAULT_SIZE,
+        snprintf(problem, LAR_PROBLEM_SIZE,
                  "\"%.40s\" is the name of the hand that pulls with the mouse; choose another name",
                  name);
     else
-        snprintf(fault, LAR_FAULT_SIZE, "the name of a tool has 1 to %d bytes, this one has %zu",
-                 LAR_TOOL_NAME_MOST, length);
+        snprintf(problem, LAR_PROBLEM_SIZE,
+                 "the name of a tool has 1 to %d bytes, this one has %zu", LAR_TOOL_NAME_MAX,
+                 length);
     return true;
 }
 
-const char *lar_tool_size_fault(const lar_tool *tool) {
+const char *lar_tool_size_problem(const lar_tool *tool) {
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
     const double *q = tool->rest.orientation;
     double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
@@ -156,16 +158,17 @@ const char *lar_tool_size_fault(const lar_tool *tool) {
     return NULL;
 }
 
-bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]) {
-    const char *wrong = lar_tool_size_fault(tool);
+bool lar_tool_problem(const lar_model *model, const lar_tool *tool,
+                      char problem[LAR_PROBLEM_SIZE]) {
+    const char *wrong = lar_tool_size_problem(tool);
     if (wrong) {
-        snprintf(fault, LAR_FAULT_SIZE, "%s", wrong);
+        snprintf(problem, LAR_PROBLEM_SIZE, "%s", wrong);
         return true;
     }
     int32_t face = 0;
     double gap = lar_tool_gap(model, tool, &face);
     if (gap >= -ROUNDING * size_of(&model->mesh)) return false;
-    snprintf(fault, LAR_FAULT_SIZE,
+    snprintf(problem, LAR_PROBLEM_SIZE,
              "the tool would begin %.3g m inside the body, at element %lld; begin outside and move "
              "it in",
              -gap, (long long)model->mesh.element_id[model->surface.element[face]]);

@@ -13,25 +13,26 @@
 
 #include "model/model.h"
 
-enum { LAR_FAULT_SIZE = 400 };
+enum { LAR_PROBLEM_SIZE = 400 };
 #define LAR_PI 3.14159265358979323846
 
 /* Each returns true when something is wrong, and has then written the sentence. model->surface is
  * there. Faces are listed in ascending order, each once. */
-bool lar_face_list_fault(const lar_model *model, const int32_t *face, int32_t count,
-                         char fault[LAR_FAULT_SIZE]);
-bool lar_contact_fault(const lar_model *model, const lar_contact *contact,
-                       char fault[LAR_FAULT_SIZE]);
-bool lar_tool_name_fault(const char *name, char fault[LAR_FAULT_SIZE]);
-bool lar_tool_fault(const lar_model *model, const lar_tool *tool, char fault[LAR_FAULT_SIZE]);
+bool lar_face_list_problem(const lar_model *model, const int32_t *face, int32_t count,
+                           char problem[LAR_PROBLEM_SIZE]);
+bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
+                         char problem[LAR_PROBLEM_SIZE]);
+bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]);
+bool lar_tool_problem(const lar_model *model, const lar_tool *tool, char problem[LAR_PROBLEM_SIZE]);
 /* Of its shape, size and pose alone; NULL: nothing. */
-const char *lar_tool_size_fault(const lar_tool *tool);
+const char *lar_tool_size_problem(const lar_tool *tool);
 
 /* What lies on or at something may be inside it by so much, from rounding [m]. */
 double lar_overlap_rounding(const lar_mesh *mesh);
 
-/* Distance from the tool's skin to the surface at rest [m]: negative when they overlap, also when
- * the tool lies inside a body. `face` is the index into model->surface of the face next to it. */
+/* Distance from the tool's surface to the surface at rest [m]: negative when they overlap, also
+ * when the tool lies inside a body. `face` is the index into model->surface of the face next to it.
+ */
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face);
 
 #endif

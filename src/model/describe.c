@@ -75,21 +75,21 @@ int32_t lar_model_element_material(const lar_model *model, int32_t element) {
 }
 
 int lar_model_embedded(const lar_model *model, lar_embedded_info *info) {
-    const lar_embedding *embedding = model ? &model->embedding : NULL;
-    if (!embedding || embedding->surface.triangle_count == 0) return 0;
+    const lar_embedded_surface *embedded = model ? &model->embedded : NULL;
+    if (!embedded || embedded->surface.triangle_count == 0) return 0;
     if (info)
-        *info = (lar_embedded_info){.vertices = embedding->surface.vertex_count,
-                                    .triangles = embedding->surface.triangle_count,
-                                    .triangle = (const int32_t(*)[3])embedding->surface.corner,
-                                    .rest = (const double(*)[3])embedding->surface.vertex,
-                                    .element = embedding->element,
-                                    .weight = (const float(*)[8])embedding->weight};
+        *info = (lar_embedded_info){.vertices = embedded->surface.vertex_count,
+                                    .triangles = embedded->surface.triangle_count,
+                                    .triangle = (const int32_t(*)[3])embedded->surface.corner,
+                                    .rest = (const double(*)[3])embedded->surface.vertex,
+                                    .element = embedded->element,
+                                    .weight = (const float(*)[8])embedded->weight};
     return 1;
 }
 
 void lar_model_embedded_move(const lar_model *model, const double (*u)[3], double (*place)[3]) {
     if (lar_model_embedded(model, NULL))
-        lar_embedding_move(&model->embedding, &model->mesh, u, place);
+        lar_embedded_surface_move(&model->embedded, &model->mesh, u, place);
 }
 
 const int32_t *lar_model_element_nodes(const lar_model *model, int32_t element) {

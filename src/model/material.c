@@ -14,14 +14,14 @@ double lar_material_bulk(const lar_material *material) {
  * a strain of a thousandth would ask for forces that nothing has room for. */
 static lar_status check_constants(const lar_material *material, const char *where, double modulus,
                                   lar_error *error) {
-    static const double MOST = 1e9;
+    static const double MAX = 1e9;
     const lar_law_row *law = &lar_law_table[material->law];
     for (int k = 0; k < law->count; k++)
-        if (fabs(material->parameter[k]) > MOST * modulus)
+        if (fabs(material->parameter[k]) > MAX * modulus)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: %s of the law %s is %g Pa, more than %g times its moduli at rest; "
                             "check its unit",
-                            where, law->parameter[k].name, law->name, material->parameter[k], MOST);
+                            where, law->parameter[k].name, law->name, material->parameter[k], MAX);
     return LAR_OK;
 }
 

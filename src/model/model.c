@@ -24,7 +24,7 @@ void lar_model_destroy(lar_model *model) {
     if (!model) return;
     lar_mesh_clear(&model->mesh);
     lar_surface_clear(&model->surface);
-    lar_embedding_clear(&model->embedding);
+    lar_embedded_surface_clear(&model->embedded);
     for (int i = 0; i < model->mesh_file_count; i++) free(model->mesh_file[i]);
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
@@ -292,31 +292,31 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
 }
 
 static lar_status check_contacts(const lar_model *model, lar_error *error) {
-    char fault[LAR_FAULT_SIZE];
+    char problem[LAR_PROBLEM_SIZE];
     for (int i = 0; i < model->contact_count; i++)
-        if (lar_contact_fault(model, &model->contact[i], fault))
+        if (lar_contact_problem(model, &model->contact[i], problem))
             return lar_fail(error, LAR_ERROR_MODEL, "%s: contact entry %d: %s",
-                            lar_model_source(model), i + 1, fault);
+                            lar_model_source(model), i + 1, problem);
     return LAR_OK;
 }
 
 static lar_status check_tools(const lar_model *model, lar_error *error) {
-    char fault[LAR_FAULT_SIZE];
-    if (model->tool_count > LAR_MODEL_TOOLS_MOST)
+    char problem[LAR_PROBLEM_SIZE];
+    if (model->tool_count > LAR_MODEL_TOOLS_MAX)
         return lar_fail(error, LAR_ERROR_MODEL, "%s: %d tools; there can be %d",
-                        lar_model_source(model), model->tool_count, LAR_MODEL_TOOLS_MOST);
+                        lar_model_source(model), model->tool_count, LAR_MODEL_TOOLS_MAX);
     for (int i = 0; i < model->tool_count; i++) {
         const lar_tool *tool = &model->tool[i];
-        bool wrong = lar_tool_name_fault(tool->name ? tool->name : "", fault);
+        bool wrong = lar_tool_name_problem(tool->name ? tool->name : "", problem);
         for (int j = 0; !wrong && j < i; j++) {
             wrong = strcmp(model->tool[j].name, tool->name) == 0;
             if (wrong)
-                snprintf(fault, sizeof fault, "tool entry %d is called \"%s\" too", j + 1,
+                snprintf(problem, sizeof problem, "tool entry %d is called \"%s\" too", j + 1,
                          tool->name);
         }
-        if (wrong || lar_tool_fault(model, tool, fault))
+        if (wrong || lar_tool_problem(model, tool, problem))
             return lar_fail(error, LAR_ERROR_MODEL, "%s: tool entry %d: %s",
-                            lar_model_source(model), i + 1, fault);
+                            lar_model_source(model), i + 1, problem);
     }
     return LAR_OK;
 }

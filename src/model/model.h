@@ -7,7 +7,7 @@
 #define LAR_MODEL_MODEL_H
 
 #include "model/curve.h"
-#include "model/triangles/embedding.h"
+#include "model/triangles/embedded_surface.h"
 #include "model/material.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/surface.h"
@@ -68,7 +68,7 @@ typedef struct lar_contact {
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
-enum { LAR_MODEL_TOOLS_MOST = 12, LAR_TOOL_NAME_MOST = 63 };
+enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
 
 /* A tool: something hard that a device moves. */
 typedef struct lar_tool {
@@ -100,7 +100,7 @@ typedef struct lar_probe {
 typedef struct lar_output {
     double every;    /* seconds, 0: only the end */
     unsigned fields; /* lar_field bits (lariat.h) */
-    bool surface;    /* the fine surface too, in every frame */
+    bool surface;    /* the embedded surface too, in every frame */
     int probe_count;
     lar_probe *probe;
 } lar_output;
@@ -140,8 +140,8 @@ struct lar_model {
 
     lar_output output;
 
-    lar_surface surface;     /* of the mesh; lar_model_check fills it */
-    lar_embedding embedding; /* a fine surface for display; without vertices: there is none */
+    lar_surface surface;           /* of the mesh; lar_model_check fills it */
+    lar_embedded_surface embedded; /* a fine surface for display; without vertices: there is none */
 
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;

@@ -16,7 +16,7 @@
 #include "model/model.h"
 
 /* The last factor is that of all further materials, too. */
-enum { LAR_FACTORS_MOST = 64 };
+enum { LAR_FACTORS_MAX = 64 };
 
 static const double LAR_FACTOR_MIN = 0.1, LAR_FACTOR_MAX = 4;
 static const double LAR_GRAVITY_MAX = 1000; /* [m/s^2] */
@@ -25,17 +25,17 @@ typedef struct lar_settings {
     int32_t gravity_set, damping_set; /* 0: as the model says */
     double gravity[3];                /* [m/s^2] */
     double damping;                   /* [1/s] */
-    double factor[LAR_FACTORS_MOST];  /* of the stiffness of materials */
+    double factor[LAR_FACTORS_MAX];   /* of the stiffness of materials */
 } lar_settings;
 
 static inline void lar_settings_reset(lar_settings *settings) {
     *settings = (lar_settings){.gravity_set = 0};
-    for (int i = 0; i < LAR_FACTORS_MOST; i++) settings->factor[i] = 1;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) settings->factor[i] = 1;
 }
 
 /* The factor that is a material's. */
 static inline int lar_factor_of(int32_t material) {
-    return material < LAR_FACTORS_MOST ? material : LAR_FACTORS_MOST - 1;
+    return material < LAR_FACTORS_MAX ? material : LAR_FACTORS_MAX - 1;
 }
 
 /* `settings` may be NULL, here and below: as the model says [1/s]. */

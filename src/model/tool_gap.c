@@ -176,12 +176,12 @@ static double segment_face(const vec a, const vec b, double corner[4][3], double
         reach = fmax(reach, sqrt(dot(d, d)));
     }
     if (sqrt(point_segment(corner[0], a, b)) - reach > best) return DBL_MAX; /* too far away */
-    double least = DBL_MAX;
+    double min = DBL_MAX;
     for (int c = 0; c < 4; c++) {
         triangle_of(corner, c, t);
-        least = fmin(least, segment_triangle(a, b, (const double(*)[3])t));
+        min = fmin(min, segment_triangle(a, b, (const double(*)[3])t));
     }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face) {

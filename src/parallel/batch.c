@@ -41,24 +41,24 @@ static void spread(const lar_processor *p, const int32_t *value, int32_t count,
 
 /* Packs what this thread has for the nodes of others that wait for batch b. The sums themselves
  * stay: who sends such a node reads them until the end of the step. */
-static void pack_parcels(const lar_worker *worker, int32_t b) {
+static void pack_reduction(const lar_worker *worker, int32_t b) {
     const lar_processor *p = worker->processor;
     for (int32_t to = 0; to < p->thread_count; to++) {
-        const lar_parcel *parcel = &worker->parcel[to];
-        if (parcel->batch != b) continue;
-        for (int32_t i = 0; i < parcel->count; i++)
-            memcpy(parcel->vector + 3 * i, worker->state.force + parcel->value[i],
+        const lar_reduction_buffer *reduction = &worker->reduction[to];
+        if (reduction->batch != b) continue;
+        for (int32_t i = 0; i < reduction->count; i++)
+            memcpy(reduction->vector + 3 * i, worker->state.force + reduction->value[i],
                    LAR_VECTOR_BYTES);
     }
 }
 
 /* At the end of the step, when nobody reads them any more. */
-static void clear_parcels(const lar_worker *worker) {
+static void clear_reduction(const lar_worker *worker) {
     const lar_processor *p = worker->processor;
     for (int32_t to = 0; to < p->thread_count; to++) {
-        const lar_parcel *parcel = &worker->parcel[to];
-        for (int32_t i = 0; i < parcel->count; i++)
-            memset(worker->state.force + parcel->value[i], 0, LAR_VECTOR_BYTES);
+        const lar_reduction_buffer *reduction = &worker->reduction[to];
+        for (int32_t i = 0; i < reduction->count; i++)
+            memset(worker->state.force + reduction->value[i], 0, LAR_VECTOR_BYTES);
     }
 }
 
@@ -68,11 +68,11 @@ static void join_sums(lar_worker *worker) {
     int64_t *force = worker->state.force;
     for (int32_t t = 0; t < p->thread_count; t++) {
         if (t == worker->thread) continue;
-        const lar_parcel *parcel = &p->worker[t].parcel[worker->thread];
-        spread(p, parcel->value, parcel->count, parcel->vector, force);
+        const lar_reduction_buffer *reduction = &p->worker[t].reduction[worker->thread];
+        spread(p, reduction->value, reduction->count, reduction->vector, force);
         int64_t *other = p->worker[t].state.force;
-        for (int32_t i = 0; i < worker->joint_count; i++) {
-            int32_t value = worker->joint[i];
+        for (int32_t i = 0; i < worker->shared_count; i++) {
+            int32_t value = worker->shared_node[i];
             add_vector(p, force + value, other + value);
             memset(other + value, 0, LAR_VECTOR_BYTES);
         }
@@ -121,7 +121,7 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
 
 /* Random delays, to see that nothing depends on who is first (T 6.9): mostly none, sometimes a few
  * microseconds, now and then long enough for others to run ahead as far as they can. */
-static void dawdle(lar_worker *worker) {
+static void delay_at_random(lar_worker *worker) {
     if (!worker->random) return;
     worker->random ^= worker->random << 13;
     worker->random ^= worker->random >> 7;
@@ -140,14 +140,14 @@ static void fetch_foreign(const lar_worker *worker) {
 }
 
 /* How far the memory of a batch's packets has been asked for. */
-typedef struct near_cursor {
+typedef struct prefetch_cursor {
     lar_range packets;
     size_t at; /* in the first of them */
-} near_cursor;
+} prefetch_cursor;
 
 /* Asks for at most so many bytes of the packets that will be sent, or have come. */
-static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, size_t bytes,
-                       uint64_t round) {
+static void prefetch_packets(const lar_processor *p, prefetch_cursor *cursor, bool sends,
+                             size_t bytes, uint64_t round) {
     while (cursor->packets.count > 0 && bytes > 0) {
         const lar_packet_plan *packet = &p->packet[cursor->packets.first];
         size_t left = lar_comm_packet_bytes(packet->bytes) - cursor->at;
@@ -167,7 +167,7 @@ static void bring_near(const lar_processor *p, near_cursor *cursor, bool sends, 
     }
 }
 
-/* Between the runs of elements the memory of the batch's packets comes near, a little each time:
+/* Between the runs of elements the memory of the batch's packets is prefetched, a little each time:
  * a core can wait for a few dozen lines at once, and does not compute while it asks for more. */
 static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t round) {
     enum { PORTION = 4096 };
@@ -177,13 +177,13 @@ static void recover(lar_worker *worker, const lar_batch_plan *batch, uint64_t ro
                                  &worker->state);
         return;
     }
-    near_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
+    prefetch_cursor sends = {batch->sends, 0}, receives = {batch->receives, 0};
     for (int32_t r = 0; r < batch->run_count; r++) {
         if (r > 0 || batch->run_count == 1) {
-            bring_near(p, &sends, true, PORTION, round);
-            bring_near(p, &receives, false, PORTION, round);
+            prefetch_packets(p, &sends, true, PORTION, round);
+            prefetch_packets(p, &receives, false, PORTION, round);
         }
-        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->trip);
+        lar_step_recover(&p->domain, batch->run_first + r, 1, &worker->state, &worker->fault);
     }
 }
 
@@ -193,7 +193,8 @@ static lar_status move(lar_worker *worker, lar_error *error) {
     if (p->check)
         return lar_verification_compare(p->check, &p->domain, p->self, worker->context.first,
                                         worker->context.end, &worker->state, error);
-    lar_step_move(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+    lar_step_move(&p->domain, &worker->interactions, &worker->context, &worker->state,
+                  &worker->fault);
     return LAR_OK;
 }
 
@@ -201,51 +202,52 @@ static lar_status run_batch(lar_worker *worker, int32_t b, uint64_t round, lar_e
     lar_processor *p = worker->processor;
     const lar_batch_plan *batch = &p->batch[b];
     lar_status status = LAR_OK;
-    dawdle(worker);
+    delay_at_random(worker);
     recover(worker, batch, round);
     /* Before anybody can wait for this thread's sums, like loads; behind the first elements, while
      * whose recovery the places of others come. */
-    if (p->board && b == worker->batch_first) status = lar_contact_apply(worker, round, error);
+    if (p->exchange && b == worker->batch_first) status = lar_contact_apply(worker, round, error);
     for (int32_t i = 0; i < batch->waits.count && !status; i++)
-        status =
-            lar_processor_await(p, &p->mark[p->wait[batch->waits.first + i]].round, round, error);
-    dawdle(worker);
+        status = lar_processor_await(p, &p->sequence[p->wait[batch->waits.first + i]].round, round,
+                                     error);
+    delay_at_random(worker);
     for (int32_t i = 0; i < batch->receives.count && !status; i++)
         status = receive(worker, &p->packet[batch->receives.first + i], round, error);
     if (batch->moves && !status) status = move(worker, error);
-    if (batch->sends.count) dawdle(worker);
+    if (batch->sends.count) delay_at_random(worker);
     for (int32_t i = 0; i < batch->sends.count && !status; i++)
         status = send(worker, &p->packet[batch->sends.first + i], round, error);
-    pack_parcels(worker, b);
-    if (!status) __atomic_store_n(&p->mark[b].round, round, __ATOMIC_RELEASE);
+    pack_reduction(worker, b);
+    if (!status) __atomic_store_n(&p->sequence[b].round, round, __ATOMIC_RELEASE);
     return status;
 }
 
 lar_status lar_worker_step(lar_worker *worker, lar_error *error) {
     lar_processor *p = worker->processor;
-    uint64_t round = worker->round + 1; /* comm and marks count from 1 */
+    uint64_t round = worker->round + 1; /* comm and flags count from 1 */
     lar_status status = LAR_OK;
-    lar_step_enter(&p->domain, &worker->acting, &worker->context, &worker->state);
+    lar_step_enter(&p->domain, &worker->interactions, &worker->context, &worker->state);
     fetch_foreign(worker);
-    if (p->board) status = lar_contact_send(worker, round, error);
+    if (p->exchange) status = lar_contact_send(worker, round, error);
     if (!p->check && !status)
-        lar_step_begin(&p->domain, &worker->acting, &worker->context, &worker->state,
-                       &worker->trip);
+        lar_step_begin(&p->domain, &worker->interactions, &worker->context, &worker->state,
+                       &worker->fault);
     for (int32_t b = worker->batch_first; b < worker->batch_end && !status; b++)
         status = run_batch(worker, b, round, error);
-    if (p->board && worker->batch_first == worker->batch_end && !status)
+    if (p->exchange && worker->batch_first == worker->batch_end && !status)
         status = lar_contact_apply(worker, round, error);
     if (status) {
         worker->follows = __atomic_exchange_n(&p->failed, 1, __ATOMIC_ACQ_REL) != 0;
         if (!worker->follows && status != LAR_ERROR_PEER && p->comm) lar_comm_abort(p->comm);
         return status;
     }
-    clear_parcels(worker);
+    clear_reduction(worker);
     worker->round = round;
-    if (p->board) lar_contact_publish(worker, round + 1);
+    if (p->exchange) lar_contact_publish(worker, round + 1);
     if (p->check)
         worker->state.step++;
     else
-        lar_step_end(&p->domain, &worker->acting, &worker->context, &worker->state, &worker->trip);
+        lar_step_end(&p->domain, &worker->interactions, &worker->context, &worker->state,
+                     &worker->fault);
     return LAR_OK;
 }

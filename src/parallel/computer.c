@@ -10,30 +10,30 @@
 #include "base/pin.h"
 #include "step/identity.h"
 
-static int32_t seats(const lar_computer *computer) {
+static int32_t all_threads(const lar_computer *computer) {
     return computer->hosted * computer->threads;
 }
 
-static lar_processor *processor_of(const lar_computer *computer, int32_t seat) {
-    return &computer->processor[seat / computer->threads];
+static lar_processor *processor_of(const lar_computer *computer, int32_t number) {
+    return &computer->processor[number / computer->threads];
 }
 
 /* ---- what went wrong ----------------------------------------------------------------------- */
 
-/* How little a seat's failure says: it may be a consequence of another one. */
-static int consequence(const lar_computer *computer, int32_t seat) {
-    const lar_processor *p = processor_of(computer, seat);
-    if (p->worker && p->worker[seat % computer->threads].follows) return 2;
-    return computer->seat[seat].status == LAR_ERROR_PEER;
+/* How little a thread's failure says: it may be a consequence of another one. */
+static int consequence(const lar_computer *computer, int32_t number) {
+    const lar_processor *p = processor_of(computer, number);
+    if (p->worker && p->worker[number % computer->threads].follows) return 2;
+    return computer->result[number].status == LAR_ERROR_PEER;
 }
 
 static lar_status first_failure(lar_computer *computer, lar_error *error) {
-    const lar_seat *chosen = NULL;
-    int least = 3;
-    for (int32_t i = 0; i < seats(computer); i++) {
-        if (!computer->seat[i].status || consequence(computer, i) >= least) continue;
-        chosen = &computer->seat[i];
-        least = consequence(computer, i);
+    const lar_thread_result *chosen = NULL;
+    int min = 3;
+    for (int32_t i = 0; i < all_threads(computer); i++) {
+        if (!computer->result[i].status || consequence(computer, i) >= min) continue;
+        chosen = &computer->result[i];
+        min = consequence(computer, i);
     }
     if (!chosen) return LAR_OK;
     computer->broken = true;
@@ -43,7 +43,7 @@ static lar_status first_failure(lar_computer *computer, lar_error *error) {
 
 /* Of what several have found in a step the one that a processor alone would have found: elements
  * before nodes, the first element, the fastest node. */
-static bool earlier(const lar_trip *a, const lar_trip *b) {
+static bool earlier(const lar_fault *a, const lar_fault *b) {
     if (!a->kind || !b->kind) return a->kind;
     if (a->step != b->step) return a->step < b->step;
     if (a->part != b->part) return a->part < b->part;
@@ -52,11 +52,11 @@ static bool earlier(const lar_trip *a, const lar_trip *b) {
     return a->element < b->element;
 }
 
-static void first_trip(const lar_computer *computer, lar_trip *trip) {
+static void first_fault(const lar_computer *computer, lar_fault *fault) {
     for (int32_t i = 0; i < computer->hosted; i++)
         for (int32_t t = 0; t < computer->threads; t++) {
-            const lar_trip *other = &computer->processor[i].worker[t].trip;
-            if (earlier(other, trip)) *trip = *other;
+            const lar_fault *other = &computer->processor[i].worker[t].fault;
+            if (earlier(other, fault)) *fault = *other;
         }
 }
 
@@ -86,9 +86,9 @@ static bool shares_memory(const lar_options *options) {
 }
 
 /* Every processor is compiled in its own first thread. */
-static void compile_seat(void *context, int32_t number) {
+static void compile_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     if (number % computer->threads != 0) return;
     lar_processor *p = processor_of(computer, number);
     const lar_schedule *schedule =
@@ -98,16 +98,17 @@ static void compile_seat(void *context, int32_t number) {
                                      .check = computer->checking ? &computer->check : NULL,
                                      .shift = computer->shift,
                                      .delays = computer->options->delays,
-                                     .near = computer->team || shares_memory(computer->options)};
-    seat->status = lar_processor_create(&setting, schedule, p, &seat->error);
-    if (!seat->status) lar_processor_scatter(p, computer->whole, computer->state);
+                                     .low_latency =
+                                         computer->team || shares_memory(computer->options)};
+    result->status = lar_processor_create(&setting, schedule, p, &result->error);
+    if (!result->status) lar_processor_scatter(p, computer->whole, computer->state);
 }
 
-static void meet_seat(void *context, int32_t number) {
+static void rendezvous_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     if (number % computer->threads != 0) return;
-    seat->status = open_comm(computer, processor_of(computer, number), &seat->error);
+    result->status = open_comm(computer, processor_of(computer, number), &result->error);
 }
 
 static lar_status size_buffers(lar_computer *computer, bool several, lar_error *error) {
@@ -151,22 +152,22 @@ static lar_status prepare(lar_computer *computer, lar_error *error) {
     if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
     if (status) return status;
     computer->processor = lar_calloc((size_t)computer->hosted, sizeof *computer->processor);
-    computer->seat = lar_calloc((size_t)seats(computer), sizeof *computer->seat);
-    if (!computer->processor || !computer->seat)
-        return lar_fail_memory(error, (size_t)seats(computer) * sizeof *computer->seat,
+    computer->result = lar_calloc((size_t)all_threads(computer), sizeof *computer->result);
+    if (!computer->processor || !computer->result)
+        return lar_fail_memory(error, (size_t)all_threads(computer) * sizeof *computer->result,
                                "the processors");
-    return lar_crew_create(seats(computer), pins(options, count * computer->threads),
-                           computer->first * computer->threads, &computer->crew, error);
+    return lar_thread_pool_create(all_threads(computer), pins(options, count * computer->threads),
+                                  computer->first * computer->threads, &computer->pool, error);
 }
 
 /* They meet when all here are compiled: otherwise the others would wait for one that does not come.
  */
 static lar_status open_processors(lar_computer *computer, bool *met, lar_error *error) {
-    lar_crew_run(computer->crew, compile_seat, computer);
+    lar_thread_pool_run(computer->pool, compile_on_thread, computer);
     lar_status status = first_failure(computer, error);
     if (status) return status;
     *met = true;
-    lar_crew_run(computer->crew, meet_seat, computer);
+    lar_thread_pool_run(computer->pool, rendezvous_on_thread, computer);
     status = first_failure(computer, error);
     if (!status && computer->hosted < computer->division.grid.count)
         status = lar_control_create(computer->processor[0].comm, &computer->control, error);
@@ -192,7 +193,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
         lar_schedule_set_clear(&computer->division.schedules);
         computer->options = NULL;
     }
-    /* Only the meeting of processor zero takes the listener over. */
+    /* Only the rendezvous of processor zero takes the listener over. */
     if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
     if (status)
         lar_computer_destroy(computer);
@@ -201,7 +202,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
     return status;
 }
 
-static void close_seat(void *context, int32_t number) {
+static void close_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads != 0) return;
     lar_processor *p = processor_of(computer, number);
@@ -211,7 +212,7 @@ static void close_seat(void *context, int32_t number) {
 
 /* Processor zero lets the other processes go. Who goes before that, or cannot say so, is given up:
  * after a goodbye alone the others would wait for as long as they live. */
-static void take_leave(lar_computer *computer) {
+static void dismiss_processes(lar_computer *computer) {
     lar_comm *comm = computer->processor ? computer->processor[0].comm : NULL;
     if (!comm || computer->hosted == computer->division.grid.count) return;
     const lar_order finish = {.kind = LAR_ORDER_FINISH};
@@ -222,16 +223,16 @@ static void take_leave(lar_computer *computer) {
 
 void lar_computer_destroy(lar_computer *computer) {
     if (!computer) return;
-    take_leave(computer);
+    dismiss_processes(computer);
     lar_control_destroy(computer->control);
-    if (computer->crew) lar_crew_run(computer->crew, close_seat, computer);
-    lar_crew_destroy(computer->crew);
+    if (computer->pool) lar_thread_pool_run(computer->pool, close_on_thread, computer);
+    lar_thread_pool_destroy(computer->pool);
     lar_comm_team_destroy(computer->team);
     lar_contact_close(computer);
     lar_verification_destroy(&computer->check);
     lar_division_destroy(&computer->division);
     free(computer->processor);
-    free(computer->seat);
+    free(computer->result);
     free(computer->shift);
     free(computer->clock);
     free(computer);
@@ -252,8 +253,8 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
         int32_t other = computer->first + i;
         uint64_t theirs = __atomic_load_n(&computer->clock[other], __ATOMIC_ACQUIRE);
         uint64_t apart = theirs > round ? theirs - round : round - theirs;
-        int32_t most = computer->division.distance[self * computer->division.grid.count + other];
-        assert(apart <= (uint64_t)most + (computer->threads > 1));
+        int32_t max = computer->division.distance[self * computer->division.grid.count + other];
+        assert(apart <= (uint64_t)max + (computer->threads > 1));
     }
 #else
     (void)computer, (void)self, (void)round;
@@ -262,52 +263,52 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 
 /* After a step: does somebody here want everyone to stop? One step more than the way to the
  * farthest processor, because other threads of this one may have sent already. */
-static void after_step(lar_computer *computer, lar_worker *worker, int32_t seat, bool *tripped) {
+static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
-    if (p->board) lar_contact_watch(worker, stop - done);
-    if (worker->trip.kind && !*tripped) {
-        *tripped = true;
-        lar_trip_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
-                         &worker->trip);
+    if (p->exchange) lar_contact_check_travel(worker, stop - done);
+    if (worker->fault.kind && !*faulted) {
+        *faulted = true;
+        lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
+                          &worker->fault);
         lar_processor_ask_stop(p, stop);
     }
-    if (seat == 0 && computer->first == 0 && computer->watch && worker->state.part == 0 &&
-        !computer->watch(computer->watch_context, done)) {
+    if (number == 0 && computer->first == 0 && computer->callback && worker->state.part == 0 &&
+        !computer->callback(computer->callback_context, done)) {
         computer->called_off = true;
         lar_processor_ask_stop(p, stop);
     }
     check_clocks(computer, p->self, worker->round);
 }
 
-static void advance_seat(void *context, int32_t number) {
+static void advance_thread(void *context, int32_t number) {
     lar_computer *computer = context;
-    lar_seat *seat = &computer->seat[number];
+    lar_thread_result *result = &computer->result[number];
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
-    bool tripped = false;
-    if (p->board) lar_contact_publish(worker, worker->round + 1);
+    bool faulted = false;
+    if (p->exchange) lar_contact_publish(worker, worker->round + 1);
     while (worker->state.step < computer->until) {
         uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
         if (stop && worker->state.step >= stop) break;
-        seat->status = lar_worker_step(worker, &seat->error);
-        if (seat->status) break;
-        after_step(computer, worker, number, &tripped);
+        result->status = lar_worker_step(worker, &result->error);
+        if (result->status) break;
+        after_step(computer, worker, number, &faulted);
     }
     /* Nobody shall wait for this processor; after a verdict this changes nothing. */
-    if (seat->status && worker->thread == 0) lar_comm_abort(p->comm);
+    if (result->status && worker->thread == 0) lar_comm_abort(p->comm);
 }
 
 /* What the threads here have felt in the last advance. */
 static void report_here(const lar_computer *computer, lar_report *report) {
     *report = (lar_report){0};
-    for (int32_t i = 0; i < seats(computer); i++) {
+    for (int32_t i = 0; i < all_threads(computer); i++) {
         const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
-        lar_report_add(report, &worker->acting, &worker->state);
+        lar_report_add(report, &worker->interactions, &worker->state);
     }
 }
 
-static void stiffen_seat(void *context, int32_t number) {
+static void stiffen_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads == 0)
         lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
@@ -322,7 +323,7 @@ static void take_settings(lar_computer *computer) {
     for (int32_t i = 0; i < computer->hosted; i++)
         computer->processor[i].domain.interval = interval;
     if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
-        lar_crew_run(computer->crew, stiffen_seat, computer);
+        lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
 }
 
 /* `first`: of the stretches of an advance. */
@@ -330,27 +331,28 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
                                lar_error *error) {
     computer->until = until;
     take_settings(computer);
-    for (int32_t i = 0; i < seats(computer); i++) {
-        lar_acting *acting = &processor_of(computer, i)->worker[i % computer->threads].acting;
-        if (first) lar_report_begin(acting);
-        lar_touch_forget_depths(&acting->touch);
+    for (int32_t i = 0; i < all_threads(computer); i++) {
+        lar_interactions *interactions =
+            &processor_of(computer, i)->worker[i % computer->threads].interactions;
+        if (first) lar_report_begin(interactions);
+        lar_tool_contact_forget_depths(&interactions->tool_contact);
         processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
-    lar_crew_run(computer->crew, advance_seat, computer);
+    lar_thread_pool_run(computer->pool, advance_thread, computer);
     for (int32_t i = 0; i < computer->hosted; i++) lar_processor_pause(&computer->processor[i]);
     report_here(computer, &computer->report);
     return first_failure(computer, error);
 }
 
-static lar_status hear_all(lar_computer *computer, lar_trip *trip, lar_error *error) {
+static lar_status hear_all(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
         const lar_answer *answer;
         const void *report;
         status = lar_control_hear(computer->control, p, &answer, &report, error);
         if (status) break;
-        if (earlier(&answer->trip, trip)) *trip = answer->trip;
+        if (earlier(&answer->fault, fault)) *fault = answer->fault;
         lar_report own = {0}; /* a payload is aligned to 8 only */
         if (answer->bytes == sizeof own) memcpy(&own, report, sizeof own);
         lar_report_join(&computer->report, &own);
@@ -374,12 +376,12 @@ static lar_status order_advance(lar_computer *computer, uint64_t until, bool fir
     return status;
 }
 
-static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_trip *trip,
+static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_fault *fault,
                               lar_error *error) {
     lar_status status = computer->control ? order_advance(computer, until, first, error) : LAR_OK;
     if (!status) status = advance_here(computer, until, first, error);
-    first_trip(computer, trip);
-    if (!status && computer->control) status = hear_all(computer, trip, error);
+    first_fault(computer, fault);
+    if (!status && computer->control) status = hear_all(computer, fault, error);
     return status;
 }
 
@@ -391,30 +393,31 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t 
 
 /* Without contact of bodies and tools one stretch. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
-                                lar_watch *watch, void *context, lar_trip *trip, lar_error *error) {
+                                lar_step_callback *callback, void *context, lar_fault *fault,
+                                lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
     const uint64_t *step = &computer->processor[0].worker[0].state.step;
     uint64_t end = *step + steps;
     lar_status status = LAR_OK;
-    computer->watch = watch;
-    computer->watch_context = context;
+    computer->callback = callback;
+    computer->callback_context = context;
     computer->called_off = false;
-    /* A trip before the first stretch leaves no step over which these could be a mean. */
+    /* A fault before the first stretch leaves no step over which these could be a mean. */
     if (first) memset(computer->report.tool, 0, sizeof computer->report.tool);
     if (first) lar_interval_restart(&computer->interval);
     for (; *step < end; first = false) { /* what is decided before a step is decided once */
         uint64_t begin = *step;
-        status = lar_contact_refresh(computer, trip, error);
-        if (status || trip->kind) break;
+        status = lar_contact_refresh(computer, fault, error);
+        if (status || fault->kind) break;
         if (lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
-        status = advance_all(computer, next_stop(computer, begin, end), first, trip, error);
+        status = advance_all(computer, next_stop(computer, begin, end), first, fault, error);
         lar_interval_harvest(&computer->interval, &computer->report, *step - begin,
                              computer->tools);
         lar_contact_count(computer, *step - begin);
-        if (status || trip->kind || computer->called_off) break;
+        if (status || fault->kind || computer->called_off) break;
     }
-    trip->crowded = trip->kind == LAR_TRIP_RUSH && computer->contact.crowded;
+    fault->too_many_pairs = fault->kind == LAR_FAULT_TOO_FAST && computer->contact.too_many_pairs;
     if (status) computer->broken = true;
     return status;
 }
@@ -428,11 +431,12 @@ static lar_status refuse_order(lar_error *error) {
 }
 
 /* Faces and tools are looked up by these. */
-static bool holds_fit(const lar_computer *computer, const lar_tools *tools) {
+static bool grasps_fit(const lar_computer *computer, const lar_tools *tools) {
     int32_t faces = computer->whole->model->surface.face_count;
-    for (int32_t i = 0; i < tools->hold_count; i++) {
-        const lar_hold *hold = &tools->hold[i];
-        if (hold->tool < 0 || hold->tool >= tools->count || hold->face < 0 || hold->face >= faces)
+    for (int32_t i = 0; i < tools->grasp_count; i++) {
+        const lar_grasp *grasp = &tools->grasps[i];
+        if (grasp->tool < 0 || grasp->tool >= tools->count || grasp->face < 0 ||
+            grasp->face >= faces)
             return false;
     }
     return true;
@@ -442,12 +446,12 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                              lar_error *error) {
     if (bytes == 0) return LAR_OK;
     lar_tools *tools = computer->tools;
-    if (bytes < offsetof(lar_tools, hold) || bytes > sizeof *tools) return refuse_order(error);
+    if (bytes < offsetof(lar_tools, grasps) || bytes > sizeof *tools) return refuse_order(error);
     int32_t count = tools->count;
     memcpy(tools, payload, bytes);
-    bool fits = tools->count == count && tools->hold_count >= 0 &&
-                tools->hold_count <= LAR_HOLDS_MOST && lar_tools_bytes(tools) == bytes &&
-                holds_fit(computer, tools) &&
+    bool fits = tools->count == count && tools->grasp_count >= 0 &&
+                tools->grasp_count <= LAR_GRASPS_MAX && lar_tools_bytes(tools) == bytes &&
+                grasps_fit(computer, tools) &&
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_spares_good(tools->spare, computer->list->spares);
     if (!fits) return refuse_order(error);
@@ -455,8 +459,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     return LAR_OK;
 }
 
-static lar_status obey(lar_computer *computer, const lar_order *order, const void *payload,
-                       size_t bytes, lar_error *error) {
+static lar_status execute(lar_computer *computer, const lar_order *order, const void *payload,
+                          size_t bytes, lar_error *error) {
     const lar_processor *p = &computer->processor[0];
     lar_control *control = computer->control;
     lar_answer answer = {0};
@@ -467,7 +471,7 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
         bool first = order->kind == LAR_ORDER_ADVANCE;
         status = take_tools(computer, payload, bytes, error);
         if (!status) status = advance_here(computer, order->argument, first, error);
-        first_trip(computer, &answer.trip);
+        first_fault(computer, &answer.fault);
         answer.step = p->worker[0].state.step;
         if (status) return status;
         return lar_control_answer(control, &answer, &computer->report, sizeof computer->report,
@@ -476,7 +480,7 @@ static lar_status obey(lar_computer *computer, const lar_order *order, const voi
     if (order->kind == LAR_ORDER_SCATTER)
         status = lar_computer_take_state(computer, order->argument, payload, bytes, error);
     else if (order->kind == LAR_ORDER_CONTACT)
-        status = lar_contact_obey(computer, payload, bytes, error);
+        status = lar_contact_execute(computer, payload, bytes, error);
     else
         status = refuse_order(error);
     return status ? status : lar_control_answer(control, &answer, NULL, 0, error);
@@ -488,12 +492,12 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error) {
         lar_order order;
         const void *payload;
         size_t bytes;
-        status = lar_control_obey(computer->control, &order, &payload, &bytes, error);
+        status = lar_control_await(computer->control, &order, &payload, &bytes, error);
         if (status) break;
         if (order.kind == LAR_ORDER_FINISH)
             computer->finished = true;
         else
-            status = obey(computer, &order, payload, bytes, error);
+            status = execute(computer, &order, payload, bytes, error);
     }
     if (status) computer->broken = true;
     return status;

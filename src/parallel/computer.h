@@ -3,7 +3,7 @@
  *
  *     one process (threads)               several processes (shm, tcp, ucx, mpi)
  *       caller   processor 0, thread 0      process 0: caller, processor 0     \  control.h:
- *       crew     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
+ *       pool     0.1, 1.0, 1.1, ...         process 1: lar_computer_serve()    /  advance, gather
  *
  * The caller belongs to processor zero and computes with it. The whole model's domain and state
  * stay beside the parts: the state of the parts is gathered into it on demand, and everything that
@@ -18,7 +18,7 @@
 #ifndef LAR_PARALLEL_COMPUTER_H
 #define LAR_PARALLEL_COMPUTER_H
 
-#include "base/crew.h"
+#include "base/thread_pool.h"
 #include "parallel/contact_exchange.h"
 #include "parallel/control.h"
 #include "parallel/division.h"
@@ -26,11 +26,11 @@
 #include "parallel/processor.h"
 #include "step/report.h"
 
-/* One thread of one processor of this process: seat = processor * threads + thread. */
-typedef struct lar_seat {
+/* One thread of one processor of this process: number = processor * threads + thread. */
+typedef struct lar_thread_result {
     lar_status status;
     lar_error error;
-} lar_seat;
+} lar_thread_result;
 
 /* Contact of bodies (computer_contact.c). */
 typedef struct lar_computer_contact {
@@ -42,7 +42,7 @@ typedef struct lar_computer_contact {
     double skin;                    /* of that search [m] */
     double moved, way;              /* since then, and in the last step, at most [m] */
     bool valid;                     /* the search belongs to the state */
-    bool crowded;                   /* it had to be made with a thinner skin than asked for */
+    bool too_many_pairs;            /* it had to be made with a thinner skin than asked for */
     bool always;                    /* search in every step */
     lar_contact_info info;          /* what concerns all processors together */
 } lar_computer_contact;
@@ -56,15 +56,15 @@ typedef struct lar_computer {
     lar_processor *processor;
     lar_comm_team *team;  /* comm threads only */
     lar_control *control; /* several processes only */
-    lar_crew *crew;
-    lar_seat *seat;  /* [hosted * threads] */
-    size_t *shift;   /* [processors] what control needs of their buffers */
-    uint64_t *clock; /* [processors] atomic: rounds done, of those in this process */
-    uint64_t until;  /* the step before which this advance ends */
+    lar_thread_pool *pool;
+    lar_thread_result *result; /* [hosted * threads] */
+    size_t *shift;             /* [processors] what control needs of their buffers */
+    uint64_t *clock;           /* [processors] atomic: rounds done, of those in this process */
+    uint64_t until;            /* the step before which this advance ends */
     lar_computer_contact contact;
-    lar_watch *watch;
-    void *watch_context;
-    bool called_off;     /* by the watch */
+    lar_step_callback *callback;
+    void *callback_context;
+    bool called_off;     /* by the callback */
     lar_report report;   /* of the last advance; at processor zero, of all processors */
     lar_state *state;    /* of the whole model: gathered into at zero, scattered from elsewhere */
     lar_tools *tools;    /* of this process: zero's are those that count */
@@ -89,15 +89,15 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
  * Accepts NULL. */
 void lar_computer_destroy(lar_computer *computer);
 
-/* Advances all processors by `steps`, or fewer when `watch` (may be NULL) returns 0 or a trip
- * stopped everyone: *trip is then the first one. `first`: of the portions of an advance, which have
- * one report together. Processor zero only. */
+/* Advances all processors by `steps`, or fewer when `callback` (may be NULL) returns 0 or a fault
+ * stopped everyone: *fault is then the first one. `first`: of the portions of an advance, which
+ * have one report together. Processor zero only. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
-                                lar_watch *watch, void *context, lar_trip *trip,
+                                lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error);
 
 /* The state of all processors into that of the whole model, and back to all processors: they go on
- * from there, whatever has tripped before. Processor zero only. */
+ * from there, whatever faults there were before. Processor zero only. */
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 
@@ -110,16 +110,16 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 /* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
 lar_status lar_contact_open(lar_computer *computer, lar_error *error);
 void lar_contact_close(lar_computer *computer); /* idempotent */
-/* Processor zero, before a stretch of steps: looks and searches where that is due. *trip: too many
+/* Processor zero, before a stretch of steps: looks and searches where that is due. *fault: too many
  * pairs. */
-lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error);
+lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error);
 /* The step that a stretch towards `end` may reach at most. */
 uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
 /* After a stretch of so many steps. */
 void lar_contact_count(lar_computer *computer, uint64_t steps);
 /* Another process: takes what processor zero found. */
-lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
-                            lar_error *error);
+lar_status lar_contact_execute(lar_computer *computer, const void *payload, size_t bytes,
+                               lar_error *error);
 
 /* The sentence for calls after a failure. */
 lar_status lar_computer_refuse(lar_error *error);

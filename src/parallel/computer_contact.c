@@ -7,7 +7,7 @@
 #include "parallel/computer.h"
 
 /* Steps that a search should last, and those that it must last besides the way of a stop. */
-enum { SEARCH_STEPS = 200, LEAST_STEPS = 16 };
+enum { SEARCH_STEPS = 200, MIN_STEPS = 16 };
 
 /* What is sent: the groups of the list and its faces follow. */
 typedef struct list_head {
@@ -27,7 +27,7 @@ static void list_elements(const lar_computer *computer, int32_t *elements, size_
 
 lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    const lar_collide *whole = &computer->whole->acting.collide;
+    const lar_body_contact *whole = &computer->whole->interactions.body_contact;
     if (!whole->surface || computer->checking) return LAR_OK;
     const lar_model *model = computer->whole->model;
     size_t nodes = (size_t)whole->surface->node_count;
@@ -46,8 +46,8 @@ lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
             lar_contact_map_create(model, whole->surface, count, owner, computer->division.reporter,
                                    contact->shift, &contact->map, error);
     }
-    contact->search = whole->motion->search;
-    contact->always = whole->motion->always;
+    contact->search = whole->search_state->search;
+    contact->always = whole->search_state->always;
     free(owner);
     return status;
 }
@@ -73,7 +73,7 @@ static void values_of(const lar_computer *computer, int32_t n, const double **u,
     } else {
         const lar_processor *p = &computer->processor[map->reporter[n]];
         state = &p->worker[0].state;
-        value = (size_t)p->board->value[n];
+        value = (size_t)p->exchange->value[n];
     }
     *u = state->u + value;
     *v = state->v + value;
@@ -95,8 +95,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
         values_of(computer, n, &u, &v);
         for (int i = 0; i < 3; i++) {
             contact->x[n][i] = surface->rest[n][i] + u[i];
-            farthest = lar_most(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
-            fastest = lar_most(fastest, fabs(v[i]));
+            farthest = lar_larger(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
+            fastest = lar_larger(fastest, fabs(v[i]));
         }
     }
     *moved = farthest;
@@ -107,8 +107,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
 /* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
  * little more. */
 static double reserve(const lar_computer *computer, double way) {
-    double most = fmax(2 * way, LAR_CONTACT_RUSH * computer->whole->time_step);
-    return (computer->division.spread + 3) * most + LEAST_STEPS * way;
+    double max = fmax(2 * way, LAR_CONTACT_SPEED * computer->whole->time_step);
+    return (computer->division.spread + 3) * max + MIN_STEPS * way;
 }
 
 /* ---- handing out ----------------------------------------------------------------------------- */
@@ -117,7 +117,8 @@ static double reserve(const lar_computer *computer, double way) {
 static void take_list(lar_processor *p, const lar_contact_map *map, const lar_contact_list *list,
                       double moved) {
     if (list) lar_contact_compile(p, map, list);
-    for (int32_t t = 0; t < p->thread_count; t++) p->worker[t].acting.collide.moved = moved;
+    for (int32_t t = 0; t < p->thread_count; t++)
+        p->worker[t].interactions.body_contact.moved = moved;
 }
 
 static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double moved,
@@ -158,7 +159,7 @@ static bool list_fits(const lar_contact_surface *surface, const lar_contact_list
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         if (group->node < 0 || group->node >= surface->point_count || group->first != from ||
-            group->count < 1 || group->count > LAR_GROUP_FACES_MOST)
+            group->count < 1 || group->count > LAR_GROUP_FACES_MAX)
             return false;
         from += group->count;
     }
@@ -167,8 +168,8 @@ static bool list_fits(const lar_contact_surface *surface, const lar_contact_list
     return from == list->face_count;
 }
 
-lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t bytes,
-                            lar_error *error) {
+lar_status lar_contact_execute(lar_computer *computer, const void *payload, size_t bytes,
+                               lar_error *error) {
     const lar_contact_map *map = &computer->contact.map;
     list_head head = {0};
     if (bytes >= sizeof head) memcpy(&head, payload, sizeof head);
@@ -198,28 +199,28 @@ lar_status lar_contact_obey(lar_computer *computer, const void *payload, size_t 
 
 /* ---- searching ------------------------------------------------------------------------------- */
 
-static lar_status search(lar_computer *computer, double way, lar_trip *trip, lar_error *error) {
+static lar_status search(lar_computer *computer, double way, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     const lar_contact_surface *surface = contact->map.surface;
-    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_most);
+    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_max);
     double skin = 2 * (reserve(computer, way) + room);
     if (!lar_contact_search_run(contact->search, (const double(*)[3])contact->x, skin)) {
-        *trip = (lar_trip){.kind = LAR_TRIP_CROWD,
-                           .element = -1,
-                           .step = computer->processor[0].worker[0].state.step};
+        *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS,
+                             .element = -1,
+                             .step = computer->processor[0].worker[0].state.step};
         return LAR_OK;
     }
     const lar_contact_list *list = &contact->search->list;
     memcpy(contact->searched, contact->x, (size_t)surface->node_count * sizeof *contact->x);
     contact->skin = list->skin;
-    contact->crowded = list->skin < skin;
+    contact->too_many_pairs = list->skin < skin;
     contact->moved = 0;
     contact->info.searches++;
     contact->info.boxed += (uint64_t)list->face_count;
     return hand_out(computer, list, 0, error);
 }
 
-lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error *error) {
+lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     if (!contact->map.surface) return LAR_OK;
     bool due = !contact->valid || contact->always;
@@ -231,7 +232,7 @@ lar_status lar_contact_refresh(lar_computer *computer, lar_trip *trip, lar_error
     due = due || !(moved < 0.125 * contact->skin) ||
           !(moved + reserve(computer, way) < 0.5 * contact->skin);
     if (due) {
-        status = search(computer, way, trip, error);
+        status = search(computer, way, fault, error);
     } else {
         contact->moved = moved;
         status = hand_out(computer, NULL, moved, error);

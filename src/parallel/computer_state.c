@@ -4,7 +4,7 @@
 
 #include "parallel/computer.h"
 
-/* What travels for a node: u with the level behind it, and v. */
+/* What travels for a node: u with the offset behind it, and v. */
 typedef double node_values[7];
 
 /* ---- gathering ----------------------------------------------------------------------------- */

@@ -88,7 +88,7 @@ static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *li
     return s->face[list->face[group->first]].body == s->node[group->node].body;
 }
 
-/* Whether a processor adds forces of a group, or has the node and keeps its level. */
+/* Whether a processor adds forces of a group, or has the node and keeps its offset. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
@@ -129,38 +129,38 @@ static void mark_needed(const lar_contact_map *map, const lar_contact_list *list
 
 /* ---- one processor --------------------------------------------------------------------------- */
 
-static void add_slot(lar_contact_board *board, int32_t node) {
-    if (board->slot[node] >= 0) return;
-    int32_t slot = board->slot[node] = board->slot_count++;
-    if (board->mover[node] < 0) return;
-    lar_contact_page *page = &board->page[board->mover[node]];
-    page->slot[page->count] = slot;
-    page->node[page->count++] = node;
+static void add_slot(lar_contact_exchange *exchange, int32_t node) {
+    if (exchange->slot[node] >= 0) return;
+    int32_t slot = exchange->slot[node] = exchange->slot_count++;
+    if (exchange->mover[node] < 0) return;
+    lar_publish_list *publish = &exchange->publish[exchange->mover[node]];
+    publish->slot[publish->count] = slot;
+    publish->node[publish->count++] = node;
 }
 
-/* What `other` needs of this processor's nodes goes on its own board too. */
-static void plan_peer(lar_contact_board *board, const lar_contact_list *list, int32_t self,
+/* What `other` needs of this processor's nodes goes into its own exchange buffer too. */
+static void plan_peer(lar_contact_exchange *exchange, const lar_contact_list *list, int32_t self,
                       int32_t other) {
-    const lar_contact_map *map = board->map;
-    lar_contact_peer *peer = &board->peer[board->peer_count];
+    const lar_contact_map *map = exchange->map;
+    lar_contact_peer *peer = &exchange->peer[exchange->peer_count];
     peer->peer = other;
     peer->send_count = peer->receive_count = 0;
-    mark_needed(map, list, other, board->marked);
+    mark_needed(map, list, other, exchange->marked);
     for (int32_t n = 0; n < map->surface->node_count; n++) {
-        if (!board->marked[n] || map->reporter[n] != self || has_node(map, other, n)) continue;
-        add_slot(board, n);
-        peer->send[peer->send_count++] = board->slot[n];
+        if (!exchange->marked[n] || map->reporter[n] != self || has_node(map, other, n)) continue;
+        add_slot(exchange, n);
+        peer->send[peer->send_count++] = exchange->slot[n];
     }
     for (int32_t n = 0; n < map->surface->node_count; n++)
-        if (board->slot[n] >= 0 && board->mover[n] < 0 && map->reporter[n] == other)
-            peer->receive[peer->receive_count++] = board->slot[n];
-    if (peer->send_count + peer->receive_count > 0) board->peer_count++;
+        if (exchange->slot[n] >= 0 && exchange->mover[n] < 0 && map->reporter[n] == other)
+            peer->receive[peer->receive_count++] = exchange->slot[n];
+    if (peer->send_count + peer->receive_count > 0) exchange->peer_count++;
 }
 
-/* The groups in which a thread adds something, or whose node's level it keeps. */
+/* The groups in which a thread adds something, or whose node's offset it keeps. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
-    lar_collide *collide = &worker->acting.collide;
-    lar_contact_list *own = &collide->list;
+    lar_body_contact *contact = &worker->interactions.body_contact;
+    lar_contact_list *own = &contact->list;
     own->group_count = own->face_count = 0;
     own->skin = list->skin;
     for (int32_t g = 0; g < list->group_count; g++) {
@@ -168,166 +168,166 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         const int32_t *face = list->face + group->first;
         int32_t parent[2];
         double weight[2];
-        lar_contact_parents(collide->surface, group->node, parent, weight);
-        bool takes = collide->adds_node[parent[0]] || collide->adds_node[parent[1]] ||
-                     (is_own_body(collide->surface, list, group) && collide->keeps[group->node]);
+        lar_contact_parents(contact->surface, group->node, parent, weight);
+        bool takes = contact->adds_node[parent[0]] || contact->adds_node[parent[1]] ||
+                     (is_own_body(contact->surface, list, group) && contact->keeps[group->node]);
         for (int32_t i = 0; i < group->count && !takes; i++)
-            takes = collide->adds_corner[face[i]] &&
-                    lar_contact_active(&collide->surface->node[group->node],
-                                       &collide->surface->face[face[i]]);
+            takes = contact->adds_corner[face[i]] &&
+                    lar_contact_active(&contact->surface->node[group->node],
+                                       &contact->surface->face[face[i]]);
         if (!takes) continue;
         own->group[own->group_count++] =
             (lar_contact_group){group->node, own->face_count, group->count, group->gap};
         memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);
         own->face_count += group->count;
     }
-    lar_collide_restart(collide);
+    lar_body_contact_restart(contact);
 }
 
 void lar_contact_compile(lar_processor *p, const lar_contact_map *map,
                          const lar_contact_list *list) {
-    lar_contact_board *board = p->board;
-    board->map = map;
-    board->slot_count = board->peer_count = 0;
-    memset(board->slot, -1, (size_t)map->surface->node_count * sizeof *board->slot);
-    for (int32_t t = 0; t < p->thread_count; t++) board->page[t].count = 0;
-    mark_needed(map, list, p->self, board->marked);
+    lar_contact_exchange *exchange = p->exchange;
+    exchange->map = map;
+    exchange->slot_count = exchange->peer_count = 0;
+    memset(exchange->slot, -1, (size_t)map->surface->node_count * sizeof *exchange->slot);
+    for (int32_t t = 0; t < p->thread_count; t++) exchange->publish[t].count = 0;
+    mark_needed(map, list, p->self, exchange->marked);
     for (int32_t n = 0; n < map->surface->node_count; n++)
-        if (board->marked[n]) add_slot(board, n);
+        if (exchange->marked[n]) add_slot(exchange, n);
     for (int32_t other = 0; other < map->processors; other++)
-        if (other != p->self) plan_peer(board, list, p->self, other);
+        if (other != p->self) plan_peer(exchange, list, p->self, other);
     for (int32_t t = 0; t < p->thread_count; t++) take_groups(&p->worker[t], list);
 }
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-static lar_status create_collide(const lar_collide *whole, int32_t thread, lar_processor *p,
+static lar_status create_contact(const lar_body_contact *whole, int32_t thread, lar_processor *p,
                                  lar_error *error) {
     const lar_contact_surface *surface = whole->surface;
-    const lar_contact_board *board = p->board;
-    lar_collide *collide = &p->worker[thread].acting.collide;
+    const lar_contact_exchange *exchange = p->exchange;
+    lar_body_contact *contact = &p->worker[thread].interactions.body_contact;
     size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
     size_t groups = (size_t)whole->list.group_room, pairs = (size_t)whole->list.face_room;
     uint8_t *adds_node = lar_calloc(nodes, 1), *adds_corner = lar_calloc(faces, 1);
     uint8_t *keeps = lar_calloc(nodes, 1);
-    *collide = (lar_collide){.surface = surface,
-                             .law = whole->law,
-                             .time_step = whole->time_step,
-                             .view = {.value = board->value, .slot = board->slot},
-                             .adds_node = adds_node,
-                             .adds_corner = adds_corner,
-                             .keeps = keeps,
-                             .due = lar_calloc(groups, sizeof *collide->due),
-                             .last = lar_calloc(groups, sizeof *collide->last),
-                             .near = lar_calloc(groups, sizeof *collide->near),
-                             .away = lar_calloc(pairs, sizeof *collide->away),
-                             .part = lar_calloc(groups, sizeof *collide->part),
-                             .level = lar_calloc(groups, sizeof *collide->level)};
-    collide->list.group = lar_calloc(groups, sizeof *collide->list.group);
-    collide->list.face = lar_calloc(pairs, sizeof *collide->list.face);
-    if (!adds_node || !adds_corner || !keeps || !collide->due || !collide->last || !collide->near ||
-        !collide->away || !collide->part || !collide->level || !collide->list.group ||
-        !collide->list.face)
-        return lar_fail_memory(error, groups * sizeof *collide->part + 4 * pairs,
+    *contact = (lar_body_contact){.surface = surface,
+                                  .law = whole->law,
+                                  .time_step = whole->time_step,
+                                  .view = {.value = exchange->value, .slot = exchange->slot},
+                                  .adds_node = adds_node,
+                                  .adds_corner = adds_corner,
+                                  .keeps = keeps,
+                                  .due = lar_calloc(groups, sizeof *contact->due),
+                                  .last = lar_calloc(groups, sizeof *contact->last),
+                                  .near = lar_calloc(groups, sizeof *contact->near),
+                                  .away = lar_calloc(pairs, sizeof *contact->away),
+                                  .part = lar_calloc(groups, sizeof *contact->part),
+                                  .offset = lar_calloc(groups, sizeof *contact->offset)};
+    contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
+    contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
+    if (!adds_node || !adds_corner || !keeps || !contact->due || !contact->last || !contact->near ||
+        !contact->away || !contact->part || !contact->offset || !contact->list.group ||
+        !contact->list.face)
+        return lar_fail_memory(error, groups * sizeof *contact->part + 4 * pairs,
                                "contact of bodies");
     for (size_t n = 0; n < nodes; n++) {
-        adds_node[n] = board->loader[n] == thread;
-        keeps[n] = board->mover[n] == thread;
+        adds_node[n] = exchange->loader[n] == thread;
+        keeps[n] = exchange->mover[n] == thread;
     }
-    for (size_t f = 0; f < faces; f++) adds_corner[f] = board->pusher[f] == thread;
+    for (size_t f = 0; f < faces; f++) adds_corner[f] = exchange->pusher[f] == thread;
     return LAR_OK;
 }
 
-static lar_status allocate_board(int32_t processors, int32_t threads, size_t nodes, size_t faces,
-                                 lar_contact_board *board, lar_error *error) {
+static lar_status allocate_exchange(int32_t processors, int32_t threads, size_t nodes, size_t faces,
+                                    lar_contact_exchange *exchange, lar_error *error) {
     bool fits = true;
-#define LAR_BOARD_ARRAY(name, count)                                                               \
-    fits = fits && (board->name = lar_calloc_aligned((count), sizeof *board->name)) != NULL
-    LAR_BOARD_ARRAY(value, nodes);
-    LAR_BOARD_ARRAY(mover, nodes);
-    LAR_BOARD_ARRAY(loader, nodes);
-    LAR_BOARD_ARRAY(pusher, faces);
-    LAR_BOARD_ARRAY(slot, nodes);
-    LAR_BOARD_ARRAY(place[0], nodes);
-    LAR_BOARD_ARRAY(place[1], nodes);
-    LAR_BOARD_ARRAY(page, (size_t)threads);
-    LAR_BOARD_ARRAY(mark, (size_t)threads);
-    LAR_BOARD_ARRAY(peer, (size_t)processors);
-    LAR_BOARD_ARRAY(marked, nodes);
-#undef LAR_BOARD_ARRAY
+#define LAR_EXCHANGE_ARRAY(name, count)                                                            \
+    fits = fits && (exchange->name = lar_calloc_aligned((count), sizeof *exchange->name)) != NULL
+    LAR_EXCHANGE_ARRAY(value, nodes);
+    LAR_EXCHANGE_ARRAY(mover, nodes);
+    LAR_EXCHANGE_ARRAY(loader, nodes);
+    LAR_EXCHANGE_ARRAY(pusher, faces);
+    LAR_EXCHANGE_ARRAY(slot, nodes);
+    LAR_EXCHANGE_ARRAY(place[0], nodes);
+    LAR_EXCHANGE_ARRAY(place[1], nodes);
+    LAR_EXCHANGE_ARRAY(publish, (size_t)threads);
+    LAR_EXCHANGE_ARRAY(sequence, (size_t)threads);
+    LAR_EXCHANGE_ARRAY(peer, (size_t)processors);
+    LAR_EXCHANGE_ARRAY(marked, nodes);
+#undef LAR_EXCHANGE_ARRAY
     fits = fits &&
-           (board->gather = lar_calloc_aligned(nodes, sizeof(double[LAR_PLACE_VALUES]))) != NULL;
+           (exchange->gather = lar_calloc_aligned(nodes, sizeof(double[LAR_PLACE_VALUES]))) != NULL;
     for (int32_t t = 0; t < threads && fits; t++) {
-        board->page[t].slot = lar_calloc(nodes, sizeof *board->page[t].slot);
-        board->page[t].node = lar_calloc(nodes, sizeof *board->page[t].node);
-        fits = board->page[t].slot && board->page[t].node;
+        exchange->publish[t].slot = lar_calloc(nodes, sizeof *exchange->publish[t].slot);
+        exchange->publish[t].node = lar_calloc(nodes, sizeof *exchange->publish[t].node);
+        fits = exchange->publish[t].slot && exchange->publish[t].node;
     }
-    board->peer_room = fits ? processors : 0;
+    exchange->peer_room = fits ? processors : 0;
     for (int32_t i = 0; i < processors && fits; i++) {
-        board->peer[i].send = lar_calloc(nodes, sizeof *board->peer[i].send);
-        board->peer[i].receive = lar_calloc(nodes, sizeof *board->peer[i].receive);
-        fits = board->peer[i].send && board->peer[i].receive;
+        exchange->peer[i].send = lar_calloc(nodes, sizeof *exchange->peer[i].send);
+        exchange->peer[i].receive = lar_calloc(nodes, sizeof *exchange->peer[i].receive);
+        fits = exchange->peer[i].send && exchange->peer[i].receive;
     }
     return fits ? LAR_OK
                 : lar_fail_memory(error, nodes * (200 + 8 * (size_t)processors), "contact places");
 }
 
-lar_status lar_contact_board_create(const lar_collide *whole, const lar_condition_share *share,
-                                    const int32_t *reporter, int32_t processors, lar_processor *p,
-                                    lar_error *error) {
+lar_status lar_contact_exchange_create(const lar_body_contact *whole,
+                                       const lar_condition_share *share, const int32_t *reporter,
+                                       int32_t processors, lar_processor *p, lar_error *error) {
     const lar_contact_surface *surface = whole->surface;
     if (!surface) return LAR_OK;
     const int32_t *local = p->domain.layout.local;
-    lar_contact_board *board = p->board = lar_calloc_aligned(1, sizeof *board);
-    if (!board) return lar_fail_memory(error, sizeof *board, "contact places");
-    lar_status status = allocate_board(processors, p->thread_count, (size_t)surface->node_count,
-                                       (size_t)surface->face_count, board, error);
+    lar_contact_exchange *exchange = p->exchange = lar_calloc_aligned(1, sizeof *exchange);
+    if (!exchange) return lar_fail_memory(error, sizeof *exchange, "contact places");
+    lar_status status = allocate_exchange(processors, p->thread_count, (size_t)surface->node_count,
+                                          (size_t)surface->face_count, exchange, error);
     if (status) return status;
     for (int32_t n = 0; n < surface->node_count; n++) {
         int32_t node = surface->node[n].node;
-        board->value[n] = local[node] < 0 ? -1 : 4 * local[node];
-        board->mover[n] = share->holds[node];
-        board->loader[n] = reporter[node] == p->self ? share->loads[node] : -1;
+        exchange->value[n] = local[node] < 0 ? -1 : 4 * local[node];
+        exchange->mover[n] = share->holds[node];
+        exchange->loader[n] = reporter[node] == p->self ? share->loads[node] : -1;
     }
     for (int32_t f = 0; f < surface->face_count; f++)
-        board->pusher[f] = share->presses[surface->face[f].element];
+        exchange->pusher[f] = share->presses[surface->face[f].element];
     for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = create_collide(whole, t, p, error);
+        status = create_contact(whole, t, p, error);
     return status;
 }
 
-void lar_contact_board_destroy(lar_processor *p) {
-    lar_contact_board *board = p->board;
-    if (!board) return;
+void lar_contact_exchange_destroy(lar_processor *p) {
+    lar_contact_exchange *exchange = p->exchange;
+    if (!exchange) return;
     for (int32_t t = 0; t < p->thread_count; t++) {
-        lar_collide *collide = &p->worker[t].acting.collide;
-        free((uint8_t *)collide->adds_node);
-        free((uint8_t *)collide->adds_corner);
-        free((uint8_t *)collide->keeps);
-        free(collide->list.group);
-        free(collide->list.face);
-        collide->adds_node = collide->adds_corner = collide->keeps = NULL;
-        collide->list = (lar_contact_list){0};
-        if (!board->page) continue;
-        free(board->page[t].slot);
-        free(board->page[t].node);
+        lar_body_contact *contact = &p->worker[t].interactions.body_contact;
+        free((uint8_t *)contact->adds_node);
+        free((uint8_t *)contact->adds_corner);
+        free((uint8_t *)contact->keeps);
+        free(contact->list.group);
+        free(contact->list.face);
+        contact->adds_node = contact->adds_corner = contact->keeps = NULL;
+        contact->list = (lar_contact_list){0};
+        if (!exchange->publish) continue;
+        free(exchange->publish[t].slot);
+        free(exchange->publish[t].node);
     }
-    for (int32_t i = 0; board->peer && i < board->peer_room; i++) {
-        free(board->peer[i].send);
-        free(board->peer[i].receive);
+    for (int32_t i = 0; exchange->peer && i < exchange->peer_room; i++) {
+        free(exchange->peer[i].send);
+        free(exchange->peer[i].receive);
     }
-    free(board->value);
-    free(board->mover);
-    free(board->loader);
-    free(board->pusher);
-    free(board->slot);
-    free(board->place[0]);
-    free(board->place[1]);
-    free(board->page);
-    free(board->mark);
-    free(board->peer);
-    free(board->gather);
-    free(board->marked);
-    free(board);
-    p->board = NULL;
+    free(exchange->value);
+    free(exchange->mover);
+    free(exchange->loader);
+    free(exchange->pusher);
+    free(exchange->slot);
+    free(exchange->place[0]);
+    free(exchange->place[1]);
+    free(exchange->publish);
+    free(exchange->sequence);
+    free(exchange->peer);
+    free(exchange->gather);
+    free(exchange->marked);
+    free(exchange);
+    p->exchange = NULL;
 }

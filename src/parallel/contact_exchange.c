@@ -8,44 +8,44 @@
 static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t t = 0; t < p->thread_count && !status; t++)
-        status = lar_processor_await(p, &p->board->mark[t].round, round, error);
+        status = lar_processor_await(p, &p->exchange->sequence[t].round, round, error);
     return status;
 }
 
-/* ---- the board ------------------------------------------------------------------------------- */
+/* ---- the exchange buffer --------------------------------------------------------------------- */
 
-static double fastest_of(const double place[LAR_PLACE_VALUES], double most) {
-    for (int i = 3; i < 6; i++) most = lar_most(most, fabs(place[i]));
-    return most;
+static double fastest_of(const double place[LAR_PLACE_VALUES], double max) {
+    for (int i = 3; i < 6; i++) max = lar_larger(max, fabs(place[i]));
+    return max;
 }
 
 void lar_contact_publish(lar_worker *worker, uint64_t round) {
     const lar_processor *p = worker->processor;
-    lar_contact_board *board = p->board;
-    const lar_contact_page *page = &board->page[worker->thread];
-    lar_contact_mark *mark = &board->mark[worker->thread];
+    lar_contact_exchange *exchange = p->exchange;
+    const lar_publish_list *publish = &exchange->publish[worker->thread];
+    lar_contact_sequence *sequence = &exchange->sequence[worker->thread];
     const lar_state *state = &worker->state;
-    double(*place)[LAR_PLACE_VALUES] = board->place[round & 1], most = 0;
-    for (int32_t i = 0; i < page->count; i++) {
-        const double *rest = board->map->surface->rest[page->node[i]];
-        double *to = place[page->slot[i]];
-        int32_t value = board->value[page->node[i]];
+    double(*place)[LAR_PLACE_VALUES] = exchange->place[round & 1], max = 0;
+    for (int32_t i = 0; i < publish->count; i++) {
+        const double *rest = exchange->map->surface->rest[publish->node[i]];
+        double *to = place[publish->slot[i]];
+        int32_t value = exchange->value[publish->node[i]];
         for (int k = 0; k < 3; k++) {
             to[k] = rest[k] + state->u[value + k];
             to[3 + k] = state->v[value + k];
         }
         to[6] = state->u[value + 3];
-        most = fastest_of(to, most);
+        max = fastest_of(to, max);
     }
-    mark->speed[round & 1] = most;
-    __atomic_store_n(&mark->round, round, __ATOMIC_RELEASE);
+    sequence->speed[round & 1] = max;
+    __atomic_store_n(&sequence->round, round, __ATOMIC_RELEASE);
 }
 
 void lar_contact_begin(lar_processor *p) {
-    lar_contact_board *board = p->board;
-    if (!board) return;
-    board->arrived.round = 0;
-    for (int32_t t = 0; t < p->thread_count; t++) board->mark[t].round = 0;
+    lar_contact_exchange *exchange = p->exchange;
+    if (!exchange) return;
+    exchange->arrived.round = 0;
+    for (int32_t t = 0; t < p->thread_count; t++) exchange->sequence[t].round = 0;
 }
 
 /* ---- packets --------------------------------------------------------------------------------- */
@@ -59,78 +59,79 @@ static size_t packet_place(const lar_contact_map *map, int32_t from, int32_t to,
 
 lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error) {
     const lar_processor *p = worker->processor;
-    const lar_contact_board *board = p->board;
-    if (worker->thread != 0 || board->peer_count == 0) return LAR_OK;
+    const lar_contact_exchange *exchange = p->exchange;
+    if (worker->thread != 0 || exchange->peer_count == 0) return LAR_OK;
     lar_status status = wait_for_threads(p, round, error);
-    for (int32_t i = 0; i < board->peer_count && !status; i++) {
-        const lar_contact_peer *peer = &board->peer[i];
+    for (int32_t i = 0; i < exchange->peer_count && !status; i++) {
+        const lar_contact_peer *peer = &exchange->peer[i];
         size_t bytes;
-        size_t place = packet_place(board->map, p->self, peer->peer, peer->send_count, &bytes);
+        size_t place = packet_place(exchange->map, p->self, peer->peer, peer->send_count, &bytes);
         unsigned char *to = lar_comm_room(p->comm, peer->peer, place, bytes, round);
-        if (!to) to = board->gather;
+        if (!to) to = exchange->gather;
         for (int32_t k = 0; k < peer->send_count; k++)
             memcpy(to + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
-                   board->place[round & 1][peer->send[k]], sizeof(double[LAR_PLACE_VALUES]));
+                   exchange->place[round & 1][peer->send[k]], sizeof(double[LAR_PLACE_VALUES]));
         status = lar_comm_put(p->comm, peer->peer, place, to, bytes, round, error);
     }
     return status;
 }
 
-/* Thread 0: what the others have sent goes onto the board. */
+/* Thread 0: what the others have sent goes into the exchange buffer. */
 static lar_status receive_places(const lar_processor *p, uint64_t round, lar_error *error) {
-    lar_contact_board *board = p->board;
-    double most = 0;
-    for (int32_t i = 0; i < board->peer_count; i++) {
-        const lar_contact_peer *peer = &board->peer[i];
+    lar_contact_exchange *exchange = p->exchange;
+    double max = 0;
+    for (int32_t i = 0; i < exchange->peer_count; i++) {
+        const lar_contact_peer *peer = &exchange->peer[i];
         size_t bytes;
-        size_t place = packet_place(board->map, peer->peer, p->self, peer->receive_count, &bytes);
+        size_t place =
+            packet_place(exchange->map, peer->peer, p->self, peer->receive_count, &bytes);
         const void *payload;
         lar_status status =
             lar_comm_wait(p->comm, peer->peer, place, bytes, round, &payload, error);
         if (status) return status;
         for (int32_t k = 0; k < peer->receive_count; k++) {
-            double *to = board->place[round & 1][peer->receive[k]];
+            double *to = exchange->place[round & 1][peer->receive[k]];
             memcpy(to, (const char *)payload + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
                    sizeof(double[LAR_PLACE_VALUES]));
-            most = fastest_of(to, most);
+            max = fastest_of(to, max);
         }
     }
-    board->arrived.speed[round & 1] = most;
-    __atomic_store_n(&board->arrived.round, round, __ATOMIC_RELEASE);
+    exchange->arrived.speed[round & 1] = max;
+    __atomic_store_n(&exchange->arrived.round, round, __ATOMIC_RELEASE);
     return LAR_OK;
 }
 
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error) {
     lar_processor *p = worker->processor;
-    lar_contact_board *board = p->board;
-    lar_collide *collide = &worker->acting.collide;
+    lar_contact_exchange *exchange = p->exchange;
+    lar_body_contact *contact = &worker->interactions.body_contact;
     lar_status status = wait_for_threads(p, round, error);
     if (status) return status;
     if (worker->thread == 0)
         status = receive_places(p, round, error);
     else
-        status = lar_processor_await(p, &board->arrived.round, round, error);
+        status = lar_processor_await(p, &exchange->arrived.round, round, error);
     if (status) return status;
-    double speed = board->arrived.speed[round & 1];
+    double speed = exchange->arrived.speed[round & 1];
     for (int32_t t = 0; t < p->thread_count; t++)
-        speed = lar_most(speed, board->mark[t].speed[round & 1]);
-    collide->view.place = (const double(*)[LAR_PLACE_VALUES])board->place[round & 1];
-    /* What stands on the board has come here in the last step with this speed. */
-    collide->travel += speed * worker->context.whole_step;
-    lar_collide_add(collide, &worker->context, &worker->state);
-    lar_collide_half_work(collide, &worker->context, &worker->state);
+        speed = lar_larger(speed, exchange->sequence[t].speed[round & 1]);
+    contact->view.place = (const double(*)[LAR_PLACE_VALUES])exchange->place[round & 1];
+    /* What stands in the exchange buffer has come here in the last step with this speed. */
+    contact->travel += speed * worker->context.whole_step;
+    lar_body_contact_add(contact, &worker->context, &worker->state);
+    lar_body_contact_half_work(contact, &worker->context, &worker->state);
     return LAR_OK;
 }
 
 /* ---- in time --------------------------------------------------------------------------------- */
 
-void lar_contact_watch(lar_worker *worker, uint64_t steps) {
-    const lar_collide *collide = &worker->acting.collide;
-    double allowed = 0.5 * collide->list.skin;
-    double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_RUSH);
+void lar_contact_check_travel(lar_worker *worker, uint64_t steps) {
+    const lar_body_contact *contact = &worker->interactions.body_contact;
+    double allowed = 0.5 * contact->list.skin;
+    double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
     uint64_t done = worker->state.step;
-    if (!(collide->moved <= allowed) && !worker->trip.kind)
-        worker->trip = (lar_trip){.kind = LAR_TRIP_RUSH, .element = -1, .step = done - 1};
-    if (collide->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
+    if (!(contact->moved <= allowed) && !worker->fault.kind)
+        worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST, .element = -1, .step = done - 1};
+    if (contact->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
         lar_processor_ask_stop(worker->processor, done + steps);
 }

@@ -35,12 +35,12 @@ static size_t answer_head(int32_t p) {
 enum { ORDER_HEAD = LAR_PART_BYTES };
 
 lar_status lar_control_create(lar_comm *comm, lar_control **control, lar_error *error) {
-    size_t most = LAR_PART_BYTES + sizeof(lar_answer) + sizeof(order_head);
+    size_t max = LAR_PART_BYTES + sizeof(lar_answer) + sizeof(order_head);
     lar_control *made = lar_calloc(1, sizeof *made);
-    if (made) made->packet = lar_calloc_aligned(most, 1);
+    if (made) made->packet = lar_calloc_aligned(max, 1);
     if (!made || !made->packet) {
         lar_control_destroy(made);
-        return lar_fail_memory(error, most, "the control of processors");
+        return lar_fail_memory(error, max, "the control of processors");
     }
     made->comm = comm;
     *control = made;
@@ -130,8 +130,8 @@ static lar_status await_part(lar_control *control, order_head *head, const void 
     return LAR_OK;
 }
 
-lar_status lar_control_obey(lar_control *control, lar_order *order, const void **payload,
-                            size_t *bytes, lar_error *error) {
+lar_status lar_control_await(lar_control *control, lar_order *order, const void **payload,
+                             size_t *bytes, lar_error *error) {
     order_head head;
     lar_status status = await_part(control, &head, payload, error);
     if (status) return status;

@@ -2,7 +2,7 @@
  *
  *     zero                                      the others
  *       order {advance until 5000, tools} ------>  compute
- *       <------------- answer {step 5000, trip, work; what the tools felt}
+ *       <------------- answer {step 5000, fault, work; what the tools felt}
  *       order {gather, round 0} ---------------->  copy
  *       <------------- answer {values of some nodes}      ... until all are there
  *       order {scatter, part of a state} ------->  keep the part
@@ -52,12 +52,12 @@ typedef struct lar_order {
 /* Bytes of payload in one packet. */
 enum { LAR_PART_BYTES = 32768 };
 
-/* Values of so many nodes fit into one answer: u and v, three numbers each, and the level. */
+/* Values of so many nodes fit into one answer: u and v, three numbers each, and the offset. */
 enum { LAR_ANSWER_NODES = LAR_PART_BYTES / (7 * (int)sizeof(double)) };
 
 typedef struct lar_answer {
-    uint64_t step; /* steps done */
-    lar_trip trip; /* the first of the processor */
+    uint64_t step;   /* steps done */
+    lar_fault fault; /* the first of the processor */
     double external, damped, contact;
     uint64_t bytes; /* of the payload */
 } lar_answer;
@@ -85,8 +85,8 @@ lar_status lar_control_hear(lar_control *control, int32_t p, const lar_answer **
 /* The others: wait for an order, however long. *payload, aligned to 8, has *bytes bytes and is
  * valid until the next order. Then answer, with at most LAR_PART_BYTES of payload;
  * answer->bytes is set here. */
-lar_status lar_control_obey(lar_control *control, lar_order *order, const void **payload,
-                            size_t *bytes, lar_error *error);
+lar_status lar_control_await(lar_control *control, lar_order *order, const void **payload,
+                             size_t *bytes, lar_error *error);
 lar_status lar_control_answer(lar_control *control, const lar_answer *answer, const void *payload,
                               size_t bytes, lar_error *error);
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "parallel/contact_exchange.h"
-#include "parallel/parcel.h"
+#include "parallel/thread_reduction.h"
 
 /* Who does what, by global element and node, while a schedule is compiled. */
 typedef struct assignment {
@@ -72,7 +72,7 @@ static lar_status assign(const lar_schedule *schedule, const lar_processor_setti
  * tail is the end of the whole layout's order: one region. */
 static void recover_in_one_sweep(const lar_layout *whole, const lar_mesh *mesh, assignment *a) {
     enum { CACHED_ELEMENTS = 3000, TAIL = 1024 };
-    int32_t own[LAR_THREADS_MOST] = {0}, kept[LAR_THREADS_MOST] = {0};
+    int32_t own[LAR_THREADS_MAX] = {0}, kept[LAR_THREADS_MAX] = {0};
     for (int32_t e = 0; e < mesh->element_count; e++)
         if (a->thread[e] >= 0) own[a->thread[e]]++;
     for (int32_t b = whole->block_count - 1; b >= 0; b--)
@@ -93,9 +93,9 @@ static lar_status compile_batches(const lar_schedule *schedule, lar_processor *p
                                   lar_error *error) {
     size_t batches = (size_t)schedule->batch_count, waits = (size_t)schedule->wait_count;
     p->batch = lar_calloc(batches, sizeof *p->batch);
-    p->mark = lar_calloc_aligned(batches, sizeof *p->mark);
+    p->sequence = lar_calloc_aligned(batches, sizeof *p->sequence);
     p->wait = lar_calloc(waits, sizeof *p->wait);
-    if (!p->batch || !p->mark || !p->wait)
+    if (!p->batch || !p->sequence || !p->wait)
         return lar_fail_memory(error, batches * sizeof *p->batch, "the batches of a processor");
     p->batch_count = schedule->batch_count;
     if (waits) memcpy(p->wait, schedule->wait, waits * sizeof *p->wait);
@@ -176,7 +176,7 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
                                             layout->first_node[thread + 1]);
     if (setting->delays)
         worker->random = setting->delays * 0x9e3779b97f4a7c15u +
-                         (uint64_t)(p->self * LAR_THREADS_MOST + thread + 1);
+                         (uint64_t)(p->self * LAR_THREADS_MAX + thread + 1);
     int32_t moving = 0;
     size_t largest = 64;
     for (int32_t b = worker->batch_first; b < worker->batch_end; b++) {
@@ -196,12 +196,13 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};
     if (!status)
         status = lar_conditions_create(setting->whole->model, layout->local, &share,
-                                       &worker->acting.conditions, error);
-    const lar_touch *touch = &setting->whole->acting.touch;
+                                       &worker->interactions.conditions, error);
+    const lar_tool_contact *contact = &setting->whole->interactions.tool_contact;
     if (!status)
-        status = lar_touch_create(setting->whole->model, layout->local, &share, touch->list,
-                                  touch->tools, &worker->acting.touch, error);
-    worker->acting.touch.always = touch->always;
+        status =
+            lar_tool_contact_create(setting->whole->model, layout->local, &share, contact->list,
+                                    contact->tools, &worker->interactions.tool_contact, error);
+    worker->interactions.tool_contact.always = contact->always;
     return status;
 }
 
@@ -215,9 +216,9 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
         status = create_worker(schedule, setting, a, t, p, error);
     const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
     if (!status && !p->check)
-        status = lar_contact_board_create(&setting->whole->acting.collide, &share,
-                                          setting->reporter, schedule->grid.count, p, error);
-    return status ? status : lar_parcels_create(schedule, a->thread, p, error);
+        status = lar_contact_exchange_create(&setting->whole->interactions.body_contact, &share,
+                                             setting->reporter, schedule->grid.count, p, error);
+    return status ? status : lar_thread_reduction_create(schedule, a->thread, p, error);
 }
 
 /* Between two runs a processor that exchanges asks for some memory of its packets (batch.c): often
@@ -234,7 +235,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
                          .check = setting->check};
     assignment a = {0};
     lar_status status = assign(schedule, setting, &a, error);
-    if (!status && setting->near)
+    if (!status && setting->low_latency)
         recover_in_one_sweep(&setting->whole->layout, &setting->whole->model->mesh, &a);
     lar_part part = {
         .threads = schedule->threads, .thread = a.thread, .batch = a.batch, .owner = a.owner};
@@ -251,11 +252,11 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 }
 
 void lar_processor_destroy(lar_processor *p) {
-    lar_contact_board_destroy(p);
+    lar_contact_exchange_destroy(p);
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
-        lar_acting_destroy(&worker->acting);
-        lar_parcels_destroy(worker);
+        lar_interactions_destroy(&worker->interactions);
+        lar_thread_reduction_destroy(worker);
         free(worker->gather);
         if (t == 0)
             lar_state_destroy(&worker->state);
@@ -265,7 +266,7 @@ void lar_processor_destroy(lar_processor *p) {
     lar_domain_destroy(&p->domain);
     free(p->worker);
     free(p->batch);
-    free(p->mark);
+    free(p->sequence);
     free(p->packet);
     free(p->value);
     free(p->wait);
@@ -290,8 +291,8 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.parts = 1;
         worker->state.listed = false;
         worker->state.external = worker->state.damped = worker->state.contact = 0;
-        worker->trip = (lar_trip){0};
-        lar_acting_forget(&worker->acting);
+        worker->fault = (lar_fault){0};
+        lar_interactions_forget(&worker->interactions);
         memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
     }
     p->ahead = (int64_t)(state->step - p->worker[0].round);
@@ -316,12 +317,12 @@ void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
         continue;
 }
 
-lar_status lar_processor_await(const lar_processor *p, const uint64_t *mark, uint64_t round,
+lar_status lar_processor_await(const lar_processor *p, const uint64_t *sequence, uint64_t round,
                                lar_error *error) {
     enum { POLLS = 50 };
     for (;;) {
         for (int i = 0; i < POLLS; i++)
-            if (__atomic_load_n(mark, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
+            if (__atomic_load_n(sequence, __ATOMIC_ACQUIRE) >= round) return LAR_OK;
         /* The other thread itself has a deadline in everything that it waits for. */
         if (__atomic_load_n(&p->failed, __ATOMIC_ACQUIRE))
             return lar_fail(error, LAR_ERROR_PEER,

@@ -34,21 +34,21 @@ typedef struct lar_batch_plan {
 } lar_batch_plan;
 
 /* The round in which a batch was last finished, alone in its cache line: others poll it. */
-typedef struct lar_batch_mark {
+typedef struct lar_batch_sequence {
     uint64_t round;
-} __attribute__((aligned(64))) lar_batch_mark;
+} __attribute__((aligned(64))) lar_batch_sequence;
 
 /* What one thread has for the nodes that another moves: packed, because the few cache lines of a
- * parcel come over much faster than those of all the nodes, and stay out of each other's way. */
-typedef struct lar_parcel {
+ * reduction come over much faster than those of all the nodes, and stay out of each other's way. */
+typedef struct lar_reduction_buffer {
     int32_t batch; /* packed at its end: the one that the other waits for; -1: nothing */
     int32_t count;
     int32_t *value;  /* [count] 4 * local node */
     int64_t *vector; /* [3 count] */
-} lar_parcel;
+} lar_reduction_buffer;
 
 struct lar_processor;
-struct lar_contact_board;
+struct lar_contact_exchange;
 
 /* One thread of a processor. */
 typedef struct lar_worker {
@@ -56,16 +56,17 @@ typedef struct lar_worker {
     int32_t thread;
     int32_t batch_first, batch_end;
     lar_state state; /* u, v: the processor's; force, step and work are its own */
-    uint64_t round;  /* steps gone through since the start. Packets and marks are counted by it, so
+    uint64_t round;  /* steps gone through since the start. Packets and flags are counted by it, so
                         that they go on when the state is set back (docs/parallel.md) */
-    lar_acting acting;
-    lar_condition_context context; /* the nodes that it moves */
-    lar_parcel *parcel;            /* [threads] for each of them */
-    int32_t joint_count;
-    int32_t *joint; /* 4 * local node: moved here, and summed where it is (parcel.h) */
+    lar_interactions interactions;
+    lar_condition_context context;   /* the nodes that it moves */
+    lar_reduction_buffer *reduction; /* [threads] for each of them */
+    int32_t shared_count;
+    int32_t
+        *shared_node; /* 4 * local node: moved here, and summed where it is (thread_reduction.h) */
     int32_t foreign_count;
     int32_t *foreign; /* 4 * local node: read here, moved by others */
-    lar_trip trip;
+    lar_fault fault;
     unsigned char *gather; /* for packets to peers whose memory cannot be written from here */
     uint64_t random;       /* of the delays; 0: none */
     bool follows;          /* it failed because another thread of the processor had */
@@ -76,8 +77,8 @@ typedef struct lar_processor {
     lar_domain domain;
     lar_worker *worker; /* [thread_count] */
     int32_t batch_count, packet_count;
-    lar_batch_plan *batch; /* [batch_count] thread after thread */
-    lar_batch_mark *mark;  /* [batch_count], atomic */
+    lar_batch_plan *batch;        /* [batch_count] thread after thread */
+    lar_batch_sequence *sequence; /* [batch_count], atomic */
     lar_packet_plan *packet;
     int32_t *value;          /* 4 * local node, of all packets */
     int32_t *wait;           /* of all batches */
@@ -87,7 +88,8 @@ typedef struct lar_processor {
     uint64_t stop;           /* atomic: the step before which everyone stops; 0: none asked for */
     uint64_t failed;         /* atomic: a thread has given up, its siblings must */
     int64_t ahead;           /* steps of the state minus rounds, for messages */
-    struct lar_contact_board *board; /* of contact between bodies (contact_exchange.h), or NULL */
+    struct lar_contact_exchange
+        *exchange; /* of contact between bodies (contact_exchange.h), or NULL */
 } lar_processor;
 
 /* What is common to all processors of a computer. */
@@ -97,7 +99,7 @@ typedef struct lar_processor_setting {
     lar_verification *check; /* or NULL */
     const size_t *shift;     /* as above; outlives the processor */
     uint64_t delays;         /* seed of random delays, 0: none */
-    bool near;               /* packets arrive within a fraction of a microsecond */
+    bool low_latency;        /* packets arrive within a fraction of a microsecond */
 } lar_processor_setting;
 
 /* Compiles a schedule that has been checked against the mesh (read or built). `comm` may be set
@@ -107,7 +109,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
 void lar_processor_destroy(lar_processor *processor); /* idempotent */
 
 /* Displacements, velocities and step of the whole model into the part, at rest or between two
- * advances; sums, work and trips begin anew. Rounds go on: nobody mistakes packets. */
+ * advances; sums, work and faults begin anew. Rounds go on: nobody mistakes packets. */
 void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
                            const lar_state *state);
 
@@ -117,13 +119,13 @@ void lar_processor_pause(lar_processor *processor);
 /* Asks all processors to stop before `step`: earlier requests stand. */
 void lar_processor_ask_stop(lar_processor *processor, uint64_t step);
 
-/* Waits until another thread of the processor has set its mark (atomic) to `round` or further. */
-lar_status lar_processor_await(const lar_processor *processor, const uint64_t *mark, uint64_t round,
-                               lar_error *error);
+/* Waits until another thread of the processor has set its flag (atomic) to `round` or further. */
+lar_status lar_processor_await(const lar_processor *processor, const uint64_t *sequence,
+                               uint64_t round, lar_error *error);
 
 /* One step of one thread: batches, packets, waits (batch.c). Fails when a peer is lost, another
  * thread of the processor failed, or verification finds a difference; the processor is then of no
- * more use. A trip is no failure: the step is completed. */
+ * more use. A fault is no failure: the step is completed. */
 lar_status lar_worker_step(lar_worker *worker, lar_error *error);
 
 #endif

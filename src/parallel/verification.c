@@ -6,7 +6,7 @@
 
 /* A vector as a list: count and numbers. Copied out and in, because the sums are integers. */
 typedef struct list {
-    uint16_t count, number[LAR_LIST_MOST];
+    uint16_t count, number[LAR_LIST_MAX];
 } list;
 
 static list load(const int64_t *vector) {
@@ -26,10 +26,10 @@ static bool passes_suffice(const lar_incidence *incidence, int32_t passes) {
     for (int32_t k = 0; k < incidence->node_count; k++) {
         const int32_t *element = incidence->element + incidence->first[k];
         int64_t count = incidence->first[k + 1] - incidence->first[k];
-        for (int64_t i = 0; count > LAR_LIST_MOST && i < count; i++) {
+        for (int64_t i = 0; count > LAR_LIST_MAX && i < count; i++) {
             int same = 0;
             for (int64_t j = 0; j < count; j++) same += element[j] % passes == element[i] % passes;
-            if (same > LAR_LIST_MOST) return false;
+            if (same > LAR_LIST_MAX) return false;
         }
     }
     return true;
@@ -54,9 +54,9 @@ void lar_verification_destroy(lar_verification *verification) {
 
 void lar_list_join(int64_t *sum, const int64_t *part) {
     list into = load(sum), from = load(part);
-    if (into.count > LAR_LIST_MOST || from.count > LAR_LIST_MOST ||
-        into.count + from.count > LAR_LIST_MOST) {
-        into.count = LAR_LIST_MOST + 1;
+    if (into.count > LAR_LIST_MAX || from.count > LAR_LIST_MAX ||
+        into.count + from.count > LAR_LIST_MAX) {
+        into.count = LAR_LIST_MAX + 1;
     } else {
         memcpy(into.number + into.count, from.number, from.count * sizeof *from.number);
         into.count = (uint16_t)(into.count + from.count);
@@ -121,7 +121,7 @@ static lar_status report(const lar_verification *verification, int32_t processor
     int32_t passes = verification->passes, pass = (int32_t)(step % (uint64_t)passes);
     char what[160] = "holds more elements than a list can";
     int i = 0, j = 0;
-    while (found->count <= LAR_LIST_MOST && (i < found->count || j < wanted->count)) {
+    while (found->count <= LAR_LIST_MAX && (i < found->count || j < wanted->count)) {
         bool extra =
             j == wanted->count || (i < found->count && found->number[i] < wanted->number[j]);
         bool lacks =
@@ -153,7 +153,7 @@ lar_status lar_verification_compare(const lar_verification *verification, const 
         list found = load(state->force + 4 * (size_t)n);
         lar_gid node = domain->layout.global[n];
         list wanted = expected_list(verification, node, state->step);
-        if (found.count <= LAR_LIST_MOST)
+        if (found.count <= LAR_LIST_MAX)
             qsort(found.number, found.count, sizeof *found.number, compare_numbers);
         if (!status && (found.count != wanted.count ||
                         memcmp(found.number, wanted.number, wanted.count * sizeof(uint16_t)) != 0))

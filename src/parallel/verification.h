@@ -17,7 +17,7 @@
 #include "step/domain.h"
 #include "layout/state.h"
 
-enum { LAR_LIST_MOST = 11 };
+enum { LAR_LIST_MAX = 11 };
 
 typedef struct lar_verification {
     const lar_model *model;

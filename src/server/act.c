@@ -1,4 +1,4 @@
-/* What viewers wish for is done. */
+/* The commands of viewers are executed. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,35 +42,36 @@ static bool saves_too_often(lar_server *server) {
 }
 
 /* One of those that lie in the folder: a viewer cannot name any other file. */
-static bool find_saved(const lar_server *server, const lar_wish *wish, lar_job *job) {
+static bool find_saved(const lar_server *server, const lar_command *command, lar_job *job) {
     const lar_saved_list *list =
-        wish->kind == LAR_WISH_LOAD ? &server->states : &server->recordings;
-    const char *found = lar_saved_find(list, wish->name);
+        command->kind == LAR_COMMAND_LOAD ? &server->states : &server->recordings;
+    const char *found = lar_saved_find(list, command->name);
     if (!found) return false;
     snprintf(job->name, sizeof job->name, "%s", found);
     int length = snprintf(job->path, sizeof job->path, "%s/%s", server->save_folder, job->name);
     return length > 0 && (size_t)length < sizeof job->path;
 }
 
-static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish,
+static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_command *command,
                         lar_job *job) {
-    bool leaves = wish->kind == LAR_WISH_REPLAY && !wish->name[0];
-    if (wish->kind == LAR_WISH_RESET || leaves) return true;
+    bool leaves = command->kind == LAR_COMMAND_REPLAY && !command->name[0];
+    if (command->kind == LAR_COMMAND_RESET || leaves) return true;
     if (!server->save_folder) {
         lar_viewer_note(server, viewer,
                         "saving, loading and recording are not allowed here; start the engine with "
                         "--save-folder");
         return false;
     }
-    if (wish->kind == LAR_WISH_LOAD && !find_saved(server, wish, job)) {
+    if (command->kind == LAR_COMMAND_LOAD && !find_saved(server, command, job)) {
         lar_viewer_note(server, viewer, "there is no saved state of this name; save one first");
         return false;
     }
-    if (wish->kind == LAR_WISH_REPLAY && !find_saved(server, wish, job)) {
+    if (command->kind == LAR_COMMAND_REPLAY && !find_saved(server, command, job)) {
         lar_viewer_note(server, viewer, "there is no recording of this name; make one first");
         return false;
     }
-    bool names = wish->kind == LAR_WISH_SAVE || (wish->kind == LAR_WISH_RECORD && wish->on);
+    bool names =
+        command->kind == LAR_COMMAND_SAVE || (command->kind == LAR_COMMAND_RECORD && command->on);
     if (names && saves_too_often(server)) {
         lar_viewer_note(server, viewer, "this is too often; save or record again in a second");
         return false;
@@ -81,11 +82,12 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *
             sentence, sizeof sentence,
             "saved states and recordings take %.3g GB, as much as they may; move some away, or "
             "start the engine with a larger --save-most",
-            1e-9 * server->save_most);
+            1e-9 * server->save_max);
         lar_viewer_note(server, viewer, sentence);
         return false;
     }
-    if (names && !choose_name(server, wish->kind == LAR_WISH_SAVE ? CHECKPOINT : RECORDING, job)) {
+    if (names &&
+        !choose_name(server, command->kind == LAR_COMMAND_SAVE ? CHECKPOINT : RECORDING, job)) {
         lar_viewer_note(server, viewer,
                         "no name is left in the folder for saved states, or it cannot be read; "
                         "move some files away");
@@ -94,15 +96,15 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_wish *
     return true;
 }
 
-static void ask_job(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
-    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .on = wish->on};
-    if (prepare_job(server, viewer, wish, &job) && !lar_work_ask(&server->work, &job))
+static void ask_job(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    lar_job job = {.kind = command->kind, .viewer = viewer->number, .on = command->on};
+    if (prepare_job(server, viewer, command, &job) && !lar_work_ask(&server->work, &job))
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
 }
 
 void lar_server_watch_recording(lar_server *server) {
     if (!server->recording[0] || server->recording_ends || !lar_server_saves_full(server)) return;
-    lar_job job = {.kind = LAR_WISH_RECORD};
+    lar_job job = {.kind = LAR_COMMAND_RECORD};
     server->recording_ends = lar_work_ask(&server->work, &job);
     for (lar_viewer *viewer = server->first; viewer && server->recording_ends;
          viewer = viewer->next)
@@ -111,8 +113,8 @@ void lar_server_watch_recording(lar_server *server) {
                         "may (--save-most)");
 }
 
-static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
-    lar_job job = {.kind = wish->kind, .viewer = viewer->number, .setting = *wish};
+static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    lar_job job = {.kind = command->kind, .viewer = viewer->number, .setting = *command};
     if (!lar_work_ask(&server->work, &job))
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
 }
@@ -137,42 +139,42 @@ static void tell_added(lar_server *server, lar_viewer *viewer, int32_t tool) {
 }
 
 void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
-    if (end->job.kind == LAR_WISH_INSPECT) return lar_server_tell_reading(server, end);
+    if (end->job.kind == LAR_COMMAND_INSPECT) return lar_server_tell_reading(server, end);
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
     bool done = end->error.status == LAR_OK;
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
-    bool over = end->job.kind == LAR_WISH_RECORD && !end->job.on;
+    bool over = end->job.kind == LAR_COMMAND_RECORD && !end->job.on;
     if (!done && over) server->recording[0] = '\0'; /* it is lost, and the status says so */
     if (over) server->recording_ends = false;
     if (!done) return;
-    if (end->job.kind == LAR_WISH_SAVE) {
+    if (end->job.kind == LAR_COMMAND_SAVE) {
         lar_saved_add(&server->states, end->job.name);
         if (viewer) tell_saved(server, viewer, CHECKPOINT, end->job.name);
-    } else if (end->job.kind == LAR_WISH_RECORD && end->job.on) {
+    } else if (end->job.kind == LAR_COMMAND_RECORD && end->job.on) {
         snprintf(server->recording, sizeof server->recording, "%s", end->job.name);
-    } else if (end->job.kind == LAR_WISH_ADD_TOOL) {
+    } else if (end->job.kind == LAR_COMMAND_ADD_TOOL) {
         if (viewer) tell_added(server, viewer, end->job.setting.tool);
-    } else if (end->job.kind == LAR_WISH_REPLAY) {
+    } else if (end->job.kind == LAR_COMMAND_REPLAY) {
         snprintf(server->played, sizeof server->played, "%s", end->job.name);
-    } else if (end->job.kind == LAR_WISH_RECORD && server->recording[0]) {
+    } else if (end->job.kind == LAR_COMMAND_RECORD && server->recording[0]) {
         lar_saved_add(&server->recordings, server->recording);
         if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
         server->recording[0] = '\0';
     }
 }
 
-/* ---- wishes -----------------------------------------------------------------------------------
+/* ---- commands ----------------------------------------------------------------------------------
  */
 
-static void ask_frame(lar_viewer *viewer, const lar_wish *wish) {
-    int field = lar_field_index(wish->field);
+static void ask_frame(lar_viewer *viewer, const lar_command *command) {
+    int field = lar_field_index(command->field);
     if (!viewer->asks || field != viewer->field) viewer->asked_at = lar_clock_ns();
     if (field != viewer->field) viewer->due &= ~(unsigned)LAR_DUE_PICTURE;
     viewer->field = field;
     viewer->asks = true;
 }
 
-static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     const int32_t *size = server->scan.image.size;
     char sentence[160];
     if (!lar_scan_is_there(&server->scan)) {
@@ -181,117 +183,117 @@ static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_wish *wi
                         "the scene was meshed from");
         return;
     }
-    if (wish->index >= size[wish->axis]) {
+    if (command->index >= size[command->axis]) {
         snprintf(sentence, sizeof sentence,
                  "the scan has %d x %d x %d voxels, counted from 0; ask for a slice of these",
                  (int)size[0], (int)size[1], (int)size[2]);
         lar_viewer_note(server, viewer, sentence);
         return;
     }
-    viewer->slice_axis = wish->axis;
-    viewer->slice_index = wish->index;
+    viewer->slice_axis = command->axis;
+    viewer->slice_index = command->index;
     lar_viewer_wants(viewer, LAR_DUE_SLICE);
 }
 
 /* What is played moves its tools itself. */
-static bool is_played(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+static bool is_played(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     if (!server->status.replaying) return false;
     lar_viewer_note(server, viewer,
                     "a recording is being played; leave it to pull and to move instruments");
-    if (wish->kind == LAR_WISH_GRAB)
-        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    if (command->kind == LAR_COMMAND_GRAB)
+        lar_server_tell_hand(server, viewer->number, command->hand, -1, "missed");
     return true;
 }
 
-static void move_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+static void move_tool(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     lar_error error;
-    if (is_played(server, viewer, wish)) return;
-    if (lar_hands_move(&server->hands, viewer->number, wish, lar_clock_ns(), &error))
+    if (is_played(server, viewer, command)) return;
+    if (lar_hands_move(&server->hands, viewer->number, command, lar_clock_ns(), &error))
         lar_viewer_note(server, viewer, error.message);
 }
 
-static void remove_tool(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+static void remove_tool(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     lar_error error;
-    if (lar_hands_may_remove(&server->hands, viewer->number, wish->tool, lar_clock_ns(), &error))
+    if (lar_hands_may_remove(&server->hands, viewer->number, command->tool, lar_clock_ns(), &error))
         lar_viewer_note(server, viewer, error.message);
     else
-        ask_setting(server, viewer, wish);
+        ask_setting(server, viewer, command);
 }
 
 /* Who may only watch gets pictures and forces. Pulls come a hundred times a second and follow a
  * grab that was refused: they need no sentence of their own. */
-static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
-    bool looks = wish->kind == LAR_WISH_FRAME || wish->kind == LAR_WISH_FORCES ||
-                 wish->kind == LAR_WISH_INSPECT || wish->kind == LAR_WISH_SLICE;
+static bool is_refused(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    bool looks = command->kind == LAR_COMMAND_FRAME || command->kind == LAR_COMMAND_FORCES ||
+                 command->kind == LAR_COMMAND_INSPECT || command->kind == LAR_COMMAND_SLICE;
     if (!viewer->watches || looks) return false;
-    if (wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_RELEASE) return true;
+    if (command->kind == LAR_COMMAND_PULL || command->kind == LAR_COMMAND_RELEASE) return true;
     lar_viewer_note(server, viewer,
                     "this viewer may only watch; to act on the run, open the address that has the "
                     "other token");
-    if (wish->kind == LAR_WISH_GRAB)
-        lar_server_tell_hand(server, viewer->number, wish->hand, -1, "missed");
+    if (command->kind == LAR_COMMAND_GRAB)
+        lar_server_tell_hand(server, viewer->number, command->hand, -1, "missed");
     return true;
 }
 
-void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
-    if (is_refused(server, viewer, wish)) return;
-    switch (wish->kind) {
-    case LAR_WISH_FRAME:
-        ask_frame(viewer, wish);
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    if (is_refused(server, viewer, command)) return;
+    switch (command->kind) {
+    case LAR_COMMAND_FRAME:
+        ask_frame(viewer, command);
         break;
-    case LAR_WISH_FORCES:
-        viewer->forces_tool = wish->tool;
-        viewer->forces_after = wish->after;
+    case LAR_COMMAND_FORCES:
+        viewer->forces_tool = command->tool;
+        viewer->forces_after = command->after;
         lar_viewer_wants(viewer, LAR_DUE_FORCES);
         break;
-    case LAR_WISH_GRAB:
-        if (is_played(server, viewer, wish)) break;
-        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+    case LAR_COMMAND_GRAB:
+        if (is_played(server, viewer, command)) break;
+        lar_hands_execute(&server->hands, viewer->number, command, lar_clock_ns());
         break;
-    case LAR_WISH_PULL:
-    case LAR_WISH_RELEASE:
-        lar_hands_wish(&server->hands, viewer->number, wish, lar_clock_ns());
+    case LAR_COMMAND_PULL:
+    case LAR_COMMAND_RELEASE:
+        lar_hands_execute(&server->hands, viewer->number, command, lar_clock_ns());
         break;
-    case LAR_WISH_TOOL:
-        move_tool(server, viewer, wish);
+    case LAR_COMMAND_TOOL:
+        move_tool(server, viewer, command);
         break;
-    case LAR_WISH_PLAY:
+    case LAR_COMMAND_PLAY:
         lar_session_play(server->session);
         break;
-    case LAR_WISH_PAUSE:
+    case LAR_COMMAND_PAUSE:
         lar_session_pause(server->session);
         break;
-    case LAR_WISH_STEP:
-        lar_session_step(server->session, wish->steps);
+    case LAR_COMMAND_STEP:
+        lar_session_step(server->session, command->steps);
         break;
-    case LAR_WISH_PACE:
-        lar_session_set_pace(server->session, wish->pace);
-        server->pace = wish->pace;
+    case LAR_COMMAND_PACE:
+        lar_session_set_pace(server->session, command->pace);
+        server->pace = command->pace;
         break;
-    case LAR_WISH_SEEK:
-        lar_session_seek(server->session, wish->time);
+    case LAR_COMMAND_SEEK:
+        lar_session_seek(server->session, command->time);
         break;
-    case LAR_WISH_SLICE:
-        ask_slice(server, viewer, wish);
+    case LAR_COMMAND_SLICE:
+        ask_slice(server, viewer, command);
         break;
-    case LAR_WISH_INSPECT:
-        lar_server_inspect(server, viewer, wish);
+    case LAR_COMMAND_INSPECT:
+        lar_server_inspect(server, viewer, command);
         break;
-    case LAR_WISH_RESET:
-    case LAR_WISH_SAVE:
-    case LAR_WISH_LOAD:
-    case LAR_WISH_RECORD:
-    case LAR_WISH_REPLAY:
-        ask_job(server, viewer, wish);
+    case LAR_COMMAND_RESET:
+    case LAR_COMMAND_SAVE:
+    case LAR_COMMAND_LOAD:
+    case LAR_COMMAND_RECORD:
+    case LAR_COMMAND_REPLAY:
+        ask_job(server, viewer, command);
         break;
-    case LAR_WISH_GRAVITY:
-    case LAR_WISH_DAMPING:
-    case LAR_WISH_STIFFNESS:
-    case LAR_WISH_ADD_TOOL:
-        ask_setting(server, viewer, wish);
+    case LAR_COMMAND_GRAVITY:
+    case LAR_COMMAND_DAMPING:
+    case LAR_COMMAND_STIFFNESS:
+    case LAR_COMMAND_ADD_TOOL:
+        ask_setting(server, viewer, command);
         break;
-    case LAR_WISH_REMOVE_TOOL:
-        remove_tool(server, viewer, wish);
+    case LAR_COMMAND_REMOVE_TOOL:
+        remove_tool(server, viewer, command);
         break;
     }
 }

@@ -13,8 +13,8 @@
 #include "lariat.h"
 
 /* Far above any viewer: a wrong folder is refused, not read. */
-enum { FILES_MOST = 256, DEPTH_MOST = 4 };
-static const size_t BYTES_MOST = 64u << 20;
+enum { FILES_MAX = 256, DEPTH_MAX = 4 };
+static const size_t BYTES_MAX = 64u << 20;
 
 static const char OCTETS[] = "application/octet-stream";
 
@@ -61,11 +61,11 @@ static lar_status add_file(collector *c, const char *path, const char *at, size_
     lar_files *files = c->files;
     lar_bytes bytes;
     c->bytes += size;
-    if (files->count == FILES_MOST || c->bytes > BYTES_MOST)
+    if (files->count == FILES_MAX || c->bytes > BYTES_MAX)
         return lar_fail(c->error, LAR_ERROR_ARGUMENT,
                         "%s: this is no folder of a viewer: more than %d files or %zu MB; give the "
                         "one that the viewer was built into",
-                        c->root, FILES_MOST, BYTES_MOST >> 20);
+                        c->root, FILES_MAX, BYTES_MAX >> 20);
     if (!LAR_GROW(files->file, c->capacity, files->count))
         return lar_fail_memory(c->error, sizeof *files->file, "the viewer's files");
     lar_status status = lar_bytes_read(path, &bytes, c->error);
@@ -92,7 +92,7 @@ static lar_status add_entry(collector *c, const char *at, const char *name, int 
         status = lar_fail_memory(c->error, 4096, "the viewer's files");
     else if (lstat(path, &found) != 0)
         status = lar_fail(c->error, LAR_ERROR_IO, "%s: cannot be read: %s", path, strerror(errno));
-    else if (S_ISDIR(found.st_mode) && depth < DEPTH_MOST)
+    else if (S_ISDIR(found.st_mode) && depth < DEPTH_MAX)
         status = read_folder(c, below, depth + 1);
     else if (S_ISREG(found.st_mode) && found.st_size > 0)
         status = add_file(c, path, below, (size_t)found.st_size);

@@ -95,29 +95,29 @@ static lar_hand *find_free(lar_hands *hands, int64_t now) {
     return NULL;
 }
 
-static void grab(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now) {
-    lar_hand *hand = find(hands, viewer, wish->hand);
+static void grab(lar_hands *hands, uint64_t viewer, const lar_command *command, int64_t now) {
+    lar_hand *hand = find(hands, viewer, command->hand);
     if (!hand) hand = find_free(hands, now);
     if (!hand) {
-        hands->tell(hands->context, viewer, wish->hand, -1, "refused");
+        hands->tell(hands->context, viewer, command->hand, -1, "refused");
         return;
     }
     hand->viewer = viewer;
-    hand->number = wish->hand;
-    memcpy(hand->point, wish->point, sizeof hand->point);
-    memcpy(hand->to, wish->point, sizeof hand->to);
+    hand->number = command->hand;
+    memcpy(hand->point, command->point, sizeof hand->point);
+    memcpy(hand->to, command->point, sizeof hand->to);
     enter(hand, LAR_HAND_GOING, now);
     put(hands, hand, hand->point, 1);
 }
 
-void lar_hands_wish(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now) {
-    lar_hand *hand = find(hands, viewer, wish->hand);
-    if (wish->kind == LAR_WISH_GRAB) {
-        grab(hands, viewer, wish, now);
-    } else if (hand && wish->kind == LAR_WISH_PULL) {
-        memcpy(hand->to, wish->point, sizeof hand->to);
+void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *command, int64_t now) {
+    lar_hand *hand = find(hands, viewer, command->hand);
+    if (command->kind == LAR_COMMAND_GRAB) {
+        grab(hands, viewer, command, now);
+    } else if (hand && command->kind == LAR_COMMAND_PULL) {
+        memcpy(hand->to, command->point, sizeof hand->to);
         if (hand->state == LAR_HAND_HOLDING) put(hands, hand, hand->to, 0);
-    } else if (hand && wish->kind == LAR_WISH_RELEASE) {
+    } else if (hand && command->kind == LAR_COMMAND_RELEASE) {
         let_go(hands, hand);
     }
 }
@@ -209,11 +209,11 @@ lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool,
     return check_owner(hands, viewer, tool, now, error);
 }
 
-lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
-                          lar_error *error) {
-    lar_owner *owner = &hands->owner[wish->tool];
+lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_command *command,
+                          int64_t now, lar_error *error) {
+    lar_owner *owner = &hands->owner[command->tool];
     lar_tool_info info;
-    lar_session_look_at_tool(hands->session, wish->tool, &info);
+    lar_session_look_at_tool(hands->session, command->tool, &info);
     if (info.shape == LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is a hand; take hold of the surface with grab", info.name);
@@ -221,14 +221,14 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wis
     look_again(hands, now);
     if (owner->deaf_to == viewer && now < owner->deaf_until) return LAR_OK;
     lar_tool_pose pose;
-    lar_status status = check_owner(hands, viewer, wish->tool, now, error);
-    if (!status) status = lar_session_tool_force(hands->session, wish->tool, &pose, NULL, error);
+    lar_status status = check_owner(hands, viewer, command->tool, now, error);
+    if (!status) status = lar_session_tool_force(hands->session, command->tool, &pose, NULL, error);
     if (status) return status;
     if (owner->viewer == viewer && now - owner->moved < OWNED) pose = owner->pose;
-    memcpy(pose.position, wish->point, sizeof pose.position);
-    if (wish->turns) memcpy(pose.orientation, wish->orientation, sizeof pose.orientation);
-    if (wish->opens) pose.opening = wish->opening;
-    status = lar_session_tool_move(hands->session, wish->tool, &pose, error);
+    memcpy(pose.position, command->point, sizeof pose.position);
+    if (command->turns) memcpy(pose.orientation, command->orientation, sizeof pose.orientation);
+    if (command->opens) pose.opening = command->opening;
+    status = lar_session_tool_move(hands->session, command->tool, &pose, error);
     if (status) return status;
     owner->viewer = viewer;
     owner->moved = now;

@@ -1,4 +1,5 @@
-/* Who of the viewers moves what: hands are handed out, instruments belong to whoever moves them.
+/* Which viewer moves which tool: hands are assigned on request, instruments belong to whoever moves
+ * them.
  *
  *     grab: free --> going --> closing --> holding --> (release, leave) --> free
  *                      |          '-- nothing there: missed --> free
@@ -52,18 +53,18 @@ typedef struct lar_hands {
     lar_hand_news *tell;
     void *context;
     int32_t count; /* of hands */
-    lar_hand hand[LAR_TOOLS_MOST];
-    lar_owner owner[LAR_TOOLS_MOST]; /* by tool */
-    uint64_t placed;                 /* lar_session_status.placed, as last seen */
+    lar_hand hand[LAR_TOOLS_MAX];
+    lar_owner owner[LAR_TOOLS_MAX]; /* by tool */
+    uint64_t placed;                /* lar_session_status.placed, as last seen */
 } lar_hands;
 
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context);
 
-/* Grab, pull, release: `wish` is of these kinds. What is refused is told. */
-void lar_hands_wish(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now);
+/* Grab, pull, release: `command` is of these kinds. What is refused is told. */
+void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *command, int64_t now);
 /* Moves an instrument; an error when it is another's, with who it is. */
-lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_wish *wish, int64_t now,
-                          lar_error *error);
+lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_command *command,
+                          int64_t now, lar_error *error);
 /* Whether it may be taken away: nobody else moves it. */
 lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool, int64_t now,
                                 lar_error *error);

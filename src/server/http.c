@@ -139,7 +139,7 @@ static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
 static const int64_t LIFE = 30 * LAR_SECOND_NS;
 
 static void add_connection(lar_server *server, struct lws *wsi) {
-    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
         if (server->connection[i].wsi) continue;
         server->connection[i].wsi = wsi;
         server->connection[i].since = lar_clock_ns();
@@ -150,7 +150,7 @@ static void add_connection(lar_server *server, struct lws *wsi) {
 }
 
 static void drop_connection(lar_server *server, const struct lws *wsi) {
-    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
         if (server->connection[i].wsi != wsi) continue;
         server->connection[i].wsi = NULL;
         server->connections--;
@@ -158,7 +158,7 @@ static void drop_connection(lar_server *server, const struct lws *wsi) {
 }
 
 void lar_server_promote(lar_server *server, const struct lws *wsi) {
-    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++)
         if (server->connection[i].wsi == wsi) server->connection[i].viewer = true;
 }
 
@@ -173,7 +173,7 @@ static void show_out(lar_server *server, int i) {
 }
 
 void lar_server_sweep(lar_server *server, int64_t now) {
-    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++)
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++)
         if (is_stranger(server, i) && now - server->connection[i].since > LIFE) show_out(server, i);
 }
 
@@ -181,13 +181,13 @@ void lar_server_sweep(lar_server *server, int64_t now) {
  * become viewers makes room for one that comes. */
 static void make_room(lar_server *server) {
     int strangers = 0, oldest = -1;
-    for (int i = 0; i < LAR_CONNECTIONS_MOST; i++) {
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
         if (!is_stranger(server, i)) continue;
         strangers++;
         if (oldest < 0 || server->connection[i].since < server->connection[oldest].since)
             oldest = i;
     }
-    if (strangers >= LAR_STRANGERS_MOST) show_out(server, oldest);
+    if (strangers >= LAR_STRANGERS_MAX) show_out(server, oldest);
 }
 
 /* All that have come. When the process has no numbers for sockets left, the spare one takes the
@@ -204,7 +204,7 @@ static void accept_all(lar_server *server) {
         }
         if (fd < 0) return;
         make_room(server);
-        if (server->connections >= LAR_CONNECTIONS_MOST) {
+        if (server->connections >= LAR_CONNECTIONS_MAX) {
             close(fd);
             continue;
         }

@@ -6,9 +6,9 @@
 
 static const char *const value_names[LAR_READ_VALUES] = {"von_mises", "pressure", "energy"};
 
-static bool is_there(lar_server *server, lar_viewer *viewer, const lar_wish *wish,
+static bool is_there(lar_server *server, lar_viewer *viewer, const lar_command *command,
                      const lar_surface_info *surface) {
-    if (wish->node < surface->nodes && wish->face < surface->faces) return true;
+    if (command->node < surface->nodes && command->face < surface->faces) return true;
     char sentence[160];
     snprintf(sentence, sizeof sentence,
              "the surface has %d nodes and %d faces, each counted from 0; ask for one of them",
@@ -17,13 +17,14 @@ static bool is_there(lar_server *server, lar_viewer *viewer, const lar_wish *wis
     return false;
 }
 
-void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish) {
+void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     lar_surface_info surface;
     lar_model_surface(server->model, &surface);
-    if (!is_there(server, viewer, wish, &surface)) return;
-    viewer->question = (lar_question){.node = wish->node < 0 ? -1 : surface.node[wish->node],
-                                      .element = wish->face < 0 ? -1 : surface.element[wish->face],
-                                      .energy = wish->energy};
+    if (!is_there(server, viewer, command, &surface)) return;
+    viewer->question =
+        (lar_question){.node = command->node < 0 ? -1 : surface.node[command->node],
+                       .element = command->face < 0 ? -1 : surface.element[command->face],
+                       .energy = command->energy};
     if (!viewer->inspects) viewer->inspects_since = lar_clock_ns();
     viewer->inspects = true;
 }
@@ -38,7 +39,7 @@ void lar_server_ask_readings(lar_server *server) {
             (!next || viewer->inspects_since < next->inspects_since))
             next = viewer;
     if (!next) return;
-    lar_job job = {.kind = LAR_WISH_INSPECT, .viewer = next->number, .question = next->question};
+    lar_job job = {.kind = LAR_COMMAND_INSPECT, .viewer = next->number, .question = next->question};
     server->reading = lar_work_ask(&server->work, &job);
     if (server->reading) next->inspects = false;
 }

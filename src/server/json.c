@@ -19,9 +19,9 @@ int lar_utf8_length(const unsigned char *text, size_t length) {
         if ((text[i] & 0xc0) != 0x80) return 0;
         code = code << 6 | (text[i] & 0x3fu);
     }
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
     bool surrogate = code >= 0xd800 && code <= 0xdfff;
-    return code < least[bytes] || code > 0x10ffff || surrogate ? 0 : bytes;
+    return code < min[bytes] || code > 0x10ffff || surrogate ? 0 : bytes;
 }
 
 static void add(lar_json *json, const char *text, size_t length) {

@@ -60,8 +60,8 @@ typedef enum key_kind { IS_STRING, IS_WHOLE, IS_REAL, IS_BOOLEAN, IS_VECTOR } ke
 typedef struct key_row {
     const char *name;
     key_kind kind;
-    double least, most; /* of numbers */
-    int count;          /* of a vector's numbers */
+    double min, max; /* of numbers */
+    int count;       /* of a vector's numbers */
 } key_row;
 
 /* Whole numbers stay below 2^53, where every one is a double. */
@@ -92,42 +92,42 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
 
 #define BIT(key) (1u << KEY_##key)
 
-/* Beside `do`, by lar_wish_kind. */
+/* Beside `do`, by lar_command_kind. */
 static const struct {
     const char *name;
     uint32_t needed, allowed;
-} wish_table[] = {
-    [LAR_WISH_FRAME] = {"frame", 0, BIT(FIELD)},
-    [LAR_WISH_FORCES] = {"forces", BIT(TOOL) | BIT(AFTER), 0},
-    [LAR_WISH_GRAB] = {"grab", BIT(HAND) | BIT(POINT), 0},
-    [LAR_WISH_PULL] = {"pull", BIT(HAND) | BIT(TO), 0},
-    [LAR_WISH_RELEASE] = {"release", BIT(HAND), 0},
-    [LAR_WISH_TOOL] = {"tool", BIT(TOOL) | BIT(POSITION), BIT(ORIENTATION) | BIT(OPENING)},
-    [LAR_WISH_PLAY] = {"play", 0, 0},
-    [LAR_WISH_PAUSE] = {"pause", 0, 0},
-    [LAR_WISH_STEP] = {"step", BIT(STEPS), 0},
-    [LAR_WISH_RESET] = {"reset", 0, 0},
-    [LAR_WISH_PACE] = {"pace", BIT(VALUE), 0},
-    [LAR_WISH_RECORD] = {"record", BIT(ON), 0},
-    [LAR_WISH_SAVE] = {"save", 0, 0},
-    [LAR_WISH_LOAD] = {"load", 0, BIT(NAME)},
-    [LAR_WISH_REPLAY] = {"replay", 0, BIT(NAME)},
-    [LAR_WISH_SEEK] = {"seek", BIT(TIME), 0},
-    [LAR_WISH_INSPECT] = {"inspect", 0, BIT(NODE) | BIT(FACE) | BIT(ENERGY)},
-    [LAR_WISH_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0},
-    [LAR_WISH_GRAVITY] = {"gravity", 0, BIT(TO)},
-    [LAR_WISH_DAMPING] = {"damping", 0, BIT(VALUE)},
-    [LAR_WISH_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)},
-    [LAR_WISH_ADD_TOOL] = {"add_tool", BIT(SHAPE) | BIT(RADIUS), BIT(LENGTH)},
-    [LAR_WISH_REMOVE_TOOL] = {"remove_tool", BIT(TOOL), 0}};
-enum { WISHES = sizeof wish_table / sizeof wish_table[0] };
+} command_table[] = {
+    [LAR_COMMAND_FRAME] = {"frame", 0, BIT(FIELD)},
+    [LAR_COMMAND_FORCES] = {"forces", BIT(TOOL) | BIT(AFTER), 0},
+    [LAR_COMMAND_GRAB] = {"grab", BIT(HAND) | BIT(POINT), 0},
+    [LAR_COMMAND_PULL] = {"pull", BIT(HAND) | BIT(TO), 0},
+    [LAR_COMMAND_RELEASE] = {"release", BIT(HAND), 0},
+    [LAR_COMMAND_TOOL] = {"tool", BIT(TOOL) | BIT(POSITION), BIT(ORIENTATION) | BIT(OPENING)},
+    [LAR_COMMAND_PLAY] = {"play", 0, 0},
+    [LAR_COMMAND_PAUSE] = {"pause", 0, 0},
+    [LAR_COMMAND_STEP] = {"step", BIT(STEPS), 0},
+    [LAR_COMMAND_RESET] = {"reset", 0, 0},
+    [LAR_COMMAND_PACE] = {"pace", BIT(VALUE), 0},
+    [LAR_COMMAND_RECORD] = {"record", BIT(ON), 0},
+    [LAR_COMMAND_SAVE] = {"save", 0, 0},
+    [LAR_COMMAND_LOAD] = {"load", 0, BIT(NAME)},
+    [LAR_COMMAND_REPLAY] = {"replay", 0, BIT(NAME)},
+    [LAR_COMMAND_SEEK] = {"seek", BIT(TIME), 0},
+    [LAR_COMMAND_INSPECT] = {"inspect", 0, BIT(NODE) | BIT(FACE) | BIT(ENERGY)},
+    [LAR_COMMAND_SLICE] = {"slice", BIT(AXIS) | BIT(INDEX), 0},
+    [LAR_COMMAND_GRAVITY] = {"gravity", 0, BIT(TO)},
+    [LAR_COMMAND_DAMPING] = {"damping", 0, BIT(VALUE)},
+    [LAR_COMMAND_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)},
+    [LAR_COMMAND_ADD_TOOL] = {"add_tool", BIT(SHAPE) | BIT(RADIUS), BIT(LENGTH)},
+    [LAR_COMMAND_REMOVE_TOOL] = {"remove_tool", BIT(TOOL), 0}};
+enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 
 /* ---- reading ---------------------------------------------------------------------------- */
 
 typedef struct reader {
     const char *at, *end;
     uint32_t seen; /* keys, as bits */
-    char text[KEYS][LAR_NAME_MOST + 1];
+    char text[KEYS][LAR_NAME_MAX + 1];
     double number[KEYS][4];
     lar_close close;
     char *reason;
@@ -187,18 +187,18 @@ static bool read_escape(reader *r, char *out) {
     return true;
 }
 
-/* A string of at most LAR_NAME_MOST characters; longer ones can be nothing we know. */
-static bool read_string(reader *r, char text[LAR_NAME_MOST + 1]) {
+/* A string of at most LAR_NAME_MAX characters; longer ones can be nothing we know. */
+static bool read_string(reader *r, char text[LAR_NAME_MAX + 1]) {
     size_t length = 0;
     if (!take(r, '"')) return false;
     while (r->at < r->end && *r->at != '"') {
         char c = *r->at++;
         if ((unsigned char)c < 0x20) return false;
         if (c == '\\' && !read_escape(r, &c)) return false;
-        if (length < LAR_NAME_MOST)
+        if (length < LAR_NAME_MAX)
             text[length++] = c;
         else
-            text[LAR_NAME_MOST - 1] = 0x7f;
+            text[LAR_NAME_MAX - 1] = 0x7f;
     }
     text[length] = '\0';
     return take(r, '"');
@@ -253,9 +253,9 @@ static bool read_numbers(reader *r, const key_row *row, double *value) {
         if ((i > 0 && !take(r, ',')) || !read_number(r, &value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be %s%.0d number%s", row->name,
                           vector ? "an array of " : "a", vector ? count : 0, vector ? "s" : "");
-        if (value[i] < row->least || value[i] > row->most)
-            return refuse(r, LAR_CLOSE_POLICY, "%s must lie between %g and %g", row->name,
-                          row->least, row->most);
+        if (value[i] < row->min || value[i] > row->max)
+            return refuse(r, LAR_CLOSE_POLICY, "%s must lie between %g and %g", row->name, row->min,
+                          row->max);
         if (row->kind == IS_WHOLE && value[i] != floor(value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be a whole number", row->name);
     }
@@ -279,7 +279,7 @@ static bool read_value(reader *r, key_id key) {
 }
 
 static bool read_member(reader *r) {
-    char name[LAR_NAME_MOST + 1];
+    char name[LAR_NAME_MAX + 1];
     if (!read_string(r, name)) return refuse(r, LAR_CLOSE_POLICY, "a key must be a string");
     key_id key = 0;
     while (key < KEYS && strcmp(key_table[key].name, name) != 0) key++;
@@ -306,101 +306,104 @@ static bool read_object(reader *r) {
 
 /* ---- meaning ---------------------------------------------------------------------------- */
 
-static bool check_keys(reader *r, lar_wish_kind *kind) {
+static bool check_keys(reader *r, lar_command_kind *kind) {
     if (!(r->seen & BIT(DO))) return refuse(r, LAR_CLOSE_POLICY, "the key do is missing");
     int found = 0;
-    while (found < WISHES && strcmp(wish_table[found].name, r->text[KEY_DO]) != 0) found++;
-    if (found == WISHES) return refuse(r, LAR_CLOSE_POLICY, "do has a value that is none of ours");
-    *kind = (lar_wish_kind)found;
-    uint32_t needed = wish_table[found].needed, given = r->seen & ~BIT(DO);
+    while (found < COMMANDS && strcmp(command_table[found].name, r->text[KEY_DO]) != 0) found++;
+    if (found == COMMANDS)
+        return refuse(r, LAR_CLOSE_POLICY, "do has a value that is none of ours");
+    *kind = (lar_command_kind)found;
+    uint32_t needed = command_table[found].needed, given = r->seen & ~BIT(DO);
     for (int key = 0; key < KEYS; key++) {
         uint32_t bit = 1u << key;
         if (needed & ~given & bit)
-            return refuse(r, LAR_CLOSE_POLICY, "%s needs the key %s", wish_table[found].name,
+            return refuse(r, LAR_CLOSE_POLICY, "%s needs the key %s", command_table[found].name,
                           key_table[key].name);
-        if (given & ~needed & ~wish_table[found].allowed & bit)
-            return refuse(r, LAR_CLOSE_POLICY, "%s has no key %s", wish_table[found].name,
+        if (given & ~needed & ~command_table[found].allowed & bit)
+            return refuse(r, LAR_CLOSE_POLICY, "%s has no key %s", command_table[found].name,
                           key_table[key].name);
     }
     return true;
 }
 
-static bool set_field(reader *r, lar_wish *wish) {
+static bool set_field(reader *r, lar_command *command) {
     if (!(r->seen & BIT(FIELD))) return true;
     for (int i = 0; i < LAR_FIELDS; i++)
         if (strcmp(lar_field_names[i].name, r->text[KEY_FIELD]) == 0) {
-            wish->field = lar_field_names[i].field;
+            command->field = lar_field_names[i].field;
             return true;
         }
     return refuse(r, LAR_CLOSE_POLICY, "field has a value that is none of ours");
 }
 
-static bool set_shape(reader *r, lar_wish *wish) {
-    wish->radius = r->number[KEY_RADIUS][0];
-    wish->length = r->number[KEY_LENGTH][0];
+static bool set_shape(reader *r, lar_command *command) {
+    command->radius = r->number[KEY_RADIUS][0];
+    command->length = r->number[KEY_LENGTH][0];
     if (!(r->seen & BIT(SHAPE))) return true;
     for (int i = 0; i < LAR_TOOL_HAND; i++)
         if (strcmp(lar_shape_names[i], r->text[KEY_SHAPE]) == 0) {
-            wish->shape = (lar_tool_shape)i;
+            command->shape = (lar_tool_shape)i;
             return true;
         }
     return refuse(r, LAR_CLOSE_POLICY, "shape has a value that is none of ours");
 }
 
-static bool set_tool(reader *r, int32_t tools, lar_wish *wish) {
+static bool set_tool(reader *r, int32_t tools, lar_command *command) {
     if (!(r->seen & BIT(TOOL))) return true;
     if (r->number[KEY_TOOL][0] >= tools)
         return refuse(r, LAR_CLOSE_POLICY, "there are %d tools, counted from 0", (int)tools);
-    wish->tool = (int32_t)r->number[KEY_TOOL][0];
-    wish->turns = r->seen & BIT(ORIENTATION);
-    wish->opens = r->seen & BIT(OPENING);
-    wish->opening = r->number[KEY_OPENING][0];
-    if (!wish->turns) return true;
+    command->tool = (int32_t)r->number[KEY_TOOL][0];
+    command->turns = r->seen & BIT(ORIENTATION);
+    command->opens = r->seen & BIT(OPENING);
+    command->opening = r->number[KEY_OPENING][0];
+    if (!command->turns) return true;
     double square = 0;
     for (int i = 0; i < 4; i++)
         square += r->number[KEY_ORIENTATION][i] * r->number[KEY_ORIENTATION][i];
     if (!(fabs(square - 1) < 1e-3))
         return refuse(r, LAR_CLOSE_POLICY, "orientation must be a unit quaternion w, x, y, z");
-    for (int i = 0; i < 4; i++) wish->orientation[i] = r->number[KEY_ORIENTATION][i] / sqrt(square);
+    for (int i = 0; i < 4; i++)
+        command->orientation[i] = r->number[KEY_ORIENTATION][i] / sqrt(square);
     return true;
 }
 
-static bool set_pace(reader *r, lar_wish *wish) {
+static bool set_pace(reader *r, lar_command *command) {
     double pace = r->number[KEY_VALUE][0];
-    if (wish->kind != LAR_WISH_PACE) return true;
-    wish->pace = pace;
+    if (command->kind != LAR_COMMAND_PACE) return true;
+    command->pace = pace;
     if (pace == 0 || (pace >= 0.001 && pace <= 100)) return true;
     return refuse(r, LAR_CLOSE_POLICY, "value must lie between 0.001 and 100, or be 0");
 }
 
-static bool set_rest(reader *r, lar_wish *wish) {
-    key_id point = wish->kind == LAR_WISH_GRAB                                     ? KEY_POINT
-                   : wish->kind == LAR_WISH_PULL || wish->kind == LAR_WISH_GRAVITY ? KEY_TO
-                                                                                   : KEY_POSITION;
-    memcpy(wish->point, r->number[point], sizeof wish->point);
-    wish->hand = (int32_t)r->number[KEY_HAND][0];
-    wish->after = (uint64_t)r->number[KEY_AFTER][0];
-    wish->steps = (uint64_t)r->number[KEY_STEPS][0];
-    wish->on = r->number[KEY_ON][0] != 0;
-    wish->time = r->number[KEY_TIME][0];
-    wish->node = r->seen & BIT(NODE) ? (int32_t)r->number[KEY_NODE][0] : -1;
-    wish->face = r->seen & BIT(FACE) ? (int32_t)r->number[KEY_FACE][0] : -1;
-    wish->axis = (int32_t)r->number[KEY_AXIS][0];
-    wish->index = (int32_t)r->number[KEY_INDEX][0];
-    wish->valued = r->seen & (BIT(TO) | BIT(VALUE));
-    wish->value = r->number[KEY_VALUE][0];
-    wish->material = r->seen & BIT(MATERIAL) ? (int32_t)r->number[KEY_MATERIAL][0] : -1;
-    wish->energy = r->number[KEY_ENERGY][0] != 0;
-    memcpy(wish->name, r->text[KEY_NAME], sizeof wish->name);
+static bool set_rest(reader *r, lar_command *command) {
+    key_id point = command->kind == LAR_COMMAND_GRAB ? KEY_POINT
+                   : command->kind == LAR_COMMAND_PULL || command->kind == LAR_COMMAND_GRAVITY
+                       ? KEY_TO
+                       : KEY_POSITION;
+    memcpy(command->point, r->number[point], sizeof command->point);
+    command->hand = (int32_t)r->number[KEY_HAND][0];
+    command->after = (uint64_t)r->number[KEY_AFTER][0];
+    command->steps = (uint64_t)r->number[KEY_STEPS][0];
+    command->on = r->number[KEY_ON][0] != 0;
+    command->time = r->number[KEY_TIME][0];
+    command->node = r->seen & BIT(NODE) ? (int32_t)r->number[KEY_NODE][0] : -1;
+    command->face = r->seen & BIT(FACE) ? (int32_t)r->number[KEY_FACE][0] : -1;
+    command->axis = (int32_t)r->number[KEY_AXIS][0];
+    command->index = (int32_t)r->number[KEY_INDEX][0];
+    command->valued = r->seen & (BIT(TO) | BIT(VALUE));
+    command->value = r->number[KEY_VALUE][0];
+    command->material = r->seen & BIT(MATERIAL) ? (int32_t)r->number[KEY_MATERIAL][0] : -1;
+    command->energy = r->number[KEY_ENERGY][0] != 0;
+    memcpy(command->name, r->text[KEY_NAME], sizeof command->name);
     return true;
 }
 
-lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish *wish,
-                        char reason[LAR_REASON_BYTES]) {
+lar_close lar_command_read(const char *text, size_t length, int32_t tools, lar_command *command,
+                           char reason[LAR_REASON_BYTES]) {
     reader r = {.at = text, .end = text + length, .reason = reason};
-    lar_wish found = {0};
-    if (length > LAR_MESSAGE_MOST)
-        refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MOST);
+    lar_command found = {0};
+    if (length > LAR_MESSAGE_MAX)
+        refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MAX);
     for (size_t i = 0; i < length && r.close == LAR_CLOSE_NOT;) {
         int bytes = lar_utf8_length((const unsigned char *)text + i, length - i);
         if (bytes == 0) refuse(&r, LAR_CLOSE_TEXT, "a message must be UTF-8");
@@ -409,6 +412,6 @@ lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish
     bool good = r.close == LAR_CLOSE_NOT && read_object(&r) && check_keys(&r, &found.kind) &&
                 set_field(&r, &found) && set_shape(&r, &found) && set_tool(&r, tools, &found) &&
                 set_pace(&r, &found) && set_rest(&r, &found);
-    if (good) *wish = found;
+    if (good) *command = found;
     return r.close;
 }

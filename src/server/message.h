@@ -14,10 +14,10 @@
 #include "lariat.h"
 
 enum {
-    LAR_MESSAGE_MOST = 1024, /* bytes */
-    LAR_NAME_MOST = 64,      /* of a saved state's name */
-    LAR_REASON_BYTES = 124,  /* a close frame has room for 123 and no zero */
-    LAR_VIEWER_HANDS = 4     /* that one viewer may have */
+    LAR_MESSAGE_MAX = 1024, /* bytes */
+    LAR_NAME_MAX = 64,      /* of a saved state's name */
+    LAR_REASON_BYTES = 124, /* a close frame has room for 123 and no zero */
+    LAR_VIEWER_HANDS = 4    /* that one viewer may have */
 };
 
 /* Why a connection is closed (RFC 6455, 7.4). */
@@ -33,35 +33,35 @@ typedef enum lar_close {
     LAR_CLOSE_FULL = 4003
 } lar_close;
 
-typedef enum lar_wish_kind {
-    LAR_WISH_FRAME = 0,
-    LAR_WISH_FORCES,
-    LAR_WISH_GRAB,
-    LAR_WISH_PULL,
-    LAR_WISH_RELEASE,
-    LAR_WISH_TOOL,
-    LAR_WISH_PLAY,
-    LAR_WISH_PAUSE,
-    LAR_WISH_STEP,
-    LAR_WISH_RESET,
-    LAR_WISH_PACE,
-    LAR_WISH_RECORD,
-    LAR_WISH_SAVE,
-    LAR_WISH_LOAD,
-    LAR_WISH_REPLAY,
-    LAR_WISH_SEEK,
-    LAR_WISH_INSPECT,
-    LAR_WISH_SLICE,
-    LAR_WISH_GRAVITY,
-    LAR_WISH_DAMPING,
-    LAR_WISH_STIFFNESS,
-    LAR_WISH_ADD_TOOL,
-    LAR_WISH_REMOVE_TOOL
-} lar_wish_kind;
+typedef enum lar_command_kind {
+    LAR_COMMAND_FRAME = 0,
+    LAR_COMMAND_FORCES,
+    LAR_COMMAND_GRAB,
+    LAR_COMMAND_PULL,
+    LAR_COMMAND_RELEASE,
+    LAR_COMMAND_TOOL,
+    LAR_COMMAND_PLAY,
+    LAR_COMMAND_PAUSE,
+    LAR_COMMAND_STEP,
+    LAR_COMMAND_RESET,
+    LAR_COMMAND_PACE,
+    LAR_COMMAND_RECORD,
+    LAR_COMMAND_SAVE,
+    LAR_COMMAND_LOAD,
+    LAR_COMMAND_REPLAY,
+    LAR_COMMAND_SEEK,
+    LAR_COMMAND_INSPECT,
+    LAR_COMMAND_SLICE,
+    LAR_COMMAND_GRAVITY,
+    LAR_COMMAND_DAMPING,
+    LAR_COMMAND_STIFFNESS,
+    LAR_COMMAND_ADD_TOOL,
+    LAR_COMMAND_REMOVE_TOOL
+} lar_command_kind;
 
 /* One message. What its kind does not have is zero. */
-typedef struct lar_wish {
-    lar_wish_kind kind;
+typedef struct lar_command {
+    lar_command_kind kind;
     lar_field field; /* frame; 0: none */
     int32_t tool;    /* forces, tool, remove_tool */
     int32_t hand;    /* grab, pull, release: 0..LAR_VIEWER_HANDS-1 */
@@ -82,13 +82,13 @@ typedef struct lar_wish {
     bool energy;          /* inspect */
     lar_tool_shape shape; /* add_tool, as the next two [m] */
     double radius, length;
-    char name[LAR_NAME_MOST + 1]; /* load; "": the last one; replay; "": ends */
-} lar_wish;
+    char name[LAR_NAME_MAX + 1]; /* load; "": the last one; replay; "": ends */
+} lar_command;
 
 /* Reads `length` bytes. Returns LAR_CLOSE_NOT, or why the connection must end, with a sentence in
- * `reason`; *wish is set on success only. `tools`: how many there are. */
-lar_close lar_wish_read(const char *text, size_t length, int32_t tools, lar_wish *wish,
-                        char reason[LAR_REASON_BYTES]);
+ * `reason`; *command is set on success only. `tools`: how many there are. */
+lar_close lar_command_read(const char *text, size_t length, int32_t tools, lar_command *command,
+                           char reason[LAR_REASON_BYTES]);
 
 /* Fields that a viewer can ask for, in the order of the protocol. */
 typedef struct lar_field_name {

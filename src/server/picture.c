@@ -88,7 +88,7 @@ static lar_status make_surface(const lar_model *model, const float *processor, l
 }
 
 lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
-                                lar_blob *surface, lar_blob *riding, lar_error *error) {
+                                lar_blob *surface, lar_blob *embedded, lar_error *error) {
     size_t nodes = (size_t)model->mesh.node_count;
     float *processor = lar_calloc(nodes, sizeof *processor);
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
@@ -101,7 +101,7 @@ lar_status lar_surface_messages(const lar_simulation *simulation, const lar_mode
                                       processor, error);
     if (!status) status = make_surface(model, processor, surface, error);
     if (!status) status = lar_shown_create(model, &shown, error);
-    if (!status) status = lar_riding_message(model, &shown, processor, riding, error);
+    if (!status) status = lar_embedded_message(model, &shown, processor, embedded, error);
     lar_shown_destroy(&shown);
     free(processor);
     free(u);
@@ -216,7 +216,7 @@ typedef struct frame_head {
     double time;
     uint64_t hash;
     uint32_t positions[2], field, values;
-    double least, most;
+    double min, max;
     uint32_t tools, zero;
 } frame_head;
 _Static_assert(sizeof(frame_head) == LAR_FRAME_HEADER, "the header of a frame has no gaps");
@@ -246,8 +246,8 @@ static lar_status write_frame(lar_painter *painter, int field, const float *posi
                        .positions = {hash[0], hash[1]},
                        .field = lar_field_names[field].field,
                        .values = field > 0 ? (uint32_t)n : 0,
-                       .least = range[0],
-                       .most = range[1],
+                       .min = range[0],
+                       .max = range[1],
                        .tools = (uint32_t)painter->session->tools};
     memcpy(out, &head, sizeof head);
     frame->length = frame_bytes(painter, field > 0);

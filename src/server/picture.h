@@ -1,5 +1,5 @@
 /* What viewers see: the surface, once, and frames of it (binary messages 1 and 2 of
- * docs/viewer-protocol.md; the fine surface that may ride on it: riding.h).
+ * docs/viewer-protocol.md; the embedded surface that may ride on it: embedded.h).
  *
  *     model ------------------> surface messages        (once)
  *     snapshot of one step ---> positions, their hash   (once for all viewers)
@@ -9,7 +9,7 @@
 #define LAR_SERVER_PICTURE_H
 
 #include "server/message.h"
-#include "server/riding.h"
+#include "server/embedded.h"
 #include "session/session.h"
 
 enum {
@@ -17,10 +17,10 @@ enum {
     LAR_TOOL_WORDS = 16 /* of a tool in a frame */
 };
 
-/* The surface of a simulation's model, and what rides on it, if anything does. The caller frees
+/* The surface of a simulation's model, and its embedded surface, if it has one. The caller frees
  * the memory of both. */
 lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
-                                lar_blob *surface, lar_blob *riding, lar_error *error);
+                                lar_blob *surface, lar_blob *embedded, lar_error *error);
 
 /* Frames of one step, one per field that somebody wants. */
 typedef struct lar_picture {

@@ -11,7 +11,7 @@
 #include "server/state.h"
 
 void lar_saved_add(lar_saved_list *list, const char *name) {
-    if (list->count == LAR_SAVES_MOST) {
+    if (list->count == LAR_SAVES_MAX) {
         list->count--;
         memmove(list->name, list->name + 1, (size_t)list->count * sizeof *list->name);
     }
@@ -27,10 +27,10 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name) {
 /* ---- what lies in the folder ------------------------------------------------------------------
  */
 
-enum { FOUND_MOST = 4096 };
+enum { FOUND_MAX = 4096 };
 
 typedef struct found_file {
-    char name[LAR_NAME_MOST + 1];
+    char name[LAR_NAME_MAX + 1];
     struct timespec at;
     bool recording;
 } found_file;
@@ -49,7 +49,7 @@ static bool good_name(const char *name) {
         if ((unsigned char)*c < 0x20 || (unsigned char)*c >= 0x7f || *c == '"' || *c == '\\' ||
             *c == '/')
             return false;
-    return length > 0 && length <= LAR_NAME_MOST && name[0] != '.';
+    return length > 0 && length <= LAR_NAME_MAX && name[0] != '.';
 }
 
 /* Whether it belongs to what is simulated here. */
@@ -96,14 +96,14 @@ bool lar_server_saves_full(const lar_server *server) {
             bytes += (double)about.st_size;
     }
     if (folder) closedir(folder);
-    return bytes >= server->save_most;
+    return bytes >= server->save_max;
 }
 
 void lar_server_list_saved(lar_server *server) {
     DIR *folder = server->save_folder ? opendir(server->save_folder) : NULL;
-    found_file *found = folder ? lar_calloc(FOUND_MOST, sizeof *found) : NULL;
+    found_file *found = folder ? lar_calloc(FOUND_MAX, sizeof *found) : NULL;
     int count = 0;
-    for (struct dirent *entry = found ? readdir(folder) : NULL; entry && count < FOUND_MOST;
+    for (struct dirent *entry = found ? readdir(folder) : NULL; entry && count < FOUND_MAX;
          entry = readdir(folder))
         count += look_at(server, entry->d_name, &found[count]);
     if (count > 0) qsort(found, (size_t)count, sizeof *found, older_first);

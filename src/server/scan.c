@@ -29,13 +29,13 @@ lar_status lar_scan_read(const char *path, lar_scan *scan, lar_error *error) {
     if (!path) return LAR_OK;
     lar_status status = lar_image_read(path, &scan->image, error);
     if (status) return status;
-    size_t most = 0;
+    size_t max = 0;
     for (int axis = 0; axis < 3; axis++)
-        if (slice_bytes(&scan->image, axis) > most) most = slice_bytes(&scan->image, axis);
-    scan->slice.memory = lar_calloc_aligned(LAR_HEADROOM + most, 1);
+        if (slice_bytes(&scan->image, axis) > max) max = slice_bytes(&scan->image, axis);
+    scan->slice.memory = lar_calloc_aligned(LAR_HEADROOM + max, 1);
     if (scan->slice.memory) return LAR_OK;
     lar_scan_clear(scan);
-    return lar_fail_memory(error, most, "slices of a scan for viewers");
+    return lar_fail_memory(error, max, "slices of a scan for viewers");
 }
 
 void lar_scan_clear(lar_scan *scan) {

@@ -80,15 +80,15 @@ static void write_fields(lar_json *json) {
 }
 
 /* Only what viewers get: not one that is too large. */
-static lar_status write_riding(lar_json *json, const lar_model *model, lar_error *error) {
-    lar_embedded_info riding;
+static lar_status write_embedded(lar_json *json, const lar_model *model, lar_error *error) {
+    lar_embedded_info embedded;
     lar_shown shown;
     lar_status status = lar_shown_create(model, &shown, error);
     if (status) return status;
-    if (shown.rides && lar_model_embedded(model, &riding)) {
+    if (shown.has_embedded && lar_model_embedded(model, &embedded)) {
         lar_json_open(json, "riding", '{');
-        lar_json_integer(json, "vertices", riding.vertices);
-        lar_json_integer(json, "triangles", riding.triangles);
+        lar_json_integer(json, "vertices", embedded.vertices);
+        lar_json_integer(json, "triangles", embedded.triangles);
         lar_json_integer(json, "nodes", shown.count - shown.surface);
         lar_json_close(json, '}');
     }
@@ -145,7 +145,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_integer(json, "nodes", surface.nodes);
     lar_json_integer(json, "faces", surface.faces);
     lar_json_close(json, '}');
-    status = write_riding(json, server->model, error);
+    status = write_embedded(json, server->model, error);
     if (status) return status;
     lar_json_vector(json, "lower", info.lower, 3);
     lar_json_vector(json, "upper", info.upper, 3);
@@ -277,7 +277,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
         lar_json_number(json, "depth", force->depth);
         lar_json_number(json, "apart", force->apart);
         lar_json_boolean(json, "limited", force->limited != 0);
-        lar_json_number(json, "grasp", force->grasp);
+        lar_json_number(json, "grasp", force->grasp_force);
         lar_json_text(json, "by", lar_hands_by(&server->hands, i, viewer->number, now));
         lar_json_close(json, '}');
     }
@@ -290,7 +290,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
 
 void lar_viewer_text(lar_viewer *viewer, char *text) {
     if (!text) return;
-    if (viewer->notes == LAR_NOTES_MOST) {
+    if (viewer->notes == LAR_NOTES_MAX) {
         free(viewer->note[0]);
         viewer->notes--;
         memmove(viewer->note, viewer->note + 1, (size_t)viewer->notes * sizeof *viewer->note);
@@ -430,8 +430,8 @@ int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
         failed = send_bytes(viewer, lar_blob_data(&server->surface), server->surface.length,
                             LWS_WRITE_BINARY);
         break;
-    case LAR_DUE_RIDING:
-        failed = send_bytes(viewer, lar_blob_data(&server->riding), server->riding.length,
+    case LAR_DUE_EMBEDDED:
+        failed = send_bytes(viewer, lar_blob_data(&server->embedded), server->embedded.length,
                             LWS_WRITE_BINARY);
         break;
     case LAR_DUE_NOTES:

@@ -1,4 +1,4 @@
-/* The viewers' server: its life, its thread, and its beat. */
+/* The viewers' server: its life, its thread, and its timer. */
 #include "server/state.h"
 
 #include <arpa/inet.h>
@@ -18,21 +18,21 @@
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
  */
-static const lws_usec_t BEAT = 5000, QUICK_BEAT = 2000, IDLE_BEAT = 100000;
-static const int64_t STATUS_EVERY = LAR_SECOND_NS / 10, WATCH_EVERY = LAR_SECOND_NS / 2;
+static const lws_usec_t INTERVAL = 5000, QUICK_INTERVAL = 2000, IDLE_INTERVAL = 100000;
+static const int64_t STATUS_EVERY = LAR_SECOND_NS / 10, CHECK_EVERY = LAR_SECOND_NS / 2;
 /* A picture that would show the same again is held back for so long. */
 static const int64_t STILL = LAR_SECOND_NS / 4;
 /* Pictures: not more often than this, and only every PAINT_SHARE times the time that the last one
  * took both threads, so that they leave most of a core to others. */
 static const int64_t PAINT_EVERY = LAR_SECOND_NS / 125;
 enum { PAINT_SHARE = 4 };
-static const double SAVE_MOST = 4e9; /* [bytes] */
+static const double SAVE_MAX = 4e9; /* [bytes] */
 /* A viewer that takes nothing for so long is closed. */
 static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
-static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MOST + 8.0);
+static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MAX + 8.0);
 
-/* ---- the beat ----------------------------------------------------------------------------------
+/* ---- the timer ---------------------------------------------------------------------------------
  */
 
 void lar_server_take_status(lar_server *server) {
@@ -46,7 +46,7 @@ void lar_server_take_status(lar_server *server) {
         if (viewer->closing == LAR_CLOSE_NOT) lar_viewer_wants(viewer, LAR_DUE_STATUS);
 }
 
-/* Whether a viewer's wish for a picture is to be granted now. */
+/* Whether a viewer's request for a picture is answered now. */
 static bool wants_picture(const lar_viewer *viewer, const lar_session_status *status, int64_t now) {
     if (!viewer->asks || viewer->closing != LAR_CLOSE_NOT || (viewer->due & LAR_DUE_PICTURE))
         return false;
@@ -103,9 +103,9 @@ static uint64_t bytes_received(struct lws *wsi) {
 }
 
 /* Who takes nothing, and who floods us with what is no message (pings). */
-static void watch(lar_server *server, int64_t now) {
-    double seconds = (double)(now - server->watched_at) / (double)LAR_SECOND_NS;
-    server->watched_at = now;
+static void check_session(lar_server *server, int64_t now) {
+    double seconds = (double)(now - server->checked_at) / (double)LAR_SECOND_NS;
+    server->checked_at = now;
     lar_server_sweep(server, now);
     lar_server_watch_recording(server);
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
@@ -118,11 +118,11 @@ static void watch(lar_server *server, int64_t now) {
     }
 }
 
-static void beat(lws_sorted_usec_list_t *sul) {
-    lar_server *server = lws_container_of(sul, lar_server, beat);
+static void on_timer(lws_sorted_usec_list_t *sul) {
+    lar_server *server = lws_container_of(sul, lar_server, timer);
     int64_t now = lar_clock_ns();
     lar_server_collect(server);
-    if (now - server->watched_at >= WATCH_EVERY) watch(server, now);
+    if (now - server->checked_at >= CHECK_EVERY) check_session(server, now);
     if (server->first && now - server->status_at >= STATUS_EVERY) {
         server->status_at = now;
         lar_server_take_status(server);
@@ -130,10 +130,10 @@ static void beat(lws_sorted_usec_list_t *sul) {
     lar_hands_look(&server->hands, now);
     ask_pictures(server, now);
     lar_server_ask_readings(server);
-    lws_usec_t pause = !server->first                   ? IDLE_BEAT
-                       : lar_hands_busy(&server->hands) ? QUICK_BEAT
-                                                        : BEAT;
-    lws_sul_schedule(server->context, 0, &server->beat, beat, pause);
+    lws_usec_t pause = !server->first                   ? IDLE_INTERVAL
+                       : lar_hands_busy(&server->hands) ? QUICK_INTERVAL
+                                                        : INTERVAL;
+    lws_sul_schedule(server->context, 0, &server->timer, on_timer, pause);
 }
 
 /* ---- the thread ---------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ static void *run(void *argument) {
     lar_server *server = argument;
     lar_pin_nowhere(); /* not where a processor computes, whose thread may have started this one */
     setpriority(PRIO_PROCESS, 0, LAR_SERVER_NICE); /* of this thread only, on Linux */
-    lws_sul_schedule(server->context, 0, &server->beat, beat, 1);
+    lws_sul_schedule(server->context, 0, &server->timer, on_timer, 1);
     int64_t spent = lar_clock_thread_ns(), begun = server->paint_begun;
     while (!__atomic_load_n(&server->ending, __ATOMIC_ACQUIRE)) {
         lws_service(server->context, 0);
@@ -167,7 +167,7 @@ static void *run(void *argument) {
         begun = server->paint_begun;
     }
     part(server);
-    lws_sul_cancel(&server->beat);
+    lws_sul_cancel(&server->timer);
     return NULL;
 }
 
@@ -179,7 +179,7 @@ static const lws_retry_bo_t idle_policy = {.secs_since_valid_ping = 5,
 
 static const struct lws_protocols protocol_table[] = {
     {"http", lar_server_http, sizeof(lar_download), 0, 0, NULL, 0},
-    {LAR_PROTOCOL, lar_server_socket, sizeof(lar_viewer), LAR_MESSAGE_MOST + 1, 0, NULL, 0},
+    {LAR_PROTOCOL, lar_server_socket, sizeof(lar_viewer), LAR_MESSAGE_MAX + 1, 0, NULL, 0},
     {NULL, NULL, 0, 0, 0, NULL, 0}};
 
 static lar_status make_context(lar_server *server, lar_error *error) {
@@ -189,7 +189,7 @@ static lar_status make_context(lar_server *server, lar_error *error) {
                                              .timeout_secs = 5,
                                              .keepalive_timeout = 5,
                                              .retry_and_idle_policy = &idle_policy,
-                                             .fd_limit_per_thread = LAR_CONNECTIONS_MOST + 64,
+                                             .fd_limit_per_thread = LAR_CONNECTIONS_MAX + 64,
                                              .options = LWS_SERVER_OPTION_NO_LWS_SYSTEM_STATES,
                                              .user = server};
     info.gid = (gid_t)-1;
@@ -318,7 +318,7 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     lar_status status = lar_server_make_hello(server, error);
     if (!status)
         status = lar_surface_messages(session->simulation, server->model, &server->surface,
-                                      &server->riding, error);
+                                      &server->embedded, error);
     if (!status) status = make_context(server, error);
     if (status) return status;
     status = lar_work_start(&server->work, session, server->model, wake, server, error);
@@ -338,7 +338,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->session = session;
     server->model = model;
     server->listener = server->spare = -1;
-    server->save_most = asked.save_most > 0 ? asked.save_most : SAVE_MOST;
+    server->save_max = asked.save_max > 0 ? asked.save_max : SAVE_MAX;
     lar_status status = choose_address(server, &asked, error);
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
@@ -396,7 +396,7 @@ void lar_server_close(lar_server *server) {
     lar_json_clear(&server->hello);
     lar_json_clear(&server->json);
     free(server->surface.memory);
-    free(server->riding.memory);
+    free(server->embedded.memory);
     free(server->forces.memory);
     free(server->token);
     free(server->watch_token);

@@ -50,14 +50,15 @@ static void read_rights(const lar_server *server, lar_viewer *viewer, struct lws
 }
 
 static void welcome(lar_server *server, lar_viewer *viewer) {
-    unsigned riding = server->riding.length > 0 ? LAR_DUE_RIDING : 0;
-    lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | riding | LAR_DUE_STATUS);
+    unsigned embedded = server->embedded.length > 0 ? LAR_DUE_EMBEDDED : 0;
+    lar_viewer_wants(viewer, LAR_DUE_HELLO | LAR_DUE_SURFACE | embedded | LAR_DUE_STATUS);
     lar_server_take_status(server); /* while nobody was there none was taken */
-    if (!lar_riding_is_too_large(server->model)) return;
+    if (!lar_embedded_is_too_large(server->model)) return;
     char sentence[160];
-    snprintf(sentence, sizeof sentence,
-             "The scene's fine surface is not drawn: it has more than %d triangles or vertices.",
-             LAR_RIDING_MOST);
+    snprintf(
+        sentence, sizeof sentence,
+        "The scene's embedded surface is not drawn: it has more than %d triangles or vertices.",
+        LAR_EMBEDDED_MAX);
     lar_viewer_note(server, viewer, sentence);
 }
 
@@ -77,7 +78,7 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
     if (!viewer->token_is_right)
         lar_viewer_close(viewer, LAR_CLOSE_TOKEN,
                          "the token is missing or wrong; open the address that the engine printed");
-    else if (others >= LAR_VIEWERS_MOST)
+    else if (others >= LAR_VIEWERS_MAX)
         lar_viewer_close(viewer, LAR_CLOSE_FULL, "too many viewers; close another one first");
     else
         welcome(server, viewer);
@@ -109,14 +110,14 @@ static bool may_speak(lar_viewer *viewer) {
 }
 
 static void hear(lar_server *server, lar_viewer *viewer) {
-    lar_wish wish;
+    lar_command command;
     char reason[LAR_REASON_BYTES];
     lar_close wrong =
-        lar_wish_read(viewer->in, viewer->in_length, server->session->tools, &wish, reason);
+        lar_command_read(viewer->in, viewer->in_length, server->session->tools, &command, reason);
     if (wrong)
         lar_viewer_close(viewer, wrong, reason);
     else
-        lar_server_act(server, viewer, &wish);
+        lar_server_act(server, viewer, &command);
 }
 
 /* A part of a message; they come in pieces, however they were sent. */
@@ -127,7 +128,7 @@ static void receive(lar_server *server, lar_viewer *viewer, const char *data, si
         return;
     }
     size_t more = length + lws_remaining_packet_payload(viewer->wsi);
-    if (viewer->in_length + more > LAR_MESSAGE_MOST) {
+    if (viewer->in_length + more > LAR_MESSAGE_MAX) {
         lar_viewer_close(viewer, LAR_CLOSE_SIZE, "a message has at most 1024 bytes");
         return;
     }

@@ -4,7 +4,7 @@
  *                        (checked: Host,|
  *                         Origin, path) '--> upgrade: socket.c, a viewer
  *
- *     viewers --wishes--> hands, session, work        socket.c: what comes in
+ *     viewers -commands-> hands, session, work        socket.c: what comes in
  *     viewers <-- hello, surface, status, frames --   send.c: what goes out
  *
  * One thread serves all connections (libwebsockets' loop); work.h has the second one, for
@@ -26,12 +26,12 @@
 _Static_assert(LWS_PRE <= LAR_HEADROOM, "the headers of libwebsockets fit before a message");
 
 enum {
-    LAR_VIEWERS_MOST = 64,
-    LAR_CONNECTIONS_MOST = 192, /* viewers and others, also half open ones */
-    LAR_STRANGERS_MOST = 64,    /* of them: those that are no viewers */
-    LAR_NOTES_MOST = 8,         /* that wait for a viewer */
+    LAR_VIEWERS_MAX = 64,
+    LAR_CONNECTIONS_MAX = 192, /* viewers and others, also half open ones */
+    LAR_STRANGERS_MAX = 64,    /* of them: those that are no viewers */
+    LAR_NOTES_MAX = 8,         /* that wait for a viewer */
     LAR_SAVE_NUMBERS = 1000,
-    LAR_SAVES_MOST = 64, /* of a kind, that can be named */
+    LAR_SAVES_MAX = 64, /* of a kind, that can be named */
     LAR_HOST_BYTES = 96,
     LAR_MESSAGES_A_SECOND = 300
 };
@@ -41,7 +41,7 @@ enum {
 
 /* Names of files in the folder for saved states, oldest first. */
 typedef struct lar_saved_list {
-    char name[LAR_SAVES_MOST][LAR_NAME_MOST + 1];
+    char name[LAR_SAVES_MAX][LAR_NAME_MAX + 1];
     int count;
 } lar_saved_list;
 
@@ -49,7 +49,7 @@ typedef struct lar_saved_list {
 enum {
     LAR_DUE_HELLO = 1,
     LAR_DUE_SURFACE = 2,
-    LAR_DUE_RIDING = 4,
+    LAR_DUE_EMBEDDED = 4,
     LAR_DUE_NOTES = 8,
     LAR_DUE_FORCES = 16,
     LAR_DUE_PICTURE = 32, /* the server's picture has what it asked for */
@@ -82,10 +82,10 @@ typedef struct lar_viewer {
     int32_t forces_tool;
     uint64_t forces_after;
 
-    char *note[LAR_NOTES_MOST]; /* JSON */
+    char *note[LAR_NOTES_MAX]; /* JSON */
     int notes;
 
-    char in[LAR_MESSAGE_MOST + 1];
+    char in[LAR_MESSAGE_MAX + 1];
     size_t in_length;
     double allowance; /* messages that it may send now */
     int64_t allowed_at;
@@ -115,8 +115,8 @@ struct lar_server {
         struct lws *wsi; /* NULL: free */
         int64_t since;
         bool viewer;
-        bool leaves; /* it has been shown the door */
-    } connection[LAR_CONNECTIONS_MOST];
+        bool leaves; /* it is being closed */
+    } connection[LAR_CONNECTIONS_MAX];
 
     /* The server's thread's. */
     lar_viewer *first;
@@ -124,7 +124,7 @@ struct lar_server {
     lar_work work;
     bool working;
     lar_hands hands;
-    lar_blob surface, riding;
+    lar_blob surface, embedded;
     lar_scan scan;
     lar_picture picture;
     lar_json hello; /* all but its beginning */
@@ -135,18 +135,18 @@ struct lar_server {
         lar_tool_info info;
         lar_tool_pose pose;
         lar_tool_force force;
-    } tool[LAR_TOOLS_MOST];
+    } tool[LAR_TOOLS_MAX];
     double pace;
     lar_saved_list states, recordings;
     int saved_number;
     int64_t saved_at;
-    double save_most;                  /* [bytes] */
-    bool recording_ends;               /* it is asked for */
-    char recording[LAR_NAME_MOST + 1]; /* that is being made, and that is played */
-    char played[LAR_NAME_MOST + 1];
-    lws_sorted_usec_list_t beat;
+    double save_max;                  /* [bytes] */
+    bool recording_ends;              /* it is asked for */
+    char recording[LAR_NAME_MAX + 1]; /* that is being made, and that is played */
+    char played[LAR_NAME_MAX + 1];
+    lws_sorted_usec_list_t timer;
     bool reading; /* a viewer's values are being read */
-    int64_t status_at, watched_at, paint_begun, paint_cost;
+    int64_t status_at, checked_at, paint_begun, paint_cost;
 };
 
 /* ---- server.c ---- */
@@ -166,7 +166,7 @@ typedef struct lar_download {
     size_t sent;
 } lar_download;
 
-/* Ends those that have become nothing for too long. */
+/* Closes those that have not become viewers in time. */
 void lar_server_sweep(lar_server *server, int64_t now);
 /* A connection has become a viewer. */
 void lar_server_promote(lar_server *server, const struct lws *wsi);
@@ -202,7 +202,7 @@ void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t
 
 /* What lies in the folder for saved states, and can be taken up or played here. */
 void lar_server_list_saved(lar_server *server);
-/* Whether what lies there has reached server->save_most. Looks at the disk. */
+/* Whether what lies there has reached server->save_max. Looks at the disk. */
 bool lar_server_saves_full(const lar_server *server);
 void lar_saved_add(lar_saved_list *list, const char *name);
 /* The name, or the last one for ""; NULL: it is not in the list. */
@@ -213,14 +213,14 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name);
 /* Ends a viewer's recording that has grown as large as may be. */
 void lar_server_watch_recording(lar_server *server);
 
-void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_command *command);
 void lar_server_job_ended(lar_server *server, const lar_job_end *end);
 lar_viewer *lar_server_find(const lar_server *server, uint64_t number);
 
 /* ---- inspect.c ----------- */
 
 /* A viewer's question for values, answered when its turn comes; it replaces one that waits. */
-void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_wish *wish);
+void lar_server_inspect(lar_server *server, lar_viewer *viewer, const lar_command *command);
 void lar_server_ask_readings(lar_server *server);
 void lar_server_tell_reading(lar_server *server, const lar_job_end *end);
 

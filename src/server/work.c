@@ -17,22 +17,23 @@ static void inspect(lar_work *work, lar_job_end *end) {
                          &end->reading, &end->error);
 }
 
-/* The wish is told which tool that is. */
-static void add_tool(lar_work *work, lar_wish *wish, lar_error *error) {
+/* The command is told which tool that is. */
+static void add_tool(lar_work *work, lar_command *command, lar_error *error) {
     const lar_tool_info wanted = {
-        .shape = wish->shape, .radius = wish->radius, .length = wish->length};
-    lar_session_add_tool(work->session, &wanted, &wish->tool, error);
+        .shape = command->shape, .radius = command->radius, .length = command->length};
+    lar_session_add_tool(work->session, &wanted, &command->tool, error);
 }
 
-static void set(lar_work *work, const lar_wish *wish, lar_error *error) {
+static void set(lar_work *work, const lar_command *command, lar_error *error) {
     lar_session *session = work->session;
     double damping = lar_model_damping(work->model);
-    if (wish->kind == LAR_WISH_GRAVITY)
-        lar_session_set_gravity(session, wish->valued ? wish->point : NULL, error);
-    else if (wish->kind == LAR_WISH_DAMPING)
-        lar_session_set_damping(session, wish->valued ? wish->value : damping, error);
+    if (command->kind == LAR_COMMAND_GRAVITY)
+        lar_session_set_gravity(session, command->valued ? command->point : NULL, error);
+    else if (command->kind == LAR_COMMAND_DAMPING)
+        lar_session_set_damping(session, command->valued ? command->value : damping, error);
     else
-        lar_session_set_stiffness(session, wish->material, wish->valued ? wish->value : 1, error);
+        lar_session_set_stiffness(session, command->material, command->valued ? command->value : 1,
+                                  error);
 }
 
 static void do_job(lar_work *work, lar_job_end *end) {
@@ -40,33 +41,33 @@ static void do_job(lar_work *work, lar_job_end *end) {
     lar_error *error = &end->error;
     error->status = LAR_OK;
     switch (job->kind) {
-    case LAR_WISH_RESET:
+    case LAR_COMMAND_RESET:
         lar_session_reset(work->session, error);
         break;
-    case LAR_WISH_SAVE:
+    case LAR_COMMAND_SAVE:
         lar_session_save(work->session, job->path, error);
         break;
-    case LAR_WISH_LOAD:
+    case LAR_COMMAND_LOAD:
         lar_session_load(work->session, job->path, error);
         break;
-    case LAR_WISH_RECORD:
+    case LAR_COMMAND_RECORD:
         lar_session_record(work->session, job->on ? job->path : NULL, error);
         break;
-    case LAR_WISH_REPLAY:
+    case LAR_COMMAND_REPLAY:
         lar_session_replay(work->session, job->name[0] ? job->path : NULL, error);
         break;
-    case LAR_WISH_INSPECT:
+    case LAR_COMMAND_INSPECT:
         inspect(work, end);
         break;
-    case LAR_WISH_GRAVITY:
-    case LAR_WISH_DAMPING:
-    case LAR_WISH_STIFFNESS:
+    case LAR_COMMAND_GRAVITY:
+    case LAR_COMMAND_DAMPING:
+    case LAR_COMMAND_STIFFNESS:
         set(work, &job->setting, error);
         break;
-    case LAR_WISH_ADD_TOOL:
+    case LAR_COMMAND_ADD_TOOL:
         add_tool(work, &job->setting, error);
         break;
-    case LAR_WISH_REMOVE_TOOL:
+    case LAR_COMMAND_REMOVE_TOOL:
         lar_session_remove_tool(work->session, job->setting.tool, error);
         break;
     default:
@@ -82,7 +83,7 @@ static void next_job(lar_work *work) {
     pthread_mutex_unlock(&work->lock);
     do_job(work, &end);
     pthread_mutex_lock(&work->lock);
-    if (work->ends == LAR_JOBS_MOST) { /* nobody collects them: the oldest goes */
+    if (work->ends == LAR_JOBS_MAX) { /* nobody collects them: the oldest goes */
         work->ends--;
         memmove(work->end, work->end + 1, (size_t)work->ends * sizeof *work->end);
     }
@@ -177,7 +178,7 @@ bool lar_work_want(lar_work *work, unsigned fields) {
 
 bool lar_work_ask(lar_work *work, const lar_job *job) {
     pthread_mutex_lock(&work->lock);
-    bool room = work->jobs < LAR_JOBS_MOST;
+    bool room = work->jobs < LAR_JOBS_MAX;
     if (room) {
         work->job[work->jobs++] = *job;
         pthread_cond_signal(&work->bell);

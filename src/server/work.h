@@ -15,16 +15,16 @@
 #include "server/picture.h"
 #include "server/reading.h"
 
-enum { LAR_JOBS_MOST = 16, LAR_PATH_MOST = 1024, LAR_SERVER_NICE = 5 };
+enum { LAR_JOBS_MAX = 16, LAR_PATH_MAX = 1024, LAR_SERVER_NICE = 5 };
 
 typedef struct lar_job {
-    lar_wish_kind kind; /* reset, save, load, record, replay, inspect, gravity, ... */
+    lar_command_kind kind; /* reset, save, load, record, replay, inspect, gravity, ... */
     uint64_t viewer;
-    bool on;                      /* record */
-    lar_question question;        /* inspect */
-    lar_wish setting;             /* gravity, damping, stiffness, add_tool, remove_tool */
-    char name[LAR_NAME_MOST + 1]; /* of the file, without its folder */
-    char path[LAR_PATH_MOST];
+    bool on;                     /* record */
+    lar_question question;       /* inspect */
+    lar_command setting;         /* gravity, damping, stiffness, add_tool, remove_tool */
+    char name[LAR_NAME_MAX + 1]; /* of the file, without its folder */
+    char path[LAR_PATH_MAX];
 } lar_job;
 
 /* How a job ended. */
@@ -51,9 +51,9 @@ typedef struct lar_work {
     lar_picture canvas;    /* the worker's own */
     bool painted;          /* `picture` is new, or `paint_error` is */
     lar_error paint_error; /* status LAR_OK: there is a picture */
-    lar_job job[LAR_JOBS_MOST];
+    lar_job job[LAR_JOBS_MAX];
     int32_t jobs;
-    lar_job_end end[LAR_JOBS_MOST];
+    lar_job_end end[LAR_JOBS_MAX];
     int32_t ends;
 } lar_work;
 

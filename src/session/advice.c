@@ -29,7 +29,7 @@ static double rounded(double count) {
     return floor(count / unit) * unit;
 }
 
-static void advise_smaller(const lar_advice *a, double ratio, double least, double allowed,
+static void advise_smaller(const lar_advice *a, double ratio, double min, double allowed,
                            lar_session_status *status) {
     double wanted = ceil(ratio * a->busy / EFFICIENCY);
     char way[64] = "";
@@ -41,15 +41,15 @@ static void advise_smaller(const lar_advice *a, double ratio, double least, doub
     snprintf(status->slow_advice, sizeof status->slow_advice,
              "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %sa mesh "
              "of about %.0f elements, or a slower pace",
-             1e6 * least, 1e6 * allowed / ROOM, way, rounded(a->elements / ratio));
+             1e6 * min, 1e6 * allowed / ROOM, way, rounded(a->elements / ratio));
 }
 
 void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
     status->slow_cause = LAR_SLOW_NOT;
     status->slow_advice[0] = '\0';
-    if (!status->slow_motion || status->step_least <= 0 || pace <= 0) return;
-    double allowed = ROOM * a->time_step / pace, least = status->step_least;
-    if (least > allowed && status->step_parts > 1 && least / status->step_parts <= allowed) {
+    if (!status->slow_motion || status->step_min <= 0 || pace <= 0) return;
+    double allowed = ROOM * a->time_step / pace, min = status->step_min;
+    if (min > allowed && status->step_parts > 1 && min / status->step_parts <= allowed) {
         status->slow_cause = LAR_SLOW_DIVISION;
         bool stiffer = a->stiffer >= status->step_parts;
         const char *why = stiffer ? "because the body was made stiffer than the model has it; make "
@@ -59,15 +59,15 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
         snprintf(status->slow_advice, sizeof status->slow_advice,
                  "steps are divided by %d %s, or choose a slower pace", (int)status->step_parts,
                  why);
-    } else if (least > allowed) {
+    } else if (min > allowed) {
         status->slow_cause = LAR_SLOW_STEP;
-        advise_smaller(a, least / allowed, least, allowed, status);
+        advise_smaller(a, min / allowed, min, allowed, status);
     } else {
         status->slow_cause = LAR_SLOW_MACHINE;
         snprintf(status->slow_advice, sizeof status->slow_advice,
                  "a step takes %.3g us of the %.3g us that it has, but other programs keep the "
                  "processor busy; end them%s",
-                 1e6 * least, 1e6 * allowed / ROOM,
+                 1e6 * min, 1e6 * allowed / ROOM,
                  a->priority > 0 ? "" : ", or start with --priority 10");
     }
 }

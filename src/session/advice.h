@@ -23,7 +23,7 @@ typedef struct lar_advice {
     int32_t stiffer;     /* not constant: parts of a step that stiffer materials take; 0, 1: none */
 } lar_advice;
 
-/* Fills in slow_cause and slow_advice, from slow_motion, step_least and step_parts. `pace`: as
+/* Fills in slow_cause and slow_advice, from slow_motion, step_min and step_parts. `pace`: as
  * asked for. */
 void lar_advise(const lar_advice *advice, double pace, lar_session_status *status);
 

@@ -22,7 +22,7 @@ static lar_status ask_and_wait(lar_session *session, lar_request request, lar_er
         lar_requests_place(&session->requests, &request);
         while (!answer->done) lar_requests_wait(&session->requests, INT64_MAX);
     } else {
-        lar_session_obey(session, &request);
+        lar_session_execute(session, &request);
     }
     pthread_mutex_unlock(&session->requests.lock);
     if (error && answer->status) *error = answer->error;

@@ -7,10 +7,10 @@
 
 /* A device like a PHANToM (Massie and Salisbury 1994) gives 8.5 N at most and weighs 75 g. */
 static const double STIFFNESS = 1000, MASS = 0.02; /* [N/m] [kg] */
-static const double FEEL_MOST = 8;                 /* [N] */
-static const double TORQUE_MOST = 0.2;             /* [N m] */
-static const double TURN_MOST = 20;                /* [rad/s] */
-static const double LEVER_LEAST = 0.05;            /* [m] */
+static const double FEEL_MAX = 8;                  /* [N] */
+static const double TORQUE_MAX = 0.2;              /* [N m] */
+static const double TURN_MAX = 20;                 /* [rad/s] */
+static const double LEVER_MIN = 0.05;              /* [m] */
 static const double RATE_LEVER = 0.05;             /* of torques beside forces [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
 static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
@@ -29,11 +29,11 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Shortens a vector to `most`. True when it was longer. */
-static bool shorten(double v[3], double most) {
+/* Shortens a vector to `max`. True when it was longer. */
+static bool shorten(double v[3], double max) {
     double length = length_of(v);
-    if (length <= most) return false;
-    for (int i = 0; i < 3; i++) v[i] *= most / length;
+    if (length <= max) return false;
+    for (int i = 0; i < 3; i++) v[i] *= max / length;
     return true;
 }
 
@@ -43,17 +43,17 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
     double engine = REACH * tool->radius / limits->time_step;
     double jaw = 0.5 * tool->length * tool->spread; /* way of a jaw's end from open to closed */
     double share = jaw > 0 ? 0.3 : 0.4;             /* of a way, a turn, and jaws */
-    double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MOST;
+    double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MAX;
     *coupling = (lar_coupling){.shape = tool->shape,
                                .mass = MASS,
                                .stiffness = STIFFNESS,
                                .damping = 2 * sqrt(STIFFNESS * MASS),
-                               .lever = fmax(tool->length, LEVER_LEAST),
+                               .lever = fmax(tool->length, LEVER_MIN),
                                .jaw = jaw,
-                               .speed_most = fmin(limits->tool_speed, share * engine),
+                               .speed_max = fmin(limits->tool_speed, share * engine),
                                .pull = pull,
-                               .feel = fmin(pull, FEEL_MOST),
-                               .feel_torque = TORQUE_MOST,
+                               .feel = fmin(pull, FEEL_MAX),
+                               .feel_torque = TORQUE_MAX,
                                .rate = LAR_COUPLING_RATE,
                                .seconds = limits->seconds,
                                .credit = CREDIT};
@@ -62,8 +62,8 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
 }
 
 void lar_coupling_set_speed(lar_coupling *c, double speed) {
-    c->speed = fmin(speed, c->speed_most);
-    c->turn = fmin(TURN_MOST, c->speed / c->lever);
+    c->speed = fmin(speed, c->speed_max);
+    c->turn = fmin(TURN_MAX, c->speed / c->lever);
     c->squeeze = c->jaw > 0 ? c->speed / c->jaw : INFINITY;
     c->drag = c->pull / c->speed;
 }
@@ -129,8 +129,8 @@ static void pull_tool(lar_coupling *c) {
 
 static void turn_tool(lar_coupling *c) {
     double angle = lar_quaternion_angle(c->tool.orientation, c->hand.orientation);
-    double most = c->turn * c->seconds;
-    lar_quaternion_blend(c->tool.orientation, c->hand.orientation, angle > most ? most / angle : 1,
+    double max = c->turn * c->seconds;
+    lar_quaternion_blend(c->tool.orientation, c->hand.orientation, angle > max ? max / angle : 1,
                          c->tool.orientation);
 }
 
@@ -152,9 +152,9 @@ void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_
     } else {
         pull_tool(coupling);
         turn_tool(coupling);
-        double most = coupling->squeeze * coupling->seconds;
+        double max = coupling->squeeze * coupling->seconds;
         double change = hand->opening - coupling->tool.opening;
-        coupling->tool.opening += fmax(-most, fmin(most, change));
+        coupling->tool.opening += fmax(-max, fmin(max, change));
     }
     *tool = coupling->tool;
 }
@@ -164,11 +164,11 @@ void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_
 
 /* From two forces and the way between them; forgotten slowly, for a touch comes and goes. */
 static void see_stiffness(lar_coupling *c, const double force[3]) {
-    enum { LEAST_WAY_NM = 1000 };
+    enum { MIN_WAY_NM = 1000 };
     double change[3], way = length_of(c->way);
     for (int i = 0; i < 3; i++) change[i] = force[i] - c->tissue[i];
     c->tissue_stiffness *= 1 - c->seconds / (FORGET + c->seconds);
-    if (way > 1e-9 * LEAST_WAY_NM)
+    if (way > 1e-9 * MIN_WAY_NM)
         c->tissue_stiffness = fmax(c->tissue_stiffness, length_of(change) / way);
     c->tissue_stiffness = fmin(c->tissue_stiffness, STIFFEST);
 }
@@ -205,11 +205,11 @@ static void pay(lar_coupling *c) {
     for (int i = 0; i < 3; i++) c->felt[i] *= share;
 }
 
-/* From what was felt towards what is wanted, by `most`. */
-static void approach(double felt[3], const double wanted[3], double most) {
+/* From what was felt towards what is wanted, by `max`. */
+static void approach(double felt[3], const double wanted[3], double max) {
     double change[3];
     for (int i = 0; i < 3; i++) change[i] = wanted[i] - felt[i];
-    shorten(change, most);
+    shorten(change, max);
     for (int i = 0; i < 3; i++) felt[i] += change[i];
 }
 
@@ -223,16 +223,16 @@ void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_
     see_stiffness(c, force->force);
     memcpy(c->tissue, force->force, sizeof c->tissue);
     c->held = force->held;
-    double wanted[3], torque[3], most = c->rate * c->seconds;
+    double wanted[3], torque[3], max = c->rate * c->seconds;
     for (int i = 0; i < 3; i++) wanted[i] = -c->spring[i];
     shorten(wanted, c->feel);
-    approach(c->felt, wanted, most);
+    approach(c->felt, wanted, max);
     pay(c);
     double all = length_of(wanted);
     c->share = all > 0 ? fmin(1, length_of(c->felt) / all) : 1;
     memcpy(torque, force->torque, sizeof torque);
     shorten(torque, c->feel_torque);
-    approach(c->turned, torque, RATE_LEVER * most);
+    approach(c->turned, torque, RATE_LEVER * max);
     *felt = *force;
     memcpy(felt->force, c->felt, sizeof felt->force);
     memcpy(felt->torque, c->turned, sizeof felt->torque);

@@ -51,7 +51,7 @@ typedef struct lar_coupling {
     double speed, turn;              /* limits [m/s] [rad/s] */
     double squeeze;                  /* limit of the opening's change [1/s] */
     double lever, jaw;  /* from the tip to where a turn counts; way of a jaw's end [m] */
-    double speed_most;  /* what lar_coupling_set_speed may give [m/s] */
+    double speed_max;   /* what lar_coupling_set_speed may give [m/s] */
     double pull, feel;  /* limits of the spring and of what the hand feels [N] */
     double drag;        /* of a tool whose spring is at its limit [N s/m] */
     double feel_torque; /* [N m] */

@@ -52,16 +52,16 @@ static int32_t drop_damaged(const lar_history *history, uint64_t first, int32_t 
     return count - (int32_t)bad;
 }
 
-int32_t lar_history_copy(const lar_history *history, int32_t tool, uint64_t after, int32_t most,
+int32_t lar_history_copy(const lar_history *history, int32_t tool, uint64_t after, int32_t max,
                          float (*force)[3], uint64_t *last) {
     uint64_t written = __atomic_load_n(&history->written, __ATOMIC_ACQUIRE);
     uint64_t first = after + 1;
     if (written > LAR_HISTORY_TICKS && first <= written - LAR_HISTORY_TICKS)
         first = written - LAR_HISTORY_TICKS + 1;
     *last = after;
-    if (after >= written || most <= 0) return 0;
+    if (after >= written || max <= 0) return 0;
     uint64_t available = written - first + 1;
-    int32_t count = available < (uint64_t)most ? (int32_t)available : most;
+    int32_t count = available < (uint64_t)max ? (int32_t)available : max;
     for (int32_t k = 0; k < count; k++) {
         const uint32_t *slot = slot_of(history, first + (uint64_t)k, tool);
         for (int i = 0; i < 3; i++) {

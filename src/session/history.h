@@ -32,7 +32,7 @@ void lar_history_put(lar_history *history, int32_t tool, const double force[3]);
 void lar_history_end(lar_history *history);
 
 /* Any thread: lar_session_force_history. */
-int32_t lar_history_copy(const lar_history *history, int32_t tool, uint64_t after, int32_t most,
+int32_t lar_history_copy(const lar_history *history, int32_t tool, uint64_t after, int32_t max,
                          float (*force)[3], uint64_t *last);
 
 #endif

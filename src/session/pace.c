@@ -21,24 +21,25 @@ static void set_factor(lar_pace *pace) {
 }
 
 void lar_pace_restart(lar_pace *pace, int64_t now) {
-    if (pace->pace > 0 && pace->beat.due > now) return;
-    pace->before = played(pace, pace->pace > 0 ? pace->beat.due : now);
+    if (pace->pace > 0 && pace->deadline.due > now) return;
+    pace->before = played(pace, pace->pace > 0 ? pace->deadline.due : now);
     pace->since = now;
-    lar_beat_restart(&pace->beat, now);
+    lar_deadline_clock_restart(&pace->deadline, now);
 }
 
 void lar_pace_start(lar_pace *pace, int64_t now) {
     if (pace->running) return;
     pace->running = true;
     pace->since = now;
-    lar_beat_restart(&pace->beat, now);
+    lar_deadline_clock_restart(&pace->deadline, now);
     pace->given_up_at = 0;
     pace->moments = 0; /* rates do not look across a pause */
 }
 
 void lar_pace_stop(lar_pace *pace, int64_t now) {
     if (!pace->running) return;
-    pace->before = played(pace, pace->pace > 0 && pace->beat.due > now ? pace->beat.due : now);
+    pace->before =
+        played(pace, pace->pace > 0 && pace->deadline.due > now ? pace->deadline.due : now);
     pace->running = false;
     pace->total.played = pace->before;
     set_factor(pace);
@@ -50,15 +51,15 @@ void lar_pace_set(lar_pace *pace, double wanted, int64_t now) {
     if (wanted == pace->pace) return;
     lar_pace_restart(pace, now);
     /* What is left of the tick under way goes at the new pace. */
-    if (pace->running && wanted > 0 && pace->beat.due > now) {
-        double left = (double)(pace->beat.due - now) * (pace->pace / wanted);
-        pace->beat.due = now + (int64_t)fmin(left, LONGEST);
+    if (pace->running && wanted > 0 && pace->deadline.due > now) {
+        double left = (double)(pace->deadline.due - now) * (pace->pace / wanted);
+        pace->deadline.due = now + (int64_t)fmin(left, LONGEST);
     }
     pace->pace = wanted;
 }
 
 void lar_pace_wait(lar_pace *pace) {
-    if (pace->pace > 0) lar_beat_wait(&pace->beat);
+    if (pace->pace > 0) lar_deadline_clock_wait(&pace->deadline);
 }
 
 static bool is_slow(const lar_pace *pace, int64_t now) {
@@ -66,7 +67,7 @@ static bool is_slow(const lar_pace *pace, int64_t now) {
 }
 
 static void give_up(lar_pace *pace, int64_t now) {
-    int64_t excess = lar_beat_give_up(&pace->beat, now);
+    int64_t excess = lar_deadline_clock_give_up(&pace->deadline, now);
     if (excess == 0) return;
     if (!is_slow(pace, now)) {
         pace->misses -= pace->late_run;
@@ -78,11 +79,11 @@ static void give_up(lar_pace *pace, int64_t now) {
 }
 
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
-    pace->beat.period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
+    pace->deadline.period = pace->pace > 0 ? fmin(1e9 * seconds / pace->pace, LONGEST) : 0;
     if (pace->pace > 0)
         give_up(pace, now);
     else
-        pace->beat.due = now;
+        pace->deadline.due = now;
     pace->total.at = now;
     pace->total.played = played(pace, now);
     set_factor(pace); /* without this tick, whose time is still to come */
@@ -92,23 +93,23 @@ void lar_pace_begin(lar_pace *pace, double seconds, int64_t now) {
 void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy) {
     if (steps == 0) steps = 1;
     lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / steps);
-    double least = 1e-9 * (double)busy / (double)steps;
-    if (pace->total.least == 0 || least < pace->total.least) pace->total.least = least;
+    double min = 1e-9 * (double)busy / (double)steps;
+    if (pace->total.min == 0 || min < pace->total.min) pace->total.min = min;
     pace->total.steps += steps;
 }
 
-void lar_pace_forget_least(lar_pace *pace) {
-    for (int i = 0; i < pace->moments; i++) pace->window[i].least = 0;
-    pace->total.least = 0;
+void lar_pace_forget_min(lar_pace *pace) {
+    for (int i = 0; i < pace->moments; i++) pace->window[i].min = 0;
+    pace->total.min = 0;
 }
 
 void lar_pace_answered(lar_pace *pace, int64_t now) {
     bool slow = is_slow(pace, now);
-    int64_t from = slow ? pace->total.at : pace->beat.due;
+    int64_t from = slow ? pace->total.at : pace->deadline.due;
     lar_histogram_add(&pace->ticks, (uint64_t)(now > from ? now - from : 0));
     pace->total.ticks++;
     if (pace->pace <= 0) return;
-    if (!lar_beat_next(&pace->beat, now)) {
+    if (!lar_deadline_clock_next(&pace->deadline, now)) {
         pace->late_run = 0;
     } else if (slow) {
         pace->slow_ticks++;
@@ -126,24 +127,24 @@ bool lar_pace_look(lar_pace *pace, int64_t now) {
     }
     lar_pace_moment *moment = &pace->window[pace->moments++];
     *moment = pace->total;
-    pace->total.least = 0;
+    pace->total.min = 0;
     moment->at = now;
     moment->played = played(pace, now);
     return true;
 }
 
-static void report_least(const lar_pace *pace, lar_session_status *status) {
-    double least = 0;
+static void report_min(const lar_pace *pace, lar_session_status *status) {
+    double min = 0;
     for (int i = 0; i < pace->moments; i++)
-        if (pace->window[i].least > 0 && (least == 0 || pace->window[i].least < least))
-            least = pace->window[i].least;
-    status->step_least = least;
+        if (pace->window[i].min > 0 && (min == 0 || pace->window[i].min < min))
+            min = pace->window[i].min;
+    status->step_min = min;
 }
 
 static void report_rates(const lar_pace *pace, lar_session_status *status) {
     status->engine_rate = status->haptic_rate = status->snapshot_rate = 0;
     status->real_time_factor_now = 0;
-    report_least(pace, status);
+    report_min(pace, status);
     if (pace->moments < 2) return;
     const lar_pace_moment *first = &pace->window[0], *last = &pace->window[pace->moments - 1];
     double seconds = 1e-9 * (double)(last->at - first->at);
@@ -177,12 +178,12 @@ void lar_pace_report(const lar_pace *pace, bool quantiles, int64_t now,
     status->misses = pace->misses;
     status->slow_ticks = pace->slow_ticks;
     status->skipped = pace->skipped;
-    status->lag = pace->running && pace->pace > 0 && now > pace->beat.due
-                      ? 1e-9 * (double)(now - pace->beat.due)
+    status->lag = pace->running && pace->pace > 0 && now > pace->deadline.due
+                      ? 1e-9 * (double)(now - pace->deadline.due)
                       : 0;
     status->slow_motion = is_slow(pace, now);
-    status->step_max = 1e-9 * (double)pace->steps.most;
-    status->tick_max = 1e-9 * (double)pace->ticks.most;
+    status->step_max = 1e-9 * (double)pace->steps.max;
+    status->tick_max = 1e-9 * (double)pace->ticks.max;
     if (!quantiles) return;
     report_rates(pace, status);
     report_quantiles(pace, status);

@@ -5,7 +5,7 @@
  *              forces                  forces: after due 2, a miss
  *
  * A tick begins when it is due, or at once when the one before was late: so lost time is made up
- * for, as fast as the machine can. What is more than LAR_LAG_MOST behind is given up: it counts as
+ * for, as fast as the machine can. What is more than LAR_LAG_MAX behind is given up: it counts as
  * skipped, the simulation is in slow motion, and says so. Ticks of slow motion that are late are
  * counted beside the misses: nobody could have kept a deadline that a tick before has missed. So
  * are those that were late in a row when it began. Their times count from when they begin.
@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "base/histogram.h"
 #include "lariat.h"
 
@@ -32,12 +32,13 @@ typedef struct lar_pace_moment {
     double simulated; /* [s] since the start */
     double played;    /* time of the clock that was played [s] */
     uint64_t steps, ticks, exchanges, snapshots;
-    double least; /* processor time of a step since the moment before, the least [s]; 0: none */
+    double min; /* processor time of a step since the moment before, the least [s]; 0: none */
 } lar_pace_moment;
 
 typedef struct lar_pace {
-    double pace;         /* simulated per clock second; 0: as fast as it goes */
-    lar_beat beat;       /* of the tick under way, or the next one; its period is 0 without pace */
+    double pace; /* simulated per clock second; 0: as fast as it goes */
+    lar_deadline_clock
+        deadline;        /* of the tick under way, or the next one; its period is 0 without pace */
     bool running;        /* between lar_pace_start and lar_pace_stop */
     int64_t since;       /* of this stretch's start [ns] */
     double before;       /* played before this stretch [s] */
@@ -70,7 +71,7 @@ void lar_pace_begin(lar_pace *pace, double seconds, int64_t now);
  * processor meanwhile [ns]. */
 void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy);
 /* Steps take another time from now on: the least that is known is of no use any more. */
-void lar_pace_forget_least(lar_pace *pace);
+void lar_pace_forget_min(lar_pace *pace);
 /* The forces are out. */
 void lar_pace_answered(lar_pace *pace, int64_t now);
 

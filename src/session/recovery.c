@@ -121,9 +121,9 @@ static bool is_hand(const lar_session *session, int32_t tool) {
 /* Hands are open and hold nothing. */
 static void open_hands(const lar_session *session, lar_tools *tools) {
     int32_t count = 0;
-    for (int32_t i = 0; i < tools->hold_count; i++)
-        if (!is_hand(session, tools->hold[i].tool)) tools->hold[count++] = tools->hold[i];
-    tools->hold_count = count;
+    for (int32_t i = 0; i < tools->grasp_count; i++)
+        if (!is_hand(session, tools->grasps[i].tool)) tools->grasps[count++] = tools->grasps[i];
+    tools->grasp_count = count;
     for (int32_t i = 0; i < tools->count; i++) {
         lar_tool_motion *motion = &tools->motion[i];
         if (!is_hand(session, i)) continue;
@@ -163,19 +163,19 @@ static lar_status keep_spares(lar_session *session, const lar_spare_tool *wanted
 
 /* A replay does not go back by itself: the recording says where to. */
 static lar_status go_back(lar_session *session, lar_kept_state *kept, lar_error *error) {
-    lar_spare_tool spare[LAR_SPARES_MOST];
+    lar_spare_tool spare[LAR_SPARES_MAX];
     lar_status status;
     memcpy(spare, session->simulation->tools.spare, sizeof spare);
     if (!kept) {
         status = lar_simulation_reset(session->simulation, error);
         if (!status)
-            lar_session_note(session,
-                             &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
+            lar_session_put_record(
+                session, &(lar_record){.kind = LAR_RECORD_RESET, .step = session->good_step});
         return status;
     }
     open_hands(session, &kept->tools);
     status = lar_simulation_go_back(session->simulation, &kept->state, &kept->tools, error);
-    if (!status) status = lar_session_note_state(session, error);
+    if (!status) status = lar_session_record_state(session, error);
     return status ? status : keep_spares(session, spare, error);
 }
 

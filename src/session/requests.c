@@ -25,9 +25,9 @@ static bool wait_on(lar_requests *requests, pthread_cond_t *condition, int64_t d
 }
 
 void lar_requests_place(lar_requests *requests, const lar_request *request) {
-    while (requests->placed - requests->taken == LAR_REQUESTS_MOST)
+    while (requests->placed - requests->taken == LAR_REQUESTS_MAX)
         pthread_cond_wait(&requests->bell, &requests->lock);
-    requests->ring[requests->placed % LAR_REQUESTS_MOST] = *request;
+    requests->ring[requests->placed % LAR_REQUESTS_MAX] = *request;
     __atomic_store_n(&requests->placed, requests->placed + 1, __ATOMIC_RELEASE);
     pthread_cond_signal(&requests->work);
 }
@@ -40,8 +40,8 @@ bool lar_requests_next(lar_requests *requests, lar_request *request) {
     /* Only the engine changes `taken`. */
     if (__atomic_load_n(&requests->placed, __ATOMIC_ACQUIRE) == requests->taken) return false;
     if (pthread_mutex_trylock(&requests->lock)) return false;
-    bool full = requests->placed - requests->taken == LAR_REQUESTS_MOST;
-    *request = requests->ring[requests->taken % LAR_REQUESTS_MOST];
+    bool full = requests->placed - requests->taken == LAR_REQUESTS_MAX;
+    *request = requests->ring[requests->taken % LAR_REQUESTS_MAX];
     requests->taken++;
     if (full) pthread_cond_broadcast(&requests->bell);
     pthread_mutex_unlock(&requests->lock);

@@ -1,4 +1,4 @@
-/* What is asked of the engine's thread, in its order of coming.
+/* Requests to the engine's thread, in the order of their arrival.
  *
  *     any thread: place ---> ring of requests ---> engine, between two ticks: takes the next one
  *                 waits  <--- answer, for requests that have one
@@ -62,13 +62,13 @@ typedef struct lar_request {
     lar_request_answer *answer; /* NULL: nobody waits */
 } lar_request;
 
-enum { LAR_REQUESTS_MOST = 256 };
+enum { LAR_REQUESTS_MAX = 256 };
 
 typedef struct lar_requests {
     pthread_mutex_t lock;
     pthread_cond_t work; /* the engine sleeps on it */
     pthread_cond_t bell; /* the others do */
-    lar_request ring[LAR_REQUESTS_MOST];
+    lar_request ring[LAR_REQUESTS_MAX];
     uint64_t placed;    /* atomic; changed under the lock */
     uint64_t taken;     /* under the lock */
     bool ring_the_bell; /* the engine's: somebody is still to be told */
@@ -79,7 +79,7 @@ void lar_requests_destroy(lar_requests *requests);
 
 /* Any thread but the engine's, which holds the lock. Waits while the ring is full. */
 static inline bool lar_requests_full(const lar_requests *requests) {
-    return requests->placed - requests->taken == LAR_REQUESTS_MOST;
+    return requests->placed - requests->taken == LAR_REQUESTS_MAX;
 }
 void lar_requests_place(lar_requests *requests, const lar_request *request);
 /* Waits on the bell, at most until `deadline` (base/clock.h); false when that has passed. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/thread.h"
 
 lar_session_options lar_session_options_default(void) {
@@ -52,7 +52,7 @@ static lar_status make_tools(lar_session *session, lar_error *error) {
         status = lar_simulation_tool(session->simulation, i, &tool->info, error);
         lar_session_couple(session, i);
         if (!status)
-            status = lar_mailbox_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
+            status = lar_triple_buffer_create(&tool->hand, sizeof(lar_tool_pose), "a tool", error);
     }
     if (!status) status = lar_history_create(session->tools, &session->history, error);
     if (!status) lar_session_take_tools(session);
@@ -66,7 +66,7 @@ static void make_advice(lar_session *session) {
                                    .elements = simulation->domain.model->mesh.element_count,
                                    .busy = lar_simulation_processors(simulation) *
                                            lar_simulation_threads(simulation),
-                                   .cores = lar_share_cores(),
+                                   .cores = lar_usable_cores(),
                                    .priority = session->options.priority};
 }
 
@@ -101,17 +101,17 @@ static lar_status record_from_start(lar_session *session, lar_error *error) {
 }
 
 static void destroy(lar_session *session) {
-    lar_simulation_hold(session->simulation, false);
+    lar_simulation_reserve(session->simulation, false);
     __atomic_store_n(&session->simulation->sessions, 0, __ATOMIC_RELEASE);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_device_close(session->tool[i].device);
-        lar_mailbox_destroy(&session->tool[i].hand);
+        lar_triple_buffer_destroy(&session->tool[i].hand);
     }
     lar_history_destroy(&session->history);
     lar_snapshots_destroy(&session->snapshots);
     lar_recovery_destroy(&session->recovery);
     lar_player_close(session->player);
-    lar_mailbox_destroy(&session->view);
+    lar_triple_buffer_destroy(&session->view);
     lar_requests_destroy(&session->requests);
     free(session);
 }
@@ -138,7 +138,8 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     lar_status status = choose(session, &asked, error);
     if (!status) status = make_tools(session, error);
     if (!status)
-        status = lar_mailbox_create(&session->view, sizeof(lar_session_view), "a session", error);
+        status =
+            lar_triple_buffer_create(&session->view, sizeof(lar_session_view), "a session", error);
     if (!status) status = lar_snapshots_create(simulation, &session->snapshots, error);
     if (!status) status = make_recovery(session, error);
     if (status) {
@@ -178,12 +179,12 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
-        lar_simulation_hold(session->simulation, true);
+        lar_simulation_reserve(session->simulation, true);
         int cause = lar_thread_start_urgent(&session->thread, session->options.priority,
                                             lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
-            lar_simulation_hold(session->simulation, false);
+            lar_simulation_reserve(session->simulation, false);
             session->status.state = LAR_SESSION_IDLE;
             lar_session_publish(session, true);
             status = refuse_thread(session, cause, error);
@@ -201,7 +202,7 @@ lar_status lar_session_close(lar_session *session, lar_error *error) {
         pthread_mutex_unlock(&session->requests.lock);
         pthread_join(session->thread, NULL);
     }
-    lar_session_note_end(session);
+    lar_session_record_end(session);
     lar_status status = lar_recorder_close(session->recorder, error);
     destroy(session);
     return status;

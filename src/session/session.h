@@ -3,11 +3,11 @@
  *     any thread                              the engine's thread, every tick
  *     ----------                              -------------------------------
  *     play, pause, save, ... --requests-->    what was asked for
- *     tool_move ---------mailbox per tool-->  hands --> couplings --> tools move within the tick
+ *     tool_move ---triple buffer per tool-->  hands --> couplings --> tools move within the tick
  *                                             advance by the tick's steps
- *     tool_force, status <----mailbox------   forces, poses, counts
+ *     tool_force, status <-triple buffer----   forces, poses, counts
  *     force_history <----------ring--------   forces of past ticks
- *     snapshot (asks) <-------mailbox------   the whole state, when somebody has asked
+ *     snapshot (asks) <---triple buffer----   the whole state, when somebody has asked
  *     (file) <---------ring, a thread------   recording
  *                                             sleep until the next tick
  *
@@ -23,7 +23,7 @@
 #include "session/advice.h"
 #include "session/coupling.h"
 #include "session/device/device.h"
-#include "session/exchange.h"
+#include "session/triple_buffer.h"
 #include "session/history.h"
 #include "session/pace.h"
 #include "session/recording/player.h"
@@ -35,8 +35,8 @@
 /* What the engine tells in every tick. */
 typedef struct lar_session_view {
     lar_session_status status;
-    double gravity[3], damping;      /* [m/s^2] [1/s] */
-    double factor[LAR_FACTORS_MOST]; /* of the stiffness of materials */
+    double gravity[3], damping;     /* [m/s^2] [1/s] */
+    double factor[LAR_FACTORS_MAX]; /* of the stiffness of materials */
     struct {
         lar_tool_info info;
         int32_t serial; /* of a spare: one more for each that was added there */
@@ -44,18 +44,18 @@ typedef struct lar_session_view {
         lar_tool_force force;
         lar_tool_load load;
         lar_device_status device; /* summed up from time to time only */
-    } tool[LAR_TOOLS_MOST];
+    } tool[LAR_TOOLS_MAX];
 } lar_session_view;
 
 /* A tool and whoever moves it: the engine's. */
 typedef struct lar_session_tool {
-    lar_mailbox hand;   /* lar_tool_pose, from tool_move */
-    lar_tool_info info; /* constant, but for spares: then the engine's, others ask the view */
-    int32_t serial;     /* as in the view */
-    lar_device *device; /* NULL: it listens to tool_move */
-    bool led;           /* somebody has moved it since the start, or since the simulation was last
-                           put somewhere else */
-    bool waits;         /* a hand that let go when the run went back: until it has opened */
+    lar_triple_buffer hand; /* lar_tool_pose, from tool_move */
+    lar_tool_info info;     /* constant, but for spares: then the engine's, others ask the view */
+    int32_t serial;         /* as in the view */
+    lar_device *device;     /* NULL: it listens to tool_move */
+    bool led;   /* somebody has moved it since the start, or since the simulation was last
+                   put somewhere else */
+    bool waits; /* a hand that let go when the run went back: until it has opened */
     lar_device_status device_status; /* as last summed up */
     lar_coupling coupling;           /* between the hand and it */
     lar_tool_pose target;            /* where its hand is */
@@ -74,10 +74,10 @@ struct lar_session {
     double time_step;
     uint64_t divided; /* steps of the simulation that were divided before the session */
     int32_t tools;
-    lar_session_tool tool[LAR_TOOLS_MOST];
+    lar_session_tool tool[LAR_TOOLS_MAX];
 
     lar_requests requests;
-    lar_mailbox view; /* lar_session_view, to everybody */
+    lar_triple_buffer view; /* lar_session_view, to everybody */
     lar_history history;
     lar_snapshots snapshots;
     pthread_t thread;
@@ -105,7 +105,7 @@ lar_recording_header lar_session_recording_header(const lar_session *session);
  * none. */
 
 void *lar_session_run(void *session);
-void lar_session_obey(lar_session *session, const lar_request *request);
+void lar_session_execute(lar_session *session, const lar_request *request);
 /* The simulation is somewhere else now, and the run goes on from there. */
 lar_status lar_session_arrive(lar_session *session, lar_error *error);
 /* Plays from now on; rests; stops, because the run broke. */
@@ -126,11 +126,11 @@ void lar_session_publish(lar_session *session, bool quantiles);
 /* Sets it now, and in the recording. */
 lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error);
 /* Into the recording, when there is one. */
-void lar_session_note(lar_session *session, const lar_record *record);
+void lar_session_put_record(lar_session *session, const lar_record *record);
 /* The hash of this moment; the state that the simulation was put into; the end. */
-void lar_session_note_hash(lar_session *session);
-lar_status lar_session_note_state(lar_session *session, lar_error *error);
-void lar_session_note_end(lar_session *session);
+void lar_session_record_hash(lar_session *session);
+lar_status lar_session_record_state(lar_session *session, lar_error *error);
+void lar_session_record_end(lar_session *session);
 
 /* The force on the hand changes as fast as the tool's device allows, where it says so. */
 void lar_session_take_rate(lar_session_tool *tool);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One letter: this head, then u and v as the state has them. */
+/* One value: this head, then u and v as the state has them. */
 typedef struct frame {
     uint64_t step, hash;
     double time;
@@ -31,11 +31,11 @@ static lar_state state_of(frame *f, const lar_simulation *simulation) {
 lar_status lar_snapshots_create(const lar_simulation *simulation, lar_snapshots *snapshots,
                                 lar_error *error) {
     size_t bytes = head_size() + 2 * values_of(simulation) * sizeof(double);
-    return lar_mailbox_create(&snapshots->frames, bytes, "snapshots", error);
+    return lar_triple_buffer_create(&snapshots->frames, bytes, "snapshots", error);
 }
 
 void lar_snapshots_destroy(lar_snapshots *snapshots) {
-    lar_mailbox_destroy(&snapshots->frames);
+    lar_triple_buffer_destroy(&snapshots->frames);
 }
 
 uint64_t lar_snapshots_ask(lar_snapshots *snapshots) {
@@ -54,12 +54,12 @@ bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulat
     uint64_t asked = __atomic_load_n(&snapshots->asked, __ATOMIC_ACQUIRE);
     if (asked == snapshots->answered) return false;
     const lar_state *state = lar_simulation_state(simulation);
-    frame *f = lar_mailbox_draft(&snapshots->frames);
+    frame *f = lar_triple_buffer_back(&snapshots->frames);
     *f = (frame){.step = state->step, .time = (double)state->step * simulation->domain.time_step};
     lar_state copy = state_of(f, simulation);
     memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
     memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);
-    lar_mailbox_send(&snapshots->frames);
+    lar_triple_buffer_publish(&snapshots->frames);
     snapshots->answered = asked;
     __atomic_store_n(&snapshots->ready, asked, __ATOMIC_RELEASE);
     return true;
@@ -70,8 +70,8 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
     const lar_domain *domain = &simulation->domain;
     bool finite = true;
     snapshot->kinetic = 0;
-    lar_mailbox_lock(&snapshots->frames);
-    frame *f = lar_mailbox_newest(&snapshots->frames, NULL);
+    lar_triple_buffer_lock(&snapshots->frames);
+    frame *f = lar_triple_buffer_newest(&snapshots->frames, NULL);
     const lar_state state = state_of(f, simulation);
     if (!f->hashed) f->hash = lar_state_hash(domain, &state);
     f->hashed = true;
@@ -86,7 +86,7 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
             0.5 * domain->mass[domain->layout.local[g]] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         finite = finite && isfinite(u[0] + u[1] + u[2]);
     }
-    lar_mailbox_unlock(&snapshots->frames);
+    lar_triple_buffer_unlock(&snapshots->frames);
     if (finite) return LAR_OK;
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "the state at step %llu is not finite and cannot be shown; reset the session "

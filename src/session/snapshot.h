@@ -12,10 +12,10 @@
 #define LAR_SESSION_SNAPSHOT_H
 
 #include "simulation/simulation.h"
-#include "session/exchange.h"
+#include "session/triple_buffer.h"
 
 typedef struct lar_snapshots {
-    lar_mailbox frames;
+    lar_triple_buffer frames;
     uint64_t asked;    /* atomic: the latest number that was given out */
     uint64_t answered; /* the engine's */
     uint64_t ready;    /* atomic: the newest number that a frame answers */

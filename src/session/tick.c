@@ -18,7 +18,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->step = lar_simulation_steps(session->simulation);
     status->time = (double)status->step * session->time_step;
     const int32_t parts = lar_simulation_step_parts(session->simulation);
-    if (parts != status->step_parts) lar_pace_forget_least(&session->pace);
+    if (parts != status->step_parts) lar_pace_forget_min(&session->pace);
     status->step_parts = parts;
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
@@ -29,7 +29,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->replaying = player != NULL;
     status->replay_time = player ? (double)player->place * session->time_step : 0;
     status->replay_length = player ? (double)player->length * session->time_step : 0;
-    lar_session_view *view = lar_mailbox_draft(&session->view);
+    lar_session_view *view = lar_triple_buffer_back(&session->view);
     view->status = *status;
     lar_simulation_gravity(session->simulation, view->gravity);
     view->damping = lar_simulation_damping(session->simulation);
@@ -44,7 +44,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
             lar_device_status_get(session->tool[i].device, &session->tool[i].device_status);
         view->tool[i].device = session->tool[i].device_status;
     }
-    lar_mailbox_send(&session->view);
+    lar_triple_buffer_publish(&session->view);
 }
 
 static void serve_snapshots(lar_session *session) {
@@ -155,7 +155,7 @@ static void tick(lar_session *session) {
     serve_snapshots(session);
     if (session->status.recording &&
         session->good_step - session->hashed >= session->options.hash_every)
-        lar_session_note_hash(session);
+        lar_session_record_hash(session);
     if (session->status.state == LAR_SESSION_PLAYING && lar_session_keep_state(session, &error))
         lar_session_stop(session, &error);
     if (!session->stepping) return;
@@ -165,10 +165,10 @@ static void tick(lar_session *session) {
 
 /* ---- the thread ---------------------------------------------------------------------------- */
 
-static void obey_requests(lar_session *session) {
+static void execute_requests(lar_session *session) {
     lar_request request;
     while (!session->ended && lar_requests_next(&session->requests, &request)) {
-        lar_session_obey(session, &request);
+        lar_session_execute(session, &request);
         if (request.answer) lar_requests_answer(&session->requests, request.answer);
     }
 }
@@ -199,10 +199,11 @@ static void rest(lar_session *session, double *fade) {
 static void wait_for_tick(lar_session *session) {
     lar_pace *pace = &session->pace;
     while (!session->ended && session->status.state == LAR_SESSION_PLAYING && pace->pace > 0 &&
-           pace->beat.due - lar_clock_ns() > FAR) {
+           pace->deadline.due - lar_clock_ns() > FAR) {
         serve_snapshots(session);
-        lar_requests_sleep(&session->requests, snapshot_is_wanted, session, pace->beat.due - FAR);
-        obey_requests(session);
+        lar_requests_sleep(&session->requests, snapshot_is_wanted, session,
+                           pace->deadline.due - FAR);
+        execute_requests(session);
     }
     if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);
 }
@@ -210,11 +211,11 @@ static void wait_for_tick(lar_session *session) {
 void *lar_session_run(void *argument) {
     lar_session *session = argument;
     double fade = FADE;
-    lar_simulation_hold_here(session->simulation);
+    lar_simulation_reserve_here(session->simulation);
     lar_clock_be_prompt();
     if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
     while (!session->ended) {
-        obey_requests(session);
+        execute_requests(session);
         if (session->ended) break;
         if (session->status.state == LAR_SESSION_PLAYING) {
             if (!session->player)

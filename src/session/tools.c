@@ -17,7 +17,7 @@ static lar_device_tick tick_of(const lar_session *session) {
 static void take_tool(lar_session *session, int32_t i) {
     lar_session_tool *tool = &session->tool[i];
     lar_tool_force now;
-    lar_mailbox_newest(&tool->hand, NULL); /* what was sent before does not count */
+    lar_triple_buffer_newest(&tool->hand, NULL); /* what was sent before does not count */
     lar_simulation_tool_asked(session->simulation, i, &tool->pose);
     lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
     tool->sent = tool->target = tool->pose;
@@ -81,7 +81,7 @@ static void look_at_hands(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         bool fresh;
-        const lar_tool_pose *hand = lar_mailbox_newest(&tool->hand, &fresh);
+        const lar_tool_pose *hand = lar_triple_buffer_newest(&tool->hand, &fresh);
         if (tool->device)
             fresh = lar_device_poll(tool->device, &now, &tool->target);
         else if (fresh)
@@ -99,11 +99,12 @@ static lar_status send_tool(lar_session *session, int32_t i, lar_error *error) {
         lar_simulation_tool_move(session->simulation, i, &tool->pose, session->tick_steps, error);
     if (!status) {
         tool->sent = tool->pose;
-        lar_session_note(session, &(lar_record){.kind = LAR_RECORD_MOVE,
-                                                .step = lar_simulation_steps(session->simulation),
-                                                .tool = i,
-                                                .steps = session->tick_steps,
-                                                .pose = tool->pose});
+        lar_session_put_record(session,
+                               &(lar_record){.kind = LAR_RECORD_MOVE,
+                                             .step = lar_simulation_steps(session->simulation),
+                                             .tool = i,
+                                             .steps = session->tick_steps,
+                                             .pose = tool->pose});
     } else if (status == LAR_ERROR_ARGUMENT) {
         /* Nowhere to go, or too far for one tick: it stays, and starts anew from there. */
         lar_simulation_tool_asked(session->simulation, i, &tool->pose);
@@ -133,12 +134,12 @@ static void tell_devices(lar_session *session) {
     }
 }
 
-static void note_load(lar_session_tool *tool) {
+static void record_load(lar_session_tool *tool) {
     const double *f = tool->force.force;
     double force = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     tool->load.limit = tool->force.limit;
     tool->load.force = fmax(tool->load.force, force);
-    tool->load.grasp = fmax(tool->load.grasp, tool->force.grasp);
+    tool->load.grasp_force = fmax(tool->load.grasp_force, tool->force.grasp_force);
     tool->load.reached = tool->load.reached || tool->force.limited;
 }
 
@@ -149,7 +150,7 @@ void lar_session_feel_tools(lar_session *session) {
         lar_session_tool *tool = &session->tool[i];
         lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
         lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
-        note_load(tool);
+        record_load(tool);
         if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, &tool->felt);
         lar_history_put(&session->history, i, tool->force.force);
     }
@@ -162,7 +163,7 @@ static void shrink(lar_tool_force *force, double share) {
         force->force[k] *= share;
         force->torque[k] *= share;
     }
-    force->grasp *= share;
+    force->grasp_force *= share;
 }
 
 bool lar_session_idle_tools(lar_session *session, double share) {

@@ -34,7 +34,7 @@ typedef struct file_head {
     uint64_t step;
     double external, damped, contact;
     uint64_t hash; /* of the state, as lar_simulation_hash */
-    int32_t tools, holds;
+    int32_t tools, grasps;
 } file_head;
 
 /* Whoever changes these changes the file: raise VERSION, and tell docs/formats.md. */
@@ -43,29 +43,29 @@ _Static_assert(sizeof(file_head) == 144, "the format");
 _Static_assert(sizeof(lar_step_division) == 56, "the format");
 _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until there");
 _Static_assert(sizeof(lar_settings) == 552, "the format");
-_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_hold) == 72, "the format");
+_Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
-_Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MOST == 4, "the format");
+_Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
 typedef struct file_shape {
     uint32_t version;
-    int32_t tools, holds;
+    int32_t tools, grasps;
 } file_shape;
 
 typedef double node_vector[3];
 
 static size_t settings_bytes(uint32_t version) {
-    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MOST * sizeof(lar_spare_tool) : 0;
+    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
     return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
                                       : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
 }
 
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
-    size_t tools = (size_t)shape->tools, holds = (size_t)shape->holds;
+    size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-           holds * sizeof(lar_hold) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
+           grasps * sizeof(lar_grasp) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
            sizeof(uint64_t);
 }
 
@@ -81,13 +81,13 @@ uint64_t lar_checkpoint_sum(const void *data, size_t words) {
 }
 
 /* As lar_state_hash, for nodes in the mesh's order. */
-static uint64_t hash_state(uint64_t step, const double *level, const node_vector *u,
+static uint64_t hash_state(uint64_t step, const double *offset, const node_vector *u,
                            const node_vector *v, lar_gid nodes) {
     uint64_t hash = lar_hash_word(0, step);
     for (lar_gid n = 0; n < nodes; n++) {
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
         for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
-        if (level[n] > 0) hash = lar_hash_double(hash, level[n]);
+        if (offset[n] > 0) hash = lar_hash_double(hash, offset[n]);
     }
     return hash;
 }
@@ -117,23 +117,23 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 
 /* What a file has of the tools: spares up to the last one that is there. */
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
-    const lar_tool_list *list = whole->acting.touch.list;
+    const lar_tool_list *list = whole->interactions.tool_contact.list;
     int32_t spares = lar_spares_needed(tools->spare);
     return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
-                        .holds = tools->hold_count};
+                        .grasps = tools->grasp_count};
 }
 
 /* Returns where the nodes begin. */
 static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
                                  const lar_tools *tools) {
-    size_t count = (size_t)shape->tools, holds = (size_t)shape->holds;
+    size_t count = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     at = append(at, &tools->division, sizeof tools->division);
     at = append(at, &tools->settings, sizeof tools->settings);
     if (shape->version == ADDED_TOOLS) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
-    return append(at, tools->hold, holds * sizeof tools->hold[0]);
+    return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
 }
 
 static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
@@ -141,11 +141,11 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    double *level = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
-    node_vector *u = (node_vector *)(level + nodes), *v = u + nodes;
+    double *offset = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
+    node_vector *u = (node_vector *)(offset + nodes), *v = u + nodes;
     for (lar_gid g = 0; g < nodes; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
-        level[g] = state->u[there + 3];
+        offset[g] = state->u[there + 3];
         memcpy(u[g], state->u + there, sizeof u[g]);
         memcpy(v[g], state->v + there, sizeof v[g]);
     }
@@ -156,10 +156,10 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .external = state->external,
                       .damped = state->damped,
                       .contact = state->contact,
-                      .hash = hash_state(state->step, level, (const node_vector *)u,
+                      .hash = hash_state(state->step, offset, (const node_vector *)u,
                                          (const node_vector *)v, nodes),
                       .tools = shape->tools,
-                      .holds = shape->holds};
+                      .grasps = shape->grasps};
     memcpy(head.magic, MAGIC, sizeof MAGIC);
     lar_model_identify(whole, &head.identity);
     memcpy(data, &head, sizeof head);
@@ -341,8 +341,8 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
 
 /* They stand behind the settings. */
 static void look_at_spares(const file_head *head, const lar_bytes *bytes,
-                           lar_spare_tool spare[LAR_SPARES_MOST]) {
-    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MOST * sizeof *spare;
+                           lar_spare_tool spare[LAR_SPARES_MAX]) {
+    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MAX * sizeof *spare;
     if (head->version == ADDED_TOOLS && bytes->size >= at + size)
         memcpy(spare, bytes->data + at, size);
 }
@@ -355,7 +355,7 @@ lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, l
             error, LAR_ERROR_ARGUMENT,
             "lar_checkpoint_inspect needs the path of a saved state and a place for the "
             "answer");
-    lar_spare_tool spare[LAR_SPARES_MOST] = {{0}};
+    lar_spare_tool spare[LAR_SPARES_MAX] = {{0}};
     lar_status status = lar_checkpoint_read(path, &bytes, error);
     if (!status) status = check_file(path, &bytes, &head, error);
     if (!status) look_at_spares(&head, &bytes, spare);
@@ -440,31 +440,31 @@ static bool good_pose(const lar_tool_pose *pose) {
 }
 
 /* Numbers of steps are far below this: sums of two of them do not overflow. */
-static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
 
 static bool good_motion(const lar_tool_motion *motion) {
     return good_pose(&motion->from) && good_pose(&motion->to) && motion->start <= motion->end &&
-           motion->end <= STEPS_MOST && (motion->holding == 0 || motion->holding == 1) &&
+           motion->end <= STEPS_MAX && (motion->holding == 0 || motion->holding == 1) &&
            motion->padding == 0;
 }
 
-static bool good_hold(const lar_hold *hold, const file_head *head, const lar_model *model) {
-    double sum = hold->weight[0] + hold->weight[1] + hold->weight[2] + hold->weight[3];
-    return hold->tool >= 0 && hold->tool < head->tools && hold->face >= 0 &&
-           hold->face < model->surface.face_count && all_finite(hold->weight, 4) &&
-           fabs(sum - 1) <= 1e-6 && all_finite(hold->anchor, 3) && isfinite(hold->stiffness) &&
-           hold->stiffness >= 0;
+static bool good_grasp(const lar_grasp *grasp, const file_head *head, const lar_model *model) {
+    double sum = grasp->weight[0] + grasp->weight[1] + grasp->weight[2] + grasp->weight[3];
+    return grasp->tool >= 0 && grasp->tool < head->tools && grasp->face >= 0 &&
+           grasp->face < model->surface.face_count && all_finite(grasp->weight, 4) &&
+           fabs(sum - 1) <= 1e-6 && all_finite(grasp->anchor, 3) && isfinite(grasp->stiffness) &&
+           grasp->stiffness >= 0;
 }
 
 static bool power_of_two(int32_t parts) {
-    return parts >= 1 && parts <= LAR_PARTS_MOST && (parts & (parts - 1)) == 0;
+    return parts >= 1 && parts <= LAR_PARTS_MAX && (parts & (parts - 1)) == 0;
 }
 
 static bool good_division(const lar_step_division *d, const file_head *head) {
     return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
            d->decided <= head->step && d->hardness >= 1 &&
-           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MOST &&
-           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MOST && power_of_two(d->base) &&
+           d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
+           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
            (d->due == 0 || d->due == 1);
 }
 
@@ -481,11 +481,11 @@ static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
 /* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
 static bool good_follower(const lar_tool *tool, const lar_tool_follower *follower) {
     const lar_tool_felt *felt = &follower->felt;
-    int32_t lagging_most = tool->shape != LAR_TOOL_HAND;
+    int32_t lagging_max = tool->shape != LAR_TOOL_HAND;
     return good_motion(&follower->hand) && follower->hand.holding == 0 &&
            near_enough(tool, &follower->hand) && felt->depth >= 0 && felt->depth <= tool->radius &&
-           felt->steps <= STEPS_MOST && follower->load >= 0 && isfinite(follower->load) &&
-           follower->lagging >= 0 && follower->lagging <= lagging_most && follower->padding == 0;
+           felt->steps <= STEPS_MAX && follower->load >= 0 && isfinite(follower->load) &&
+           follower->lagging >= 0 && follower->lagging <= lagging_max && follower->padding == 0;
 }
 
 /* Those that a file does not have rest, and are nothing. */
@@ -506,9 +506,10 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
 /* What fill_tools writes; *at moves behind it. */
 static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
-    const lar_tool_list *list = whole->acting.touch.list;
-    *tools = (lar_tools){.count = head->tools, .hold_count = head->holds, .division = {.base = 1}};
-    size_t count = (size_t)tools->count, holds = (size_t)tools->hold_count;
+    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    *tools =
+        (lar_tools){.count = head->tools, .grasp_count = head->grasps, .division = {.base = 1}};
+    size_t count = (size_t)tools->count, grasps = (size_t)tools->grasp_count;
     bool settings = head->version != BEFORE_SETTINGS;
     lar_settings_reset(&tools->settings);
     *at = extract(*at, &tools->division,
@@ -517,7 +518,7 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
     if (head->version == ADDED_TOOLS) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
-    *at = extract(*at, tools->hold, holds * sizeof tools->hold[0]);
+    *at = extract(*at, tools->grasps, grasps * sizeof tools->grasps[0]);
     bool good = good_division(&tools->division, head) &&
                 lar_settings_good(&tools->settings, whole->time_step) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0);
@@ -526,9 +527,9 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
         good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
                good_follower(&tool, &tools->follower[i]);
     }
-    for (int32_t i = 0; good && i < tools->hold_count; i++)
-        good = good_hold(&tools->hold[i], head, whole->model) &&
-               lar_spare_tool_of(list, tools->spare, tools->hold[i].tool).shape != LAR_TOOL_NONE;
+    for (int32_t i = 0; good && i < tools->grasp_count; i++)
+        good = good_grasp(&tools->grasps[i], head, whole->model) &&
+               lar_spare_tool_of(list, tools->spare, tools->grasps[i].tool).shape != LAR_TOOL_NONE;
     fill_up(list, tools);
     return good;
 }
@@ -536,16 +537,16 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
 lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
                                 lar_checkpoint *checkpoint, lar_error *error) {
     const lar_model *model = whole->model;
-    const lar_tool_list *list = whole->acting.touch.list;
+    const lar_tool_list *list = whole->interactions.tool_contact.list;
     size_t nodes = (size_t)model->mesh.node_count;
     file_head head;
     lar_status status = check_file(path, bytes, &head, error);
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
-    const file_shape shape = {head.version, head.tools, head.holds};
+    const file_shape shape = {head.version, head.tools, head.grasps};
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
-    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MOST : 0) ||
-        head.holds < 0 || head.holds > LAR_HOLDS_MOST || bytes->size != file_bytes(&shape, nodes))
+    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MAX : 0) ||
+        head.grasps < 0 || head.grasps > LAR_GRASPS_MAX || bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -561,14 +562,14 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (!take_tools(&head, whole, &at, &found.tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
-    found.level = (const double *)(const void *)at;
-    found.u = (const node_vector *)(const void *)(found.level + nodes);
+    found.offset = (const double *)(const void *)at;
+    found.u = (const node_vector *)(const void *)(found.offset + nodes);
     found.v = found.u + nodes;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    if (!finite || !all_finite(found.level, 7 * nodes) || !none_negative(found.level, nodes) ||
-        head.step > STEPS_MOST)
+    if (!finite || !all_finite(found.offset, 7 * nodes) || !none_negative(found.offset, nodes) ||
+        head.step > STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    if (head.hash != hash_state(head.step, found.level, found.u, found.v, (lar_gid)nodes))
+    if (head.hash != hash_state(head.step, found.offset, found.u, found.v, (lar_gid)nodes))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
     *checkpoint = found;
     return LAR_OK;
@@ -583,7 +584,7 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
     for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
         size_t there = 4 * (size_t)whole->layout.local[g];
         memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
-        state->u[there + 3] = checkpoint->level[g];
+        state->u[there + 3] = checkpoint->offset[g];
         memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
     }
     state->step = checkpoint->step;

@@ -1,6 +1,6 @@
 /* A state in a file: everything that the next step depends on, and nothing about who computes it.
  *
- *     | head | division, tools, holds | levels | u of all nodes | v of all nodes | checksum |
+ *     | head | division, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
  *
  * Binary, words of eight bytes, described in docs/formats.md. The nodes are in the mesh's order, so
  * that a checkpoint of one grid goes on on any other; numbers are written as they are, so that the
@@ -19,7 +19,7 @@ typedef struct lar_checkpoint {
     uint64_t step;
     double external, damped, contact; /* as in lar_state */
     lar_tools tools;
-    const double *level;           /* [nodes of the mesh] in contact of bodies with themselves */
+    const double *offset;          /* [nodes of the mesh] in contact of bodies with themselves */
     const double (*u)[3], (*v)[3]; /* [nodes of the mesh] */
 } lar_checkpoint;
 

@@ -16,7 +16,7 @@
 #include "base/histogram.h"
 #include "base/memory.h"
 #include "base/pin.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/thread.h"
 #include "divide/grid_choice.h"
 #include "model/model.h"
@@ -25,7 +25,7 @@
 
 /* Fewer elements of a processor than this do not pay for the exchange; models of more take longer
  * to set up and try than can be waited for. */
-enum { ELEMENTS_LEAST = 250, ELEMENTS_MOST = 200000, TRIALS = 12, ROUNDS = 4 };
+enum { ELEMENTS_MIN = 250, ELEMENTS_MAX = 200000, TRIALS = 12, ROUNDS = 4 };
 static const double GAIN = 1.1;   /* times as fast: what more processors must be */
 static const double ROUND = 0.03; /* of one simulation [s] */
 /* Cores that were idle need a while until they run at their pace (study/bench/scaling.c). */
@@ -119,24 +119,24 @@ static void end_company(choosing *c) {
 /* ---- all of them ---------------------------------------------------------------------------- */
 
 /* 1, 2, 4, ... and all cores; with a clock also all but one, which is left to the others. */
-static int counts_of(int32_t cores, int32_t most, bool ticks, int32_t count[TRIALS]) {
+static int counts_of(int32_t cores, int32_t max, bool ticks, int32_t count[TRIALS]) {
     int counts = 0;
-    for (int32_t n = 2; n <= most && counts < TRIALS - 3; n *= 2) {
+    for (int32_t n = 2; n <= max && counts < TRIALS - 3; n *= 2) {
         if (ticks && n > cores - 1 && cores - 1 > n / 2 && cores > 2)
-            count[counts++] = cores - 1 < most ? cores - 1 : most;
+            count[counts++] = cores - 1 < max ? cores - 1 : max;
         count[counts++] = n;
     }
-    if (counts > 0 && count[counts - 1] < most) count[counts++] = most;
+    if (counts > 0 && count[counts - 1] < max) count[counts++] = max;
     return counts;
 }
 
 /* Ever more processors, until that is slower. What cannot be divided so is left out. */
 static lar_status begin_trials(choosing *c, int32_t cores, lar_error *error) {
     const lar_mesh *mesh = &c->model->mesh;
-    int32_t most = cores / (c->options.threads > 1 ? c->options.threads : 1);
+    int32_t max = cores / (c->options.threads > 1 ? c->options.threads : 1);
     int32_t count[TRIALS];
-    if (most > mesh->element_count / ELEMENTS_LEAST) most = mesh->element_count / ELEMENTS_LEAST;
-    int counts = counts_of(cores, most, c->aim.tick > 0, count);
+    if (max > mesh->element_count / ELEMENTS_MIN) max = mesh->element_count / ELEMENTS_MIN;
+    int counts = counts_of(cores, max, c->aim.tick > 0, count);
     double best = c->trial[0].score;
     for (int i = 0; i < counts; i++) {
         trial *t = &c->trial[c->trials];
@@ -255,7 +255,7 @@ static const char *why_not(const lar_model *model, const lar_options *options, i
     int32_t elements = model->mesh.element_count;
     if (options->verify) return "nothing moves in a verification";
     if (cores < 2) return "there is one core";
-    if (elements < 2 * ELEMENTS_LEAST) return "there are too few elements to divide";
+    if (elements < 2 * ELEMENTS_MIN) return "there are too few elements to divide";
     return NULL;
 }
 
@@ -278,7 +278,7 @@ lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
     if (!model || !choice)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_grid_choose needs a model and a place for the choice");
-    *choice = (lar_grid_choice){.grid = "1x1x1", .processors = 1, .cores = lar_share_cores()};
+    *choice = (lar_grid_choice){.grid = "1x1x1", .processors = 1, .cores = lar_usable_cores()};
     const char *asked = getenv("LARIAT_GRID"), *why;
     lar_status status = check(&c.options, error);
     if (status) return status;
@@ -287,8 +287,7 @@ lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
         snprintf(choice->reason, sizeof choice->reason, "%s", why);
         return LAR_OK;
     }
-    if (model->mesh.element_count > ELEMENTS_MOST)
-        return take_all(model, &c.options, choice, error);
+    if (model->mesh.element_count > ELEMENTS_MAX) return take_all(model, &c.options, choice, error);
     if (aim) c.aim = *aim;
     c.trial = lar_calloc(TRIALS, sizeof *c.trial);
     if (!c.trial) return lar_fail_memory(error, TRIALS * sizeof *c.trial, "a choice of grids");

@@ -8,9 +8,9 @@
 /* Of the strain energy. */
 static const double REST_SHARE = 1e-10;
 /* The slow period is an estimate for compact bodies; a slender beam creeps for hundreds of them. */
-static const double PERIODS_MOST = 1000;
+static const double PERIODS_MAX = 1000;
 
-enum { LOOKS_PER_PERIOD = 16, LEAST_LOOKS = LOOKS_PER_PERIOD / 2 /* of a window */ };
+enum { LOOKS_PER_PERIOD = 16, MIN_LOOKS = LOOKS_PER_PERIOD / 2 /* of a window */ };
 
 static uint64_t step_at(const lar_simulation *simulation, double time) {
     double step = ceil(time / lar_simulation_time_step(simulation));
@@ -25,8 +25,8 @@ static uint64_t steps_of(const lar_simulation *simulation, double periods) {
 }
 
 static void open_window(lar_rest *rest, uint64_t step) {
-    uint64_t least = LEAST_LOOKS * rest->every, share = (step - rest->since_step) / 4;
-    rest->window = (lar_rest_window){.begin = step, .end = step + (least > share ? least : share)};
+    uint64_t min = MIN_LOOKS * rest->every, share = (step - rest->since_step) / 4;
+    rest->window = (lar_rest_window){.begin = step, .end = step + (min > share ? min : share)};
     rest->next = step + rest->every;
 }
 
@@ -40,7 +40,7 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     uint64_t since = step_at(simulation, rest->since);
     rest->since_step = since > now ? since : now;
     rest->every = steps_of(simulation, 1.0 / LOOKS_PER_PERIOD);
-    rest->limit = rest->since_step + steps_of(simulation, PERIODS_MOST);
+    rest->limit = rest->since_step + steps_of(simulation, PERIODS_MAX);
     open_window(rest, rest->since_step);
 }
 

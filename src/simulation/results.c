@@ -1,5 +1,5 @@
-/* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv; where a
- * fine surface rides on the mesh also that, when it is asked for (results_surface.h).
+/* Results in a folder: frames NAME_000000.vtu, ... , the series NAME.pvd and probes.csv; where the
+ * model has an embedded surface also that, when it is asked for (results_surface.h).
  *
  * After every frame the folder can be opened as it is: frames and series appear whole (written
  * beside and renamed). Positions are those of the reference; the point array "displacement"

@@ -124,9 +124,9 @@ lar_status lar_results_spare(const char *path, const lar_model *model, lar_error
     bool mesh = same_file(&file, model->mesh.source);
     for (int i = 0; i < model->mesh_file_count; i++)
         mesh = mesh || same_file(&file, model->mesh_file[i]);
-    if (!mesh && !same_file(&file, model->embedding.surface.source)) return LAR_OK;
+    if (!mesh && !same_file(&file, model->embedded.surface.source)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO,
                     "%s: is the %s of this model and will not be overwritten by results; choose "
                     "another folder for the results",
-                    path, mesh ? "mesh" : "fine surface");
+                    path, mesh ? "mesh" : "embedded surface");
 }

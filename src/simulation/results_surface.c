@@ -22,12 +22,13 @@ lar_status lar_surface_results_open(lar_surface_results *results, const char *fo
     *results = (lar_surface_results){0};
     if (!lar_model_embedded(model, NULL)) return LAR_OK;
     lar_triangles *placed = &results->placed;
-    *placed = model->embedding.surface;
+    *placed = model->embedded.surface;
     size_t vertices = (size_t)placed->vertex_count, nodes = (size_t)model->mesh.node_count;
     placed->vertex = lar_calloc(vertices, sizeof *placed->vertex);
     results->u = lar_calloc(nodes, sizeof *results->u);
     if (!placed->vertex || !results->u)
-        return lar_fail_memory(error, 24 * (vertices + nodes), "the places of the fine surface");
+        return lar_fail_memory(error, 24 * (vertices + nodes),
+                               "the places of the embedded surface");
     return lar_series_open(&results->series, folder, name_beside(taken), ".vtp", error);
 }
 

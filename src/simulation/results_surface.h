@@ -1,4 +1,4 @@
-/* surface_000000.vtp, ... and surface.pvd: the fine surface that rides on the mesh, where it is. */
+/* surface_000000.vtp, ... and surface.pvd: the embedded surface, where it is. */
 #ifndef LAR_SIMULATION_RESULTS_SURFACE_H
 #define LAR_SIMULATION_RESULTS_SURFACE_H
 
@@ -15,7 +15,7 @@ typedef struct lar_surface_results {
 lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
                                               const lar_model *model, lar_error *error);
 
-/* Without a riding surface all of these do nothing. `taken`: the name of the frames of the mesh,
+/* Without an embedded surface all of these do nothing. `taken`: the name of the frames of the mesh,
  * which stays theirs. The caller closes in any case. */
 lar_status lar_surface_results_open(lar_surface_results *results, const char *folder,
                                     const char *taken, const lar_model *model, lar_error *error);

@@ -18,7 +18,7 @@ lar_options lar_options_default(void) {
 /* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
  * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
 static void set_initial_displacements(lar_simulation *simulation) {
-    const lar_conditions *conditions = &simulation->domain.acting.conditions;
+    const lar_conditions *conditions = &simulation->domain.interactions.conditions;
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double value = lar_constraint_value(simulation->domain.model, c, 0);
@@ -33,14 +33,14 @@ static void set_initial_velocities(lar_simulation *simulation) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
     const lar_model *model = domain->model;
-    double keep = domain->motion.keep, gravity[3];
+    double keep = domain->leapfrog.keep, gravity[3];
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
             memcpy(state->v + 4 * domain->layout.local[initial->nodes.node[k]], initial->velocity,
                    sizeof initial->velocity);
     }
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
     lar_gravity_at(model, NULL, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
@@ -52,14 +52,14 @@ static void set_initial_velocities(lar_simulation *simulation) {
             state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
         }
     memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
-    for (int32_t i = 0; i < domain->acting.conditions.constraint_count; i++)
-        state->v[domain->acting.conditions.constraint[i].value] = 0;
+    for (int32_t i = 0; i < domain->interactions.conditions.constraint_count; i++)
+        state->v[domain->interactions.conditions.constraint[i].value] = 0;
 }
 
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
-    if (domain->motion.keep > 0) return LAR_OK;
+    if (domain->leapfrog.keep > 0) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
                     "a damping below %.3g 1/s or a time_step below %.3g s",
@@ -72,10 +72,10 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_element_kind %d does not exist; use LAR_ELEMENT_HEX8",
                         (int)options->element);
-    if (options->threads < 0 || options->threads > LAR_THREADS_MOST)
+    if (options->threads < 0 || options->threads > LAR_THREADS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d threads of a processor; there can be 1 to %d, and more processors",
-                        (int)options->threads, LAR_THREADS_MOST);
+                        (int)options->threads, LAR_THREADS_MAX);
     return LAR_OK;
 }
 
@@ -131,10 +131,10 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     simulation->measured = simulation->taken = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
     lar_simulation_settle(simulation);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     set_initial_displacements(simulation);
     set_initial_velocities(simulation);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,
@@ -147,13 +147,13 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
     domain->interval = lar_interval_length(domain, &simulation->tools);
-    status = lar_touch_create(model, domain->layout.local, NULL, &simulation->list,
-                              &simulation->tools, &domain->acting.touch, error);
-    domain->acting.touch.always = options->search_always != 0;
+    status = lar_tool_contact_create(model, domain->layout.local, NULL, &simulation->list,
+                                     &simulation->tools, &domain->interactions.tool_contact, error);
+    domain->interactions.tool_contact.always = options->search_always != 0;
     if (!status)
-        status = lar_collide_create(model, domain->mass, domain->layout.local, domain->time_step,
-                                    domain->stable_step, options->search_always != 0,
-                                    &domain->acting.collide, error);
+        status = lar_body_contact_create(
+            model, domain->mass, domain->layout.local, domain->time_step, domain->stable_step,
+            options->search_always != 0, &domain->interactions.body_contact, error);
     if (!status) status = check_damping(domain, error);
     if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
     if (status) return status;
@@ -208,39 +208,39 @@ void lar_simulation_destroy(lar_simulation *simulation) {
 }
 
 /* Steps up to `end`, an interval's or the advance's. False when it shall not go on. */
-static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_watch *watch,
+static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_callback *callback,
                             void *context) {
     lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
-    lar_trip *trip = &simulation->trip;
+    lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
-    lar_touch_forget_depths(&domain->acting.touch);
+    lar_tool_contact_forget_depths(&domain->interactions.tool_contact);
     state->need = 0;
     while (state->step < end && goes_on) {
-        lar_step(domain, state, trip);
-        if (trip->kind) lar_trip_examine(domain, state, 0, domain->layout.node_count, trip);
+        lar_step(domain, state, fault);
+        if (fault->kind) lar_fault_examine(domain, state, 0, domain->layout.node_count, fault);
         bool whole = state->part == 0;
-        goes_on = !trip->kind && (!watch || !whole || watch(context, state->step));
+        goes_on = !fault->kind && (!callback || !whole || callback(context, state->step));
     }
     simulation->report = (lar_report){0};
-    lar_report_add(&simulation->report, &domain->acting, state);
+    lar_report_add(&simulation->report, &domain->interactions, state);
     lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
                          &simulation->tools);
     return goes_on;
 }
 
 /* `first`: of the portions of an advance. False when the watch has stopped it. */
-static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first, lar_watch *watch,
-                          void *context) {
+static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
+                          lar_step_callback *callback, void *context) {
     const uint64_t *step = &simulation->state.step;
     bool goes_on = true;
-    if (first) lar_report_begin(&simulation->domain.acting);
+    if (first) lar_report_begin(&simulation->domain.interactions);
     if (first) lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
         uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
-        goes_on = advance_stretch(simulation, until < end ? until : end, watch, context);
+        goes_on = advance_stretch(simulation, until < end ? until : end, callback, context);
     }
     return goes_on;
 }
@@ -253,7 +253,7 @@ enum { STEPS_BETWEEN_LOOKS = 32 }; /* at what contact has given */
  * by more than it was the last time, or may be: what a report has lacks half of its last step,
  * which is taken for as much as all steps since the last look. The steps of looks are the same
  * however a run is divided into advances, and intervals end there (step/interval.h). */
-static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
+static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3;
     double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
     simulation->taken = taken;
@@ -265,61 +265,61 @@ static lar_status watch_contact(lar_simulation *simulation, lar_error *error) {
     simulation->measured = fmax(simulation->measured, e.kinetic + e.strain + e.hourglass);
     double given = -e.contact;
     if (!(given > NOTHING * simulation->measured)) return LAR_OK;
-    simulation->trip =
-        (lar_trip){.kind = LAR_TRIP_GAIN, .step = simulation->state.step, .given = given};
-    lar_trip_examine(&simulation->domain, &simulation->state, 0,
-                     simulation->domain.layout.node_count, &simulation->trip);
+    simulation->fault =
+        (lar_fault){.kind = LAR_FAULT_ENERGY_GAIN, .step = simulation->state.step, .given = given};
+    lar_fault_examine(&simulation->domain, &simulation->state, 0,
+                      simulation->domain.layout.node_count, &simulation->fault);
     return LAR_OK;
 }
 
-/* Up to the step `end`, or less far when the watch or a trip stops it: *goes_on is false then. */
+/* Up to the step `end`, or less far when the watch or a fault stops it: *goes_on is false then. */
 static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool first,
-                                  lar_watch *watch, void *context, bool *goes_on,
+                                  lar_step_callback *callback, void *context, bool *goes_on,
                                   lar_error *error) {
     lar_computer *computer = simulation->computer;
     lar_status status = LAR_OK;
     if (computer) {
         uint64_t steps = end - lar_simulation_steps(simulation);
-        status =
-            lar_computer_advance(computer, steps, first, watch, context, &simulation->trip, error);
+        status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
+                                      error);
         simulation->report = computer->report;
         simulation->gathered = false;
         *goes_on = !computer->called_off;
     } else {
-        *goes_on = advance_alone(simulation, end, first, watch, context);
+        *goes_on = advance_alone(simulation, end, first, callback, context);
     }
-    if (status || simulation->trip.kind) *goes_on = false;
+    if (status || simulation->fault.kind) *goes_on = false;
     return status;
 }
 
-static lar_status advance(lar_simulation *simulation, uint64_t end, lar_watch *watch, void *context,
-                          lar_error *error) {
+static lar_status advance(lar_simulation *simulation, uint64_t end, lar_step_callback *callback,
+                          void *context, lar_error *error) {
     lar_status status = LAR_OK;
     uint64_t step = lar_simulation_steps(simulation);
     bool goes_on = true;
     for (bool first = true; !status && goes_on && (first || step < end); first = false) {
         uint64_t look = (step / STEPS_BETWEEN_LOOKS + 1) * STEPS_BETWEEN_LOOKS;
-        status = advance_portion(simulation, look < end ? look : end, first, watch, context,
+        status = advance_portion(simulation, look < end ? look : end, first, callback, context,
                                  &goes_on, error);
         step = lar_simulation_steps(simulation);
-        if (status || simulation->trip.kind || step % STEPS_BETWEEN_LOOKS != 0) continue;
-        status = watch_contact(simulation, error);
-        if (simulation->trip.kind) goes_on = false;
+        if (status || simulation->fault.kind || step % STEPS_BETWEEN_LOOKS != 0) continue;
+        status = check_contact(simulation, error);
+        if (simulation->fault.kind) goes_on = false;
     }
     return status;
 }
 
-lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                                  void *context, lar_error *error) {
-    lar_trip *trip = &simulation->trip;
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
+                                  lar_step_callback *callback, void *context, lar_error *error) {
+    lar_fault *fault = &simulation->fault;
     lar_status status = LAR_OK;
-    if (!trip->kind) {
+    if (!fault->kind) {
         uint64_t before = lar_simulation_steps(simulation);
-        status = advance(simulation, before + steps, watch, context, error);
+        status = advance(simulation, before + steps, callback, context, error);
         simulation->report_steps = lar_simulation_steps(simulation) - before;
     }
-    if (!status) lar_trip_blame(&simulation->domain, trip);
-    return status ? status : lar_trip_report(&simulation->domain, trip, error);
+    if (!status) lar_fault_attribute(&simulation->domain, fault);
+    return status ? status : lar_fault_report(&simulation->domain, fault, error);
 }
 
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
@@ -330,7 +330,7 @@ lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
 }
 
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
-    simulation->trip = (lar_trip){0};
+    simulation->fault = (lar_fault){0};
     simulation->report = (lar_report){0};
     simulation->report_steps = 0;
     simulation->measured = simulation->taken = 0;
@@ -341,14 +341,15 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
 
 /* In one process gathering cannot fail and waits until somebody looks; between processes it can,
  * and nobody who looks could say so. */
-lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t steps,
-                                          lar_watch *watch, void *context, lar_error *error) {
+lar_status lar_simulation_advance_with(lar_simulation *simulation, uint64_t steps,
+                                       lar_step_callback *callback, void *context,
+                                       lar_error *error) {
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
     lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_advance", error);
     if (status) return status;
-    status = lar_simulation_compute(simulation, steps, watch, context, error);
+    status = lar_simulation_compute(simulation, steps, callback, context, error);
     bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
     if (may_gather && simulation->computer && simulation->computer->control) {
         lar_error lost;
@@ -359,7 +360,7 @@ lar_status lar_simulation_advance_watched(lar_simulation *simulation, uint64_t s
 }
 
 lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps, lar_error *error) {
-    return lar_simulation_advance_watched(simulation, steps, NULL, NULL, error);
+    return lar_simulation_advance_with(simulation, steps, NULL, NULL, error);
 }
 
 lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {
@@ -452,7 +453,7 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
 
 size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
-    const lar_conditions *conditions = &domain->acting.conditions;
+    const lar_conditions *conditions = &domain->interactions.conditions;
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;

@@ -12,7 +12,7 @@
 struct lar_simulation {
     lar_domain domain;
     lar_state state;
-    lar_trip trip;
+    lar_fault fault;
     lar_tool_list list;
     lar_tools tools;
     lar_interval interval;  /* of an advance without a computer */
@@ -30,17 +30,17 @@ struct lar_simulation {
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
 const lar_state *lar_simulation_state(const lar_simulation *simulation);
 
-/* lar_simulation_advance_watched without bringing the state together: what a tick of a session
+/* lar_simulation_advance_with without bringing the state together: what a tick of a session
  * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between
  * processes it can. */
-lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps, lar_watch *watch,
-                                  void *context, lar_error *error);
+lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
+                                  lar_step_callback *callback, void *context, lar_error *error);
 lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
 
 /* A session lets its own thread alone change the simulation, or everyone again. */
-void lar_simulation_hold(lar_simulation *simulation, bool held);
+void lar_simulation_reserve(lar_simulation *simulation, bool held);
 /* Called by that thread: it is the one. */
-void lar_simulation_hold_here(const lar_simulation *simulation);
+void lar_simulation_reserve_here(const lar_simulation *simulation);
 
 /* Refuses NULL, processors other than zero, and what a session computes on. `call`: the public
  * name. */
@@ -70,7 +70,7 @@ lar_status lar_simulation_add_tool_at(lar_simulation *simulation, const lar_tool
                                       int32_t place, lar_error *error);
 int32_t lar_simulation_free_place(const lar_simulation *simulation);
 
-/* All processors go on from simulation->state and ->tools as they are now; what tripped and what
+/* All processors go on from simulation->state and ->tools as they are now; what failed and what
  * was felt is forgotten. */
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error);
 

@@ -35,7 +35,7 @@ static void copy_state(const lar_state *from, lar_state *to) {
 
 lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
                                lar_error *error) {
-    if (simulation->trip.kind)
+    if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the state at step %llu is not kept: the run has broken off, and would "
                         "again from here; load an earlier checkpoint or go back to the start",
@@ -55,7 +55,7 @@ lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *s
     memset(simulation->state.force, 0,
            4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
     simulation->tools = *tools;
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     return lar_simulation_take_up(simulation, error);
 }
 
@@ -68,7 +68,7 @@ lar_status lar_simulation_pack(const lar_simulation *simulation, const char *pat
                                lar_error *error) {
     /* Bringing the state together changes nothing that the caller sees. */
     lar_simulation *own = (lar_simulation *)simulation;
-    if (simulation->trip.kind)
+    if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "%s: is not written: the run has broken off, and would again from here; "
                         "load an earlier checkpoint or go back to the start",
@@ -87,7 +87,7 @@ lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
         status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
     if (status) return status;
     lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
-    lar_acting_forget(&simulation->domain.acting);
+    lar_interactions_forget(&simulation->domain.interactions);
     return lar_simulation_take_up(simulation, error);
 }
 

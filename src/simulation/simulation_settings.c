@@ -181,7 +181,7 @@ lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t mate
                         "model's materials for more",
                         factor, LAR_FACTOR_MIN, LAR_FACTOR_MAX);
     lar_settings wanted = simulation->tools.settings;
-    for (int i = 0; i < LAR_FACTORS_MOST; i++)
+    for (int i = 0; i < LAR_FACTORS_MAX; i++)
         if (material < 0 || i == lar_factor_of(material)) wanted.factor[i] = factor;
     if (memcmp(&wanted, &simulation->tools.settings, sizeof wanted) == 0) return LAR_OK;
     status = lar_simulation_gather(simulation, error);

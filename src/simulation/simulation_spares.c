@@ -5,7 +5,7 @@
 #include "base/vector.h"
 #include "model/contact_check.h"
 #include "simulation/simulation.h"
-#include "step/hold.h"
+#include "step/grasp.h"
 
 /* A grasper's jaws, where nobody says how far they open: 60 degrees, as in scenes. */
 static const double SPREAD = LAR_PI / 3;
@@ -45,7 +45,7 @@ static void measure_room(const lar_simulation *simulation, room *around) {
 /* Above everything, tip down, places side by side: nothing of a tool is below its tip but the jaws
  * of a grasper. Room for a wide one, and for the tissue to move a little. */
 static void find_place(const room *around, int32_t place, lar_tool *tool) {
-    static const double aside[LAR_SPARES_MOST] = {0, 1, -1, 2};
+    static const double aside[LAR_SPARES_MAX] = {0, 1, -1, 2};
     static const double CLEAR = 0.05;
     double wide = fmax(0.25 * (around->upper[0] - around->lower[0]), 3 * tool->radius);
     double below = tool->shape == LAR_TOOL_GRASPER ? tool->length : 0;
@@ -59,36 +59,36 @@ static void find_place(const room *around, int32_t place, lar_tool *tool) {
 
 /* ---- what may be added ---------------------------------------------------------------------- */
 
-/* A face feels tools at 6 x 6 points at most (contact/touch.h): what is thinner could slip between
- * four of them. */
-static double least_radius(const lar_simulation *simulation) {
-    const lar_touch *touch = &simulation->domain.acting.touch;
+/* A face feels tools at 6 x 6 points at most (contact/tool_contact.h): what is thinner could slip
+ * between four of them. */
+static double min_radius(const lar_simulation *simulation) {
+    const lar_tool_contact *contact = &simulation->domain.interactions.tool_contact;
     double edge = 0;
-    for (int32_t f = 0; f < touch->face_count; f++) edge = fmax(edge, touch->face[f].edge);
+    for (int32_t f = 0; f < contact->face_count; f++) edge = fmax(edge, contact->face[f].edge);
     return edge / LAR_POINTS_ALONG_EDGE * sqrt(0.5);
 }
 
 static lar_status check_size(const lar_simulation *simulation, const lar_tool *tool, double size,
                              lar_error *error) {
-    const double RADIUS_MOST = 0.5, LENGTH_MOST = 5;
-    const char *wrong = lar_tool_size_fault(tool);
-    double least = least_radius(simulation);
+    const double RADIUS_MAX = 0.5, LENGTH_MAX = 5;
+    const char *wrong = lar_tool_size_problem(tool);
+    double min = min_radius(simulation);
     if (wrong) return lar_fail(error, LAR_ERROR_ARGUMENT, "the tool cannot be added: %s", wrong);
-    if (tool->radius < least)
+    if (tool->radius < min)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a radius of %.4g mm is too thin: large faces of this body would not feel "
                         "the tool everywhere; give it %.3g mm or more",
-                        1e3 * tool->radius, 1e3 * 1.05 * least);
-    if (tool->radius > RADIUS_MOST * size)
+                        1e3 * tool->radius, 1e3 * 1.05 * min);
+    if (tool->radius > RADIUS_MAX * size)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a radius of %.4g mm is too large for a body that is %.3g mm across; give "
                         "the tool %.3g mm at most",
-                        1e3 * tool->radius, 1e3 * size, 1e3 * 0.99 * RADIUS_MOST * size);
-    if (tool->length > LENGTH_MOST * size)
+                        1e3 * tool->radius, 1e3 * size, 1e3 * 0.99 * RADIUS_MAX * size);
+    if (tool->length > LENGTH_MAX * size)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a length of %.4g mm is too large for a body that is %.3g mm across; give "
                         "the tool %.3g mm at most",
-                        1e3 * tool->length, 1e3 * size, 1e3 * 0.99 * LENGTH_MOST * size);
+                        1e3 * tool->length, 1e3 * size, 1e3 * 0.99 * LENGTH_MAX * size);
     return LAR_OK;
 }
 
@@ -126,7 +126,7 @@ static void forget_tool(lar_simulation *simulation, int32_t tool) {
 static lar_status check_add(const lar_simulation *simulation, int32_t place, lar_error *error) {
     lar_status status = lar_simulation_check_change(simulation, "lar_simulation_add_tool", error);
     if (status) return status;
-    if (simulation->trip.kind)
+    if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "the run has broken off; reset it or load a state before tools are added");
     return check_place(simulation, place, error);
@@ -182,7 +182,7 @@ lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_t tool, 
                         simulation->list.tool[tool].name);
     if (!simulation->tools.spare[place].placed)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %ld is not there", (long)tool);
-    lar_hold_drop(tool, &simulation->tools);
+    lar_grasp_drop(tool, &simulation->tools);
     lar_spare_clear(place, &simulation->list, &simulation->tools);
     forget_tool(simulation, tool);
     lar_simulation_limit_tools(simulation);

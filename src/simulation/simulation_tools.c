@@ -4,17 +4,17 @@
 
 #include "base/vector.h"
 #include "contact/tool_body.h"
-#include "step/hold.h"
+#include "step/grasp.h"
 #include "simulation/simulation.h"
 
 /* The simulation that this thread computes for a session. */
 static _Thread_local const lar_simulation *held_here;
 
-void lar_simulation_hold(lar_simulation *simulation, bool held) {
+void lar_simulation_reserve(lar_simulation *simulation, bool held) {
     __atomic_store_n(&simulation->held, held, __ATOMIC_RELEASE);
 }
 
-void lar_simulation_hold_here(const lar_simulation *simulation) {
+void lar_simulation_reserve_here(const lar_simulation *simulation) {
     held_here = simulation;
 }
 
@@ -87,7 +87,7 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
 /* ---- moving -------------------------------------------------------------------------------- */
 
 /* Beyond this a step could not be told from the next as a number. */
-static const double STEPS_MOST = 0x1p53;
+static const double STEPS_MAX = 0x1p53;
 
 /* Finite, and a turn of length one but for rounding, which it then is. */
 static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_pose *clean,
@@ -120,8 +120,8 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
     lar_segment from[2], to[2];
     lar_tool_place(tool, now, &body, from);
     lar_tool_place(tool, pose, &body, to);
-    double way = lar_tool_way(from, to, body.count), most = 0.5 * tool->radius * (double)steps;
-    if (way <= most) return LAR_OK;
+    double way = lar_tool_way(from, to, body.count), max = 0.5 * tool->radius * (double)steps;
+    if (way <= max) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "
                     "step (%.4g m/s); take more steps or a smaller way",
@@ -143,23 +143,23 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     lar_tool_pose now, wanted;
     uint64_t step = lar_simulation_steps(simulation);
     double time_step = simulation->domain.time_step;
-    if (steps < 1 || (double)steps > STEPS_MOST)
+    if (steps < 1 || (double)steps > STEPS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
                         tool->name, (unsigned long long)steps);
     lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
     status = check_pose(tool, pose, &wanted, error);
-    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0))
+    if (!status && !(tool->shape == LAR_TOOL_HAND && lar_grasp_count(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
-    if (!status && lar_hold_changes(tool, motion, wanted.opening)) {
+    if (!status && lar_grasp_changes(tool, motion, wanted.opening)) {
         /* An empty hand is where it takes hold: its way there means nothing. */
-        if (tool->shape == LAR_TOOL_HAND && lar_hold_count(tools, index) == 0) now = wanted;
+        if (tool->shape == LAR_TOOL_HAND && lar_grasp_count(tools, index) == 0) now = wanted;
         status = lar_simulation_gather(simulation, error);
         if (!status)
-            status = lar_hold_update(&simulation->domain, &simulation->state, &simulation->list,
-                                     index, &wanted, tools, error);
+            status = lar_grasp_update(&simulation->domain, &simulation->state, &simulation->list,
+                                      index, &wanted, tools, error);
     }
     if (status) return status;
-    lar_hold_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
+    lar_grasp_ease(&simulation->domain, &simulation->list, index, wanted.opening, tools);
     lar_tool_ask(tools, index,
                  &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
     if (simulation->computer) simulation->computer->tools_sent = false;
@@ -198,12 +198,12 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     lar_minus(hand.position, now.position, apart);
     memset(force, 0, sizeof *force); /* gaps, too */
     force->touching = sum->touching;
-    force->held = lar_hold_count(tools, tool);
+    force->held = lar_grasp_count(tools, tool);
     force->limit = limit_of(&simulation->list, tool);
     force->depth = simulation->report_steps ? interval->depth[tool] : 0;
     force->apart = lar_length(apart);
     force->limited = tools->follower[tool].lagging != 0;
-    force->grasp = grasp_of(sum, unit);
+    force->grasp_force = grasp_of(sum, unit);
     for (int i = 0; i < 3; i++) {
         force->force[i] = (double)sum->force[i] * unit;
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
@@ -223,10 +223,10 @@ int32_t lar_simulation_step_parts(const lar_simulation *simulation) {
     return parts > 1 ? parts : 1;
 }
 
-uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *most) {
-    if (most) *most = 0;
+uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max) {
+    if (max) *max = 0;
     if (!simulation) return 0;
     const lar_interval *interval = interval_of(simulation);
-    if (most) *most = interval->parts > 1 ? interval->parts : 1;
+    if (max) *max = interval->parts > 1 ? interval->parts : 1;
     return interval->divided;
 }

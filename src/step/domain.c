@@ -20,9 +20,9 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
                                     : lar_hex8_full_frequency(corner, material);
 }
 
-/* `rate` may be NULL; else [elements], and `most`: lar_domain.fastest. */
+/* `rate` may be NULL; else [elements], and `max`: lar_domain.fastest. */
 static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                              lar_gid *worst, lar_element_rate *rate, double *most,
+                              lar_gid *worst, lar_element_rate *rate, double *max,
                               lar_error *error) {
     double fastest = 0;
     *worst = 0;
@@ -32,7 +32,7 @@ static lar_status stable_step(const lar_model *model, lar_element_kind kind, dou
         if (rate) {
             double density = lar_model_material_of(model, e)->density;
             rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
-            double *among = &most[lar_factor_of(model->element_material[e])];
+            double *among = &max[lar_factor_of(model->element_material[e])];
             *among = fmax(*among, rate[e].square);
         }
         if (!(frequency <= fastest)) {
@@ -152,12 +152,12 @@ static bool same_run(const lar_lanes *a, const lar_lanes *b) {
 }
 
 /* The runs of equal blocks, of at most so many, and the memory they need. */
-static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) {
+static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
     const lar_layout *layout = &domain->layout;
     int32_t runs = 0;
     for (int32_t b = 0, length = 0; b < layout->block_count; b++) {
         bool begins =
-            b == 0 || length == most || !same_run(&layout->block[b - 1], &layout->block[b]);
+            b == 0 || length == max || !same_run(&layout->block[b - 1], &layout->block[b]);
         runs += begins;
         length = begins ? 1 : length + 1;
     }
@@ -167,7 +167,7 @@ static lar_status list_runs(lar_domain *domain, int32_t most, lar_error *error) 
         return lar_fail_memory(error, (size_t)runs * sizeof *domain->run, "the runs of elements");
     for (int32_t b = 0; b < layout->block_count; b++) {
         const lar_lanes *lanes = &layout->block[b];
-        if (b == 0 || domain->run[domain->run_count - 1].count == most ||
+        if (b == 0 || domain->run[domain->run_count - 1].count == max ||
             !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
             domain->run[domain->run_count++] = (lar_block_run){
@@ -227,9 +227,8 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     /* Modal forces S B stay below 2^54 units for |S| below this, hourglass forces below 2^54 too:
      * a node with hundreds of elements cannot overflow 63 bits. */
     double stress = 0x1p54 / (3 * steepest);
-    domain->limits = (lar_hex8_limits){.least_volume = 0.01,
-                                       .stress_square = stress * stress,
-                                       .hourglass_square = 0x1p54 * 0x1p54};
+    domain->limits = (lar_hex8_limits){
+        .min_volume = 0.01, .stress_square = stress * stress, .hourglass_square = 0x1p54 * 0x1p54};
     return LAR_OK;
 }
 
@@ -238,7 +237,7 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
 static lar_status copy_materials(lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     size_t count = (size_t)model->material_count;
-    for (int i = 0; i < LAR_FACTORS_MOST; i++) domain->factor[i] = 1;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) domain->factor[i] = 1;
     domain->material = lar_calloc(count, sizeof *domain->material);
     if (!domain->material)
         return lar_fail_memory(error, count * sizeof *domain->material, "the materials");
@@ -261,7 +260,7 @@ lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, doubl
 }
 
 /* Elements whose material has changed. */
-static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST]) {
+static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MAX]) {
     char *memory = domain->blocks;
     for (int32_t r = 0; r < domain->run_count; r++)
         for (int32_t b = 0; b < domain->run[r].count; b++) {
@@ -279,8 +278,8 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MOST
 
 bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
     const lar_model *model = domain->model;
-    bool changed[LAR_FACTORS_MOST], any = false;
-    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+    bool changed[LAR_FACTORS_MAX], any = false;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) {
         changed[i] = settings->factor[i] != domain->factor[i];
         any = any || changed[i];
         double factor = settings->factor[i];
@@ -315,7 +314,7 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
 }
 
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
- * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (DESIGN 5). */
+ * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (docs/theory.md). */
 static void choose_scale(lar_domain *domain) {
     const lar_model *model = domain->model;
     double characteristic = DBL_MIN;
@@ -357,8 +356,8 @@ static void prepare_motion(lar_domain *domain) {
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
     lar_gravity_at(model, NULL, 0, gravity);
-    domain->motion = (lar_motion){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
-    for (int i = 0; i < 3; i++) domain->motion.drift[i] = gravity[i] * dt / (1 + half);
+    domain->leapfrog = (lar_leapfrog){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
+    for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0)
             domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
@@ -367,8 +366,8 @@ static void prepare_motion(lar_domain *domain) {
         lar_mesh_corners(&model->mesh, e, corner);
         shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
     }
-    /* Two watches (LAR_WATCH_INTERVAL) apart, no hourglass mode can grow beyond the integers. */
-    domain->motion.speed = 256 * shortest / dt;
+    /* Between two looks of the monitor, no hourglass mode can grow beyond the integers. */
+    domain->leapfrog.speed = 256 * shortest / dt;
 }
 
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
@@ -382,7 +381,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = copy_materials(domain, error);
     if (!status) status = choose_step(domain, options, error);
-    domain->interval = LAR_INTERVAL_MOST; /* with tools: lar_interval_length */
+    domain->interval = LAR_INTERVAL_MAX; /* with tools: lar_interval_length */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = spread_mass(domain, error);
@@ -394,8 +393,8 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     }
     if (!status)
         status = lar_conditions_create(model, domain->layout.local, NULL,
-                                       &domain->acting.conditions, error);
-    double largest = status ? 0 : lar_conditions_largest(&domain->acting.conditions);
+                                       &domain->interactions.conditions, error);
+    double largest = status ? 0 : lar_conditions_largest(&domain->interactions.conditions);
     if (!status && largest * domain->scale > 0x1p58)
         status = lar_fail(error, LAR_ERROR_MODEL,
                           "%s: a nodal force of %g N is far beyond what this material can bear; "
@@ -426,7 +425,7 @@ static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_d
 }
 
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
-                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  const bool *counted, int32_t run_max, lar_domain *domain,
                                   lar_error *error) {
     *domain = (lar_domain){.model = whole->model,
                            .kernels = whole->kernels,
@@ -438,13 +437,13 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .rate_lent = true,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
-                           .motion = whole->motion};
+                           .leapfrog = whole->leapfrog};
     lar_status status = copy_materials(domain, error);
     if (!status)
         status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
     if (!status) status = list_spares(domain, error);
     if (!status) status = copy_nodes(whole, counted, domain, error);
-    if (!status) status = list_runs(domain, run_most, error);
+    if (!status) status = list_runs(domain, run_max, error);
     if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     domain->limits = whole->limits; /* a run stops for the same reason on any grid */
     if (status) lar_domain_destroy(domain);
@@ -452,7 +451,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
 }
 
 void lar_domain_destroy(lar_domain *domain) {
-    lar_acting_destroy(&domain->acting);
+    lar_interactions_destroy(&domain->interactions);
     lar_layout_destroy(&domain->layout);
     free(domain->run);
     free(domain->run_first);

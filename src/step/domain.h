@@ -13,7 +13,7 @@
 #ifndef LAR_STEP_DOMAIN_H
 #define LAR_STEP_DOMAIN_H
 
-#include "contact/acting.h"
+#include "contact/interactions.h"
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
@@ -43,14 +43,14 @@ typedef struct lar_domain {
     void *blocks;           /* all blocks of all runs */
     lar_lane_base *base;    /* [8 for each block] */
     lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
-    double factor[LAR_FACTORS_MOST];  /* of their stiffness (model/settings.h); atomic */
-    double fastest[LAR_FACTORS_MOST]; /* square of the highest frequency at rest among the
+    double factor[LAR_FACTORS_MAX];  /* of their stiffness (model/settings.h); atomic */
+    double fastest[LAR_FACTORS_MAX]; /* square of the highest frequency at rest among the
                                          elements of these materials [1/s^2]; a whole's */
     double *corner_limit;    /* [8 for each block] lar_hex8_corner_limit, in squared force units */
     double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
     int32_t *strained;       /* [8 for each block] what the guard looks at in every step, */
     int32_t *strained_count; /* [run_count] the first of a run's place; scratch (step/guard.h) */
-    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a watch */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
     lar_element_rate *rate;              /* [elements of the model] */
     bool rate_lent;                      /* `rate` belongs to the whole */
     size_t block_bytes;
@@ -69,9 +69,9 @@ typedef struct lar_domain {
     double stable_step; /* the elements' bound at rest [s] */
     lar_gid stable_worst;
     lar_hex8_limits limits;
-    lar_motion motion; /* without gravity when gravity follows a curve */
+    lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 
-    lar_acting acting;
+    lar_interactions interactions;
 } lar_domain;
 
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic
@@ -85,10 +85,10 @@ void lar_domain_destroy(lar_domain *domain); /* idempotent */
 
 /* The domain of one processor of several: the same scale, step, limits and turned corners as the
  * whole, which must outlive it. counted[node of the model]: whether this processor accounts for the
- * node's energies, for one of several has to. Runs have at most run_most blocks. Conditions are
+ * node's energies, for one of several has to. Runs have at most run_max blocks. Conditions are
  * left to the caller: they belong to threads. */
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
-                                  const bool *counted, int32_t run_most, lar_domain *domain,
+                                  const bool *counted, int32_t run_max, lar_domain *domain,
                                   lar_error *error);
 
 /* The elements' bound of the time step at rest and the element that sets it. */

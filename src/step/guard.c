@@ -49,32 +49,32 @@ static double need_of(const lar_domain *domain, const lar_state *state, lar_gid 
     return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
 
-/* Strained lanes of one block, from entry `i` of a watch on. Returns where those of the next
+/* Strained lanes of one block, from entry `i` of a monitor on. Returns where those of the next
  * begin. */
-static int32_t lanes_of_block(const lar_hex8_watch *watch, int32_t i, int32_t *block,
+static int32_t lanes_of_block(const lar_hex8_monitor *monitor, int32_t i, int32_t *block,
                               unsigned *lanes) {
-    *block = watch->lane[i] / LAR_BLOCK;
-    for (*lanes = 0; i < watch->count && watch->lane[i] / LAR_BLOCK == *block; i++)
-        *lanes |= 1u << watch->lane[i] % LAR_BLOCK;
+    *block = monitor->lane[i] / LAR_BLOCK;
+    for (*lanes = 0; i < monitor->count && monitor->lane[i] / LAR_BLOCK == *block; i++)
+        *lanes |= 1u << monitor->lane[i] % LAR_BLOCK;
     return i;
 }
 
-void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,
+void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monitor *monitor,
                       bool measures, lar_state *state) {
-    int32_t *list = watch->lane, count = 0;
-    for (int32_t first = 0, end; first < watch->count; first = end) {
+    int32_t *list = monitor->lane, count = 0;
+    for (int32_t first = 0, end; first < monitor->count; first = end) {
         int32_t block;
         unsigned lanes;
-        end = lanes_of_block(watch, first, &block, &lanes);
+        end = lanes_of_block(monitor, first, &block, &lanes);
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
         unsigned below =
             domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
         for (int32_t i = first; i < end; i++) {
-            int32_t lane = watch->lane[i] % LAR_BLOCK;
+            int32_t lane = monitor->lane[i] % LAR_BLOCK;
             if (element[lane] < 0) lanes &= ~(1u << lane);
             if (!measures || element[lane] < 0) continue;
             bool pressed = below >> LAR_BLOCK >> lane & 1;
-            double need = need_of(domain, state, element[lane], pressed, watch->strain[i]);
+            double need = need_of(domain, state, element[lane], pressed, monitor->strain[i]);
             if (!(need <= state->need)) state->need = need;
         }
         lanes &= below >> LAR_BLOCK;
@@ -121,7 +121,7 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), LEAD * step, force, &guard);
-    if (!(guard.least < LAR_GUARD_START)) return;
+    if (!(guard.min < LAR_GUARD_START)) return;
     double part = soften(domain, e, guard.stiffness, step, force);
     add(domain, e, (const double(*)[3])force, state);
     if (counts) state->contact -= step * part * guard.taken;

@@ -14,7 +14,7 @@
 
 /* What the kernel has listed of run r becomes what is looked at in every step. `measures`: how fast
  * they are counts for state->need. */
-void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_watch *watch,
+void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monitor *monitor,
                       bool measures, lar_state *state);
 
 /* Adds the barriers' forces of run r to state->force. */

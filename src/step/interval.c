@@ -12,8 +12,8 @@ void lar_interval_restart(lar_interval *interval) {
 
 /* Far beyond what a tool may bear; then the exact number does not matter. */
 static int64_t whole_number(lar_wide value) {
-    const lar_wide most = (lar_wide)1 << 60;
-    return (int64_t)(value > most ? most : value < -most ? -most : value);
+    const lar_wide max = (lar_wide)1 << 60;
+    return (int64_t)(value > max ? max : value < -max ? -max : value);
 }
 
 /* Larger, or no number. */
@@ -45,7 +45,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint
 
 uint64_t lar_interval_length(const lar_domain *whole, const lar_tools *tools) {
     bool tools_there = whole->model->tool_count > 0 || lar_spares_needed(tools->spare) > 0;
-    return tools_there ? lar_tool_interval(whole->time_step) : LAR_INTERVAL_MOST;
+    return tools_there ? lar_tool_interval(whole->time_step) : LAR_INTERVAL_MAX;
 }
 
 uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *division,
@@ -56,11 +56,11 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
 
 /* At least what the step takes at rest; tools that touch take their own part (theory.md 10). */
 static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
-    static const double MOST = 0.9, SPRINGS = 0.25;
+    static const double MAX = 0.9, SPRINGS = 0.25;
     double share = whole->time_step / whole->stable_step, rest = 1.02 * share * share;
-    lar_step_room room = {.most = fmax(MOST, rest)};
+    lar_step_room room = {.max = fmax(MAX, rest)};
     for (int32_t i = 0; i < tools->count; i++)
-        if (tools->follower[i].felt.depth > 0) room.springs = fmin(SPRINGS, room.most - rest);
+        if (tools->follower[i].felt.depth > 0) room.springs = fmin(SPRINGS, room.max - rest);
     return room;
 }
 
@@ -68,11 +68,11 @@ static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
  * at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of a step
  * has room for p^2 of both together. */
 static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
-    static const double CONTACT_MOST = 9.0 / 16, CONTACT_LEAST = 0.09;
+    static const double CONTACT_MAX = 9.0 / 16, CONTACT_MIN = 0.09;
     double dt = whole->time_step, share = dt / whole->stable_step, elements = share * share;
-    double contact = fmax(CONTACT_LEAST, fmin(CONTACT_MOST, 1 - elements)), stiff = 0;
+    double contact = fmax(CONTACT_MIN, fmin(CONTACT_MAX, 1 - elements)), stiff = 0;
     bool stiffer = false;
-    for (int i = 0; i < LAR_FACTORS_MOST; i++) {
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) {
         stiffer = stiffer || settings->factor[i] > 1;
         stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * settings->factor[i]);
     }
@@ -82,7 +82,7 @@ static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
 }
 
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
-    const lar_tool_list *list = whole->acting.touch.list;
+    const lar_tool_list *list = whole->interactions.tool_contact.list;
     lar_step_division *division = &tools->division;
     if (!list) return false;
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)

@@ -17,10 +17,10 @@
 
 /* What has been handed on of the tools' sums of an advance, and what is known of all advances. */
 typedef struct lar_interval {
-    lar_tool_sum seen[LAR_TOOLS_MOST];
-    double depth[LAR_TOOLS_MOST]; /* the deepest tissue in a tool in this advance [m] */
-    uint64_t divided;             /* steps in more than one part, of all advances */
-    int32_t parts;                /* of a step, at most, of all advances; 0: none was done */
+    lar_tool_sum seen[LAR_TOOLS_MAX];
+    double depth[LAR_TOOLS_MAX]; /* the deepest tissue in a tool in this advance [m] */
+    uint64_t divided;            /* steps in more than one part, of all advances */
+    int32_t parts;               /* of a step, at most, of all advances; 0: none was done */
 } lar_interval;
 
 /* An advance begins: its sums begin with nothing. */

@@ -21,32 +21,32 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
 }
 
 static double damping_of(const lar_domain *domain) {
-    return lar_damping_of(domain->model, lar_settings_of(&domain->acting));
+    return lar_damping_of(domain->model, lar_settings_of(&domain->interactions));
 }
 
 static void gravity_at(const lar_domain *domain, double time, double gravity[3]) {
-    lar_gravity_at(domain->model, lar_settings_of(&domain->acting), time, gravity);
+    lar_gravity_at(domain->model, lar_settings_of(&domain->interactions), time, gravity);
 }
 
 /* That of which forces change the velocities next: between the last part and the next one. */
 static double mean_step(const lar_domain *domain, const lar_state *state) {
-    return lar_mean_step(domain, lar_division_of(&domain->acting), state);
+    return lar_mean_step(domain, lar_division_of(&domain->interactions), state);
 }
 
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
 static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
                             const double gravity[3]) {
-    lar_motion motion = lar_step_motion(domain, &domain->acting, state);
+    lar_leapfrog leapfrog = lar_step_leapfrog(domain, &domain->interactions, state);
     double step = mean_step(domain, state);
     double half = 0.5 * damping_of(domain) * step;
     double drift = gravity[value % 4] * step / (1 + half);
-    return motion.keep * state->v[value] + drift -
-           motion.push * domain->push[value / 4] * (double)state->force[value];
+    return leapfrog.keep * state->v[value] + drift -
+           leapfrog.push * domain->push[value / 4] * (double)state->force[value];
 }
 
 /* Length of the next step, or of its parts. */
 static double part_of_step(const lar_domain *domain) {
-    return domain->time_step / lar_division_of(&domain->acting)->parts;
+    return domain->time_step / lar_division_of(&domain->interactions)->parts;
 }
 
 /* Kinetic energy of one value, and half of the present step's share of damping. */
@@ -91,20 +91,20 @@ static double supported_velocity(const lar_domain *domain, const lar_state *stat
  * half of what the stop takes. */
 static void add_stops(const lar_domain *domain, const lar_state *state, const double gravity[3],
                       lar_energy *energy) {
-    const lar_planes *planes = &domain->acting.touch.planes;
+    const lar_plane_contact *plane_contact = &domain->interactions.tool_contact.plane_contact;
     lar_condition_context context = lar_domain_context(domain);
     context.time_step = part_of_step(domain);
     double half = 0.5 * damping_of(domain) * mean_step(domain, state);
-    for (int32_t entry = 0; entry < planes->count;) {
-        int32_t value = planes->node[entry].value;
+    for (int32_t entry = 0; entry < plane_contact->count;) {
+        int32_t value = plane_contact->node[entry].value;
         double free[3], ahead[3], mass = domain->mass[value / 4];
         for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
-            const lar_plane_way *way = &planes->way[planes->node[entry].way];
+            const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
             bool held = way->slide[i] == 0 && way->normal[i] != 0;
             free[i] = held ? state->v[value + i] : next_velocity(domain, state, value + i, gravity);
             ahead[i] = free[i];
         }
-        entry = lar_planes_ahead(planes, &context, state, entry, ahead);
+        entry = lar_plane_contact_ahead(plane_contact, &context, state, entry, ahead);
         for (int i = 0; i < 3; i++) {
             double change = ahead[i] - free[i], behind = state->v[value + i];
             energy->kinetic += 0.5 * mass * behind * change;
@@ -117,7 +117,7 @@ static void add_stops(const lar_domain *domain, const lar_state *state, const do
 /* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
 static void add_motion(const lar_domain *domain, const lar_state *state, const double gravity[3],
                        lar_energy *energy) {
-    const lar_conditions *conditions = &domain->acting.conditions;
+    const lar_conditions *conditions = &domain->interactions.conditions;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             int32_t value = 4 * domain->layout.local[g] + i;
@@ -139,8 +139,8 @@ static void add_motion(const lar_domain *domain, const lar_state *state, const d
 static void add_contact(const lar_domain *domain, const lar_condition_context *context,
                         lar_state *state, lar_energy *energy) {
     double external = state->external, contact = state->contact;
-    lar_touch_half_work(&domain->acting.touch, context, state);
-    lar_collide_half_work(&domain->acting.collide, context, state);
+    lar_tool_contact_half_work(&domain->interactions.tool_contact, context, state);
+    lar_body_contact_half_work(&domain->interactions.body_contact, context, state);
     energy->external += state->external - external;
     energy->contact += state->contact - contact;
     state->external = external;
@@ -154,17 +154,18 @@ static void clear_forces(const lar_domain *domain, lar_state *state) {
 void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
     lar_condition_context context = lar_domain_context(domain);
     double time = lar_state_time(domain, state), gravity[3];
-    lar_step_enter(domain, &domain->acting, &context, state);
+    lar_step_enter(domain, &domain->interactions, &context, state);
     gravity_at(domain, time, gravity);
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
 
     *energy = (lar_energy){.external = state->external,
                            .contact = state->contact,
                            .damping = 0.25 * domain->time_step * state->damped};
-    energy->external += lar_conditions_half_work(&domain->acting.conditions, &context, time, state);
+    energy->external +=
+        lar_conditions_half_work(&domain->interactions.conditions, &context, time, state);
     add_contact(domain, &context, state, energy);
-    if (!lar_gravity_varies(domain->model, lar_settings_of(&domain->acting)))
+    if (!lar_gravity_varies(domain->model, lar_settings_of(&domain->interactions)))
         energy->external += gravity_potential(domain, state, gravity);
     add_motion(domain, state, gravity, energy);
     clear_forces(domain, state);
@@ -202,14 +203,14 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
 
 lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
                                 double sum[3], lar_error *error) {
-    const lar_conditions *conditions = &domain->acting.conditions;
+    const lar_conditions *conditions = &domain->interactions.conditions;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
     for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
     double gravity[3];
     gravity_at(domain, lar_state_time(domain, state), gravity);
-    lar_trip ignored = {0};
+    lar_fault ignored = {0};
     lar_step_forces(domain, state, &ignored);
     memset(sum, 0, 3 * sizeof *sum);
     for (int32_t i = 0; i < conditions->constraint_count; i++) {

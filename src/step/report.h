@@ -4,10 +4,10 @@
 #ifndef LAR_STEP_REPORT_H
 #define LAR_STEP_REPORT_H
 
-#include "contact/acting.h"
+#include "contact/interactions.h"
 
 typedef struct lar_report {
-    lar_tool_sum tool[LAR_TOOLS_MOST];
+    lar_tool_sum tool[LAR_TOOLS_MAX];
     lar_contact_info contact; /* since the start */
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
     double need;       /* of the elements: lar_state.need */
@@ -25,13 +25,14 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
 }
 
 /* Before an advance: what one thread has felt is forgotten. */
-static inline void lar_report_begin(lar_acting *acting) {
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) acting->touch.sum[i] = (lar_tool_sum){0};
+static inline void lar_report_begin(lar_interactions *interactions) {
+    for (int32_t i = 0; i < LAR_TOOLS_MAX; i++)
+        interactions->tool_contact.sum[i] = (lar_tool_sum){0};
 }
 
 /* Adds `other` to `sum`. */
 static inline void lar_report_join(lar_report *sum, const lar_report *other) {
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) {
+    for (int32_t i = 0; i < LAR_TOOLS_MAX; i++) {
         lar_tool_sum *to = &sum->tool[i];
         const lar_tool_sum *from = &other->tool[i];
         for (int k = 0; k < 3; k++) {
@@ -46,21 +47,21 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->held += from->held;
     }
     lar_report_contact(&sum->contact, &other->contact);
-    sum->moved = lar_most(sum->moved, other->moved);
-    sum->way = lar_most(sum->way, other->way);
-    sum->need = lar_most(sum->need, other->need);
+    sum->moved = lar_larger(sum->moved, other->moved);
+    sum->way = lar_larger(sum->way, other->way);
+    sum->need = lar_larger(sum->need, other->need);
     sum->taken += other->taken;
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
-static inline void lar_report_add(lar_report *sum, const lar_acting *acting,
+static inline void lar_report_add(lar_report *sum, const lar_interactions *interactions,
                                   const lar_state *state) {
     lar_report own;
-    for (int32_t i = 0; i < LAR_TOOLS_MOST; i++) own.tool[i] = acting->touch.sum[i];
-    own.contact = acting->touch.seen;
-    lar_report_contact(&own.contact, &acting->collide.info);
-    own.moved = acting->collide.moved;
-    own.way = acting->collide.way;
+    for (int32_t i = 0; i < LAR_TOOLS_MAX; i++) own.tool[i] = interactions->tool_contact.sum[i];
+    own.contact = interactions->tool_contact.seen;
+    lar_report_contact(&own.contact, &interactions->body_contact.info);
+    own.moved = interactions->body_contact.moved;
+    own.way = interactions->body_contact.way;
     own.need = state->need;
     own.taken = state->contact;
     lar_report_join(sum, &own);

@@ -8,17 +8,17 @@
 #include "mechanics/hex8_matrix.h"
 
 /* Of several elements in a step the first of the mesh, whoever computes them. */
-static void trip_element(lar_trip *trip, const lar_state *state, lar_gid e) {
-    if (!trip->kind || (trip->kind == LAR_TRIP_ELEMENT && trip->step == state->step &&
-                        trip->part == state->part && e < trip->element))
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_ELEMENT, .element = e, .step = state->step, .part = state->part};
+static void fault_element(lar_fault *fault, const lar_state *state, lar_gid e) {
+    if (!fault->kind || (fault->kind == LAR_FAULT_ELEMENT && fault->step == state->step &&
+                         fault->part == state->part && e < fault->element))
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_ELEMENT, .element = e, .step = state->step, .part = state->part};
 }
 
 /* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
  * no longer count. */
-static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
-                     lar_trip *trip) {
+static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
+                      lar_fault *fault) {
     lar_block_run one = domain->run[r];
     size_t size = lar_block_size(one.shape);
     one.count = 1;
@@ -29,7 +29,7 @@ static void trip_run(const lar_domain *domain, int32_t r, int64_t found, lar_sta
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
-                trip_element(trip, state, lanes->element[lane]);
+                fault_element(fault, state, lanes->element[lane]);
     }
 }
 
@@ -40,28 +40,29 @@ static bool interval_ends(const lar_domain *domain, bool close, const lar_state 
 }
 
 static void recover_blocks(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
-                           lar_trip *trip) {
+                           lar_fault *fault) {
     /* Where elements are strained, listed in every part: in a step nodes that are thrown come from
      * anywhere to the barrier and beyond. */
     bool due = interval_ends(domain, state->close, state);
     bool watches = due || state->close || !state->listed;
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
-        lar_hex8_watch watch = {.limit = domain->corner_limit + place,
-                                .lane = domain->strained + place,
-                                .strain = domain->strain + place};
+        lar_hex8_monitor monitor = {.limit = domain->corner_limit + place,
+                                    .lane = domain->strained + place,
+                                    .strain = domain->strain + place};
         int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
-                                                 &domain->limits, watches ? &watch : NULL);
-        if (watches) lar_guard_select(domain, r, &watch, due, state);
+                                                 &domain->limits, watches ? &monitor : NULL);
+        if (watches) lar_guard_select(domain, r, &monitor, due, state);
         lar_guard_apply(domain, r, state);
-        if (found >= 0) trip_run(domain, r, found, state, trip);
+        if (found >= 0) fault_run(domain, r, found, state, fault);
     }
     /* Before the nodes move on: a step later the element says little. */
-    if (trip->kind == LAR_TRIP_ELEMENT) lar_trip_examine(domain, state, 0, 0, trip);
+    if (fault->kind == LAR_FAULT_ELEMENT) lar_fault_examine(domain, state, 0, 0, fault);
 }
 
 /* The oracle elements, one at a time: slow is fine. */
-static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state, lar_trip *trip) {
+static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state,
+                           lar_fault *fault) {
     const lar_model *model = domain->model;
     double corner[8][3], u[8][3], f[8][3];
     const lar_material *material = lar_domain_material(domain, e);
@@ -70,10 +71,10 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
     double J = domain->kind == LAR_ELEMENT_HEX8_FULL
                    ? lar_hex8_full_force(corner, material, u, f)
                    : lar_hex8_matrix_force(corner, material, u, f);
-    bool fits = J > domain->limits.least_volume;
+    bool fits = J > domain->limits.min_volume;
     for (int k = 0; k < 24; k++) fits = fits && fabs(f[k / 3][k % 3]) * domain->scale < 0x1p58;
     if (!fits) {
-        trip_element(trip, state, e);
+        fault_element(fault, state, e);
         return;
     }
     for (int a = 0; a < 8; a++)
@@ -83,24 +84,25 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
 }
 
 void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
-                      lar_trip *trip) {
+                      lar_fault *fault) {
     if (domain->kind == LAR_ELEMENT_HEX8) {
-        recover_blocks(domain, first, count, state, trip);
+        recover_blocks(domain, first, count, state, fault);
         return;
     }
     for (int32_t r = first; r < first + count; r++)
         for (int32_t b = 0; b < domain->run[r].count; b++)
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = domain->layout.block[domain->run_first[r] + b].element[lane];
-                if (e >= 0) recover_slowly(domain, e, state, trip);
+                if (e >= 0) recover_slowly(domain, e, state, fault);
             }
 }
 
 /* ---- how long a step is --------------------------------------------------------------------- */
 
-const lar_step_division *lar_division_of(const lar_acting *acting) {
+const lar_step_division *lar_division_of(const lar_interactions *interactions) {
     static const lar_step_division undivided = {.parts = 1, .before = 1, .hardness = 1, .base = 1};
-    return acting->touch.tools ? &acting->touch.tools->division : &undivided;
+    return interactions->tool_contact.tools ? &interactions->tool_contact.tools->division
+                                            : &undivided;
 }
 
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
@@ -110,38 +112,38 @@ double lar_mean_step(const lar_domain *domain, const lar_step_division *division
     return changes ? 0.5 * (step + domain->time_step / division->before) : step;
 }
 
-const lar_settings *lar_settings_of(const lar_acting *acting) {
-    return acting->touch.tools ? &acting->touch.tools->settings : NULL;
+const lar_settings *lar_settings_of(const lar_interactions *interactions) {
+    return interactions->tool_contact.tools ? &interactions->tool_contact.tools->settings : NULL;
 }
 
 static bool is_set(const lar_settings *settings) {
     return settings && (settings->gravity_set || settings->damping_set);
 }
 
-lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
-                           const lar_state *state) {
-    const lar_step_division *division = lar_division_of(acting);
-    const lar_settings *settings = lar_settings_of(acting);
-    lar_motion motion = domain->motion;
+lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
+                               const lar_state *state) {
+    const lar_step_division *division = lar_division_of(interactions);
+    const lar_settings *settings = lar_settings_of(interactions);
+    lar_leapfrog leapfrog = domain->leapfrog;
     double mean = lar_mean_step(domain, division, state), whole = domain->time_step;
-    motion.dt = whole / division->parts;
-    if (mean == whole && !is_set(settings)) return motion;
+    leapfrog.dt = whole / division->parts;
+    if (mean == whole && !is_set(settings)) return leapfrog;
     double half = 0.5 * lar_damping_of(domain->model, settings) * mean;
     double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
     lar_gravity_at(domain->model, settings, 0, gravity);
-    motion.keep = (1 - half) / (1 + half);
-    motion.push = mean / whole * (1 + half_whole) / (1 + half);
-    for (int i = 0; i < 3; i++) motion.drift[i] = gravity[i] * mean / (1 + half);
-    return motion;
+    leapfrog.keep = (1 - half) / (1 + half);
+    leapfrog.push = mean / whole * (1 + half_whole) / (1 + half);
+    for (int i = 0; i < 3; i++) leapfrog.drift[i] = gravity[i] * mean / (1 + half);
+    return leapfrog;
 }
 
-void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+void lar_step_enter(const lar_domain *domain, const lar_interactions *interactions,
                     lar_condition_context *context, lar_state *state) {
-    const lar_step_division *division = lar_division_of(acting);
+    const lar_step_division *division = lar_division_of(interactions);
     if (state->part == 0) state->parts = division->parts;
     context->time_step = domain->time_step / state->parts;
     context->mean_step = lar_mean_step(domain, division, state);
-    context->settings = lar_settings_of(acting);
+    context->settings = lar_settings_of(interactions);
     context->hardness = division->hardness;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
@@ -160,80 +162,82 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     }
 }
 
-static void move_nodes(const lar_domain *domain, const lar_acting *acting,
+static void move_nodes(const lar_domain *domain, const lar_interactions *interactions,
                        const lar_condition_context *context, double time, lar_state *state,
-                       lar_trip *trip) {
+                       lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
-    bool predicts =
-        acting->collide.surface || acting->touch.planes.count > 0 || acting->touch.face_count > 0;
+    bool predicts = interactions->body_contact.surface ||
+                    interactions->tool_contact.plane_contact.count > 0 ||
+                    interactions->tool_contact.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
-    const lar_settings *settings = lar_settings_of(acting);
-    lar_motion motion = lar_step_motion(domain, acting, state);
+    const lar_settings *settings = lar_settings_of(interactions);
+    lar_leapfrog leapfrog = lar_step_leapfrog(domain, interactions, state);
     double damping = lar_damping_of(model, settings), damped = 0;
     double mean = context->mean_step;
     if (lar_gravity_varies(model, settings)) {
         double gravity[3];
         lar_gravity_at(model, settings, time, gravity);
         for (int i = 0; i < 3; i++)
-            motion.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
+            leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
-    if (!domain->kernels->update(&motion, context->first, context->end, state->u, state->v,
+    if (!domain->kernels->update(&leapfrog, context->first, context->end, state->u, state->v,
                                  state->force, domain->push, weight, &damped, &state->fastest) &&
-        !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+        !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
     state->damped += damping * damped * (mean / domain->time_step);
 }
 
 static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
                         const lar_condition_context *context, double time, lar_state *state,
-                        lar_trip *trip) {
+                        lar_fault *fault) {
     int32_t beyond = lar_conditions_load(conditions, context, time, state);
-    if (beyond >= 0 && !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_LOAD, .element = domain->layout.global[beyond], .step = state->step};
+    if (beyond >= 0 && !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_LOAD, .element = domain->layout.global[beyond], .step = state->step};
 }
 
 /* Loads, tools and planes; half of their work when the nodes are about to move. */
-static void act(const lar_domain *domain, lar_acting *acting, const lar_condition_context *context,
-                lar_state *state, lar_trip *trip) {
-    apply_loads(domain, &acting->conditions, context, lar_state_time(domain, state), state, trip);
-    lar_touch_apply(&acting->touch, context, state);
+static void act(const lar_domain *domain, lar_interactions *interactions,
+                const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    apply_loads(domain, &interactions->conditions, context, lar_state_time(domain, state), state,
+                fault);
+    lar_tool_contact_apply(&interactions->tool_contact, context, state);
 }
 
-static void add_half_work(const lar_domain *domain, const lar_acting *acting,
+static void add_half_work(const lar_domain *domain, const lar_interactions *interactions,
                           const lar_condition_context *context, lar_state *state) {
-    state->external += lar_conditions_half_work(&acting->conditions, context,
+    state->external += lar_conditions_half_work(&interactions->conditions, context,
                                                 lar_state_time(domain, state), state);
-    lar_touch_half_work(&acting->touch, context, state);
+    lar_tool_contact_half_work(&interactions->tool_contact, context, state);
 }
 
 /* Contact of bodies, by who has all nodes. */
-static void collide(lar_collide *collide, const lar_condition_context *context, lar_state *state,
-                    lar_trip *trip) {
-    lar_collide_apply(collide, context, state);
-    if (collide->crowded && !trip->kind)
-        *trip = (lar_trip){.kind = LAR_TRIP_CROWD, .element = -1, .step = state->step};
+static void add_body_contact(lar_body_contact *contact, const lar_condition_context *context,
+                             lar_state *state, lar_fault *fault) {
+    lar_body_contact_apply(contact, context, state);
+    if (contact->too_many_pairs && !fault->kind)
+        *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_touch_note note;
-    lar_step_enter(domain, &domain->acting, &context, state);
-    lar_touch_remember(&domain->acting.touch, &note);
-    lar_contact_info counted = domain->acting.collide.info;
-    act(domain, &domain->acting, &context, state, trip);
-    lar_collide_forget(&domain->acting.collide);
-    collide(&domain->acting.collide, &context, state, trip);
-    lar_collide_forget(&domain->acting.collide);
-    domain->acting.collide.info = counted;
-    lar_touch_restore(&domain->acting.touch, &note);
+    lar_tool_contact_saved note;
+    lar_step_enter(domain, &domain->interactions, &context, state);
+    lar_tool_contact_remember(&domain->interactions.tool_contact, &note);
+    lar_contact_info counted = domain->interactions.body_contact.info;
+    act(domain, &domain->interactions, &context, state, fault);
+    lar_body_contact_forget(&domain->interactions.body_contact);
+    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
+    lar_body_contact_forget(&domain->interactions.body_contact);
+    domain->interactions.body_contact.info = counted;
+    lar_tool_contact_restore(&domain->interactions.tool_contact, &note);
     if (domain->kind != LAR_ELEMENT_HEX8) {
-        lar_step_recover(domain, 0, domain->run_count, state, trip);
+        lar_step_recover(domain, 0, domain->run_count, state, fault);
         return;
     }
     for (int32_t r = 0; r < domain->run_count; r++)
@@ -241,32 +245,32 @@ void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip) {
     lar_guard_apply_all(domain, state);
 }
 
-void lar_step_begin(const lar_domain *domain, lar_acting *acting,
-                    const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    act(domain, acting, context, state, trip);
-    add_half_work(domain, acting, context, state);
+void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
+                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    act(domain, interactions, context, state, fault);
+    add_half_work(domain, interactions, context, state);
 }
 
-void lar_step_move(const lar_domain *domain, lar_acting *acting,
-                   const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    lar_conditions *conditions = &acting->conditions;
+void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
+                   const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    lar_conditions *conditions = &interactions->conditions;
     double time = lar_state_time(domain, state);
     lar_conditions_observe(conditions, context, state);
-    lar_touch_observe(&acting->touch, context, state);
-    move_nodes(domain, acting, context, time, state, trip);
+    lar_tool_contact_observe(&interactions->tool_contact, context, state);
+    move_nodes(domain, interactions, context, time, state, fault);
     state->external += lar_conditions_impose(conditions, context, time, state);
-    lar_touch_stop(&acting->touch, context, state);
-    lar_collide_moved(&acting->collide, state, state->fastest * context->time_step);
+    lar_tool_contact_stop(&interactions->tool_contact, context, state);
+    lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
 }
 
-void lar_step_end(const lar_domain *domain, const lar_acting *acting,
-                  const lar_condition_context *context, lar_state *state, lar_trip *trip) {
-    add_half_work(domain, acting, context, state);
-    lar_collide_half_work(&acting->collide, context, state);
-    /* The watch over speeds does not see nodes that are moved. */
-    if (!isfinite(state->external) && !trip->kind)
-        *trip = (lar_trip){
-            .kind = LAR_TRIP_SPEED, .element = -1, .step = state->step, .part = state->part};
+void lar_step_end(const lar_domain *domain, const lar_interactions *interactions,
+                  const lar_condition_context *context, lar_state *state, lar_fault *fault) {
+    add_half_work(domain, interactions, context, state);
+    lar_body_contact_half_work(&interactions->body_contact, context, state);
+    /* The monitor over speeds does not see nodes that are moved. */
+    if (!isfinite(state->external) && !fault->kind)
+        *fault = (lar_fault){
+            .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
     state->round++;
     state->listed = true;
     if (++state->part < state->parts) return;
@@ -274,13 +278,13 @@ void lar_step_end(const lar_domain *domain, const lar_acting *acting,
     state->step++;
 }
 
-void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip) {
+void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_step_enter(domain, &domain->acting, &context, state);
-    lar_step_begin(domain, &domain->acting, &context, state, trip);
-    collide(&domain->acting.collide, &context, state, trip);
-    lar_collide_half_work(&domain->acting.collide, &context, state);
-    lar_step_recover(domain, 0, domain->run_count, state, trip);
-    lar_step_move(domain, &domain->acting, &context, state, trip);
-    lar_step_end(domain, &domain->acting, &context, state, trip);
+    lar_step_enter(domain, &domain->interactions, &context, state);
+    lar_step_begin(domain, &domain->interactions, &context, state, fault);
+    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
+    lar_body_contact_half_work(&domain->interactions.body_contact, &context, state);
+    lar_step_recover(domain, 0, domain->run_count, state, fault);
+    lar_step_move(domain, &domain->interactions, &context, state, fault);
+    lar_step_end(domain, &domain->interactions, &context, state, fault);
 }

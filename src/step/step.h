@@ -16,75 +16,76 @@
 #include "layout/state.h"
 
 /* Why a run must stop: polled once per step, set once, never cleared. */
-typedef struct lar_trip {
+typedef struct lar_fault {
     enum {
-        LAR_TRIP_NONE,
-        LAR_TRIP_ELEMENT,
-        LAR_TRIP_SPEED,
-        LAR_TRIP_LOAD,
-        LAR_TRIP_CROWD, /* contact: more faces near a node than make sense */
-        LAR_TRIP_RUSH,  /* contact: faster than processors can tell each other */
-        LAR_TRIP_GAIN   /* contact: it has given more energy than it took */
+        LAR_FAULT_NONE,
+        LAR_FAULT_ELEMENT,
+        LAR_FAULT_SPEED,
+        LAR_FAULT_LOAD,
+        LAR_FAULT_TOO_MANY_PAIRS, /* contact: more faces near a node than make sense */
+        LAR_FAULT_TOO_FAST,       /* contact: faster than processors can tell each other */
+        LAR_FAULT_ENERGY_GAIN     /* contact: it has given more energy than it took */
     } kind;
-    lar_gid element; /* of LAR_TRIP_ELEMENT and LAR_TRIP_GAIN; the node of the others */
+    lar_gid element; /* of LAR_FAULT_ELEMENT and LAR_FAULT_ENERGY_GAIN; the node of the others */
     uint64_t step;   /* the step under way */
     int32_t part;    /* of a divided step */
-    /* What lar_trip_examine found, for the report. */
+    /* What lar_fault_examine found, for the report. */
     double place[3];     /* [m] */
-    double volume_ratio; /* of the element; of LAR_TRIP_GAIN: in its worst corner */
+    double volume_ratio; /* of the element; of LAR_FAULT_ENERGY_GAIN: in its worst corner */
     double growth;       /* of its frequency */
     double speed;        /* of the node [m/s] */
-    double given;        /* of LAR_TRIP_GAIN: more than it took [J] */
+    double given;        /* of LAR_FAULT_ENERGY_GAIN: more than it took [J] */
     bool examined;
-    bool crowded; /* of LAR_TRIP_RUSH: the list had too many pairs for the skin it needs */
-    /* What lar_trip_blame found. */
-    bool blamed, tool_pulls;
+    bool too_many_pairs; /* of LAR_FAULT_TOO_FAST: the list had too many pairs for the skin it needs
+                          */
+    /* What lar_fault_attribute found. */
+    bool attributed, tool_pulls;
     int32_t tool;      /* counted from 1; 0: none has to do with it */
     double tool_speed; /* [m/s] */
-} lar_trip;
+} lar_fault;
 
 /* Every so many steps spare nodes are put back. */
 enum { LAR_PARK_INTERVAL = 32 };
 
 /* Advances the state by one step, or by a part of a divided one. */
-void lar_step(lar_domain *domain, lar_state *state, lar_trip *trip);
+void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault);
 
 /* The parts of a step. What acts, and the state's sums (force, damped, external, contact), are one
  * thread's; u and v may be shared with the threads that move other nodes. */
 
 /* Before all others: how long the step is, or its part. */
-void lar_step_enter(const lar_domain *domain, const lar_acting *acting,
+void lar_step_enter(const lar_domain *domain, const lar_interactions *interactions,
                     lar_condition_context *context, lar_state *state);
 
 /* What has been set in place of what the model says; NULL: nothing can be. */
-const lar_settings *lar_settings_of(const lar_acting *acting);
+const lar_settings *lar_settings_of(const lar_interactions *interactions);
 /* How steps are divided now. */
-const lar_step_division *lar_division_of(const lar_acting *acting);
+const lar_step_division *lar_division_of(const lar_interactions *interactions);
 /* Velocities stand half-way between the displacements before and after: where the length of steps
  * changes they are carried over the mean of two lengths [s]. */
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
                      const lar_state *state);
 /* How nodes move in the step that lies before the state: see lar_step_division. */
-lar_motion lar_step_motion(const lar_domain *domain, const lar_acting *acting,
-                           const lar_state *state);
+lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
+                               const lar_state *state);
 
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
  * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */
-void lar_step_begin(const lar_domain *domain, lar_acting *acting,
-                    const lar_condition_context *context, lar_state *state, lar_trip *trip);
+void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
+                    const lar_condition_context *context, lar_state *state, lar_fault *fault);
 /* The elements of runs first .. first + count - 1 of the domain. */
 void lar_step_recover(const lar_domain *domain, int32_t first, int32_t count, lar_state *state,
-                      lar_trip *trip);
+                      lar_fault *fault);
 /* Moves the context's nodes, whose force sums are complete, and clears the sums. */
-void lar_step_move(const lar_domain *domain, lar_acting *acting,
-                   const lar_condition_context *context, lar_state *state, lar_trip *trip);
+void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
+                   const lar_condition_context *context, lar_state *state, lar_fault *fault);
 /* All nodes have moved: the second half of the work; the step is done. */
-void lar_step_end(const lar_domain *domain, const lar_acting *acting,
-                  const lar_condition_context *context, lar_state *state, lar_trip *trip);
+void lar_step_end(const lar_domain *domain, const lar_interactions *interactions,
+                  const lar_condition_context *context, lar_state *state, lar_fault *fault);
 
 /* Adds loads and internal forces at the present displacements to state->force (which is zero
  * between steps): the residual internal - external. */
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_trip *trip);
+void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault);
 
 /* Time of the state [s]. */
 static inline double lar_state_time(const lar_domain *domain, const lar_state *state) {
@@ -95,7 +96,7 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
 /* What the conditions need of a domain, for the nodes first .. end - 1. */
 static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
                                                           lar_lid end) {
-    const lar_tools *tools = domain->acting.touch.tools;
+    const lar_tools *tools = domain->interactions.tool_contact.tools;
     return (lar_condition_context){.model = domain->model,
                                    .settings = tools ? &tools->settings : NULL,
                                    .scale = domain->scale,
@@ -115,20 +116,20 @@ static inline lar_condition_context lar_domain_context(const lar_domain *domain)
     return lar_domain_context_of(domain, 0, domain->layout.node_padded);
 }
 
-/* Looks at what has tripped, at the end of the step in which it did: several processors stop some
+/* Looks at what has failed, at the end of the step in which it did: several processors stop some
  * steps later, when the state says little. `domain` has the element, or the nodes; of these only
  * those from `first` to before `end`, which nobody else moves meanwhile. */
-void lar_trip_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
-                      lar_trip *trip);
+void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
+                       lar_fault *fault);
 
-/* Looks for the tool that has to do with an examined trip, once. `domain` is the whole model's; the
- * tools still move as they did. */
-void lar_trip_blame(const lar_domain *domain, lar_trip *trip);
+/* Looks for the tool that has to do with an examined fault, once. `domain` is the whole model's;
+ * the tools still move as they did. */
+void lar_fault_attribute(const lar_domain *domain, lar_fault *fault);
 
-/* The sentence for an examined trip: element or node, place, time, cause and remedy. */
-lar_status lar_trip_report(const lar_domain *domain, const lar_trip *trip, lar_error *error);
-/* The same where trip->tool is to blame: it does what to the element or node. */
-lar_status lar_trip_report_tool(const lar_domain *domain, const lar_trip *trip,
-                                const char *what_it_does, lar_error *error);
+/* The sentence for an examined fault: element or node, place, time, cause and remedy. */
+lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error);
+/* The same where fault->tool is to blame: it does what to the element or node. */
+lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
+                                 const char *what_it_does, lar_error *error);
 
 #endif

@@ -5,8 +5,8 @@
  *     start ... lar_arrival_begin | lar_simulation_create | lar_arrival_end ... steps
  *                                   everyone comes
  *
- * Once they are there the connections tell who is lost (comm/watch.h), so that no thread looks at
- * anything while steps are done.
+ * Once they are there the connections tell who is lost (comm/heartbeat.h), so that no thread looks
+ * at anything while steps are done.
  */
 #ifndef LAR_STUDY_ARRIVAL_H
 #define LAR_STUDY_ARRIVAL_H

@@ -113,8 +113,8 @@ static void take_answer(client *c, const lar_force_packet *packet) {
         r->touching += (packet->flags & LAR_ANSWER_TOUCHING) != 0;
         r->holding += (packet->flags & LAR_ANSWER_HOLDING) != 0;
     }
-    r->force_most = fmax(r->force_most, length_of(packet->force));
-    r->torque_most = fmax(r->torque_most, length_of(packet->torque));
+    r->force_max = fmax(r->force_max, length_of(packet->force));
+    r->torque_max = fmax(r->torque_max, length_of(packet->torque));
 }
 
 static void take_answers(client *c) {
@@ -134,8 +134,8 @@ static void listen_until(client *c, int64_t end) {
     int64_t left;
     while ((left = end - lar_clock_ns()) > 0) {
         struct pollfd wanted = {.fd = c->socket, .events = POLLIN};
-        struct timespec most = {left / 1000000000, left % 1000000000};
-        if (ppoll(&wanted, 1, &most, NULL) > 0) take_answers(c);
+        struct timespec max = {left / 1000000000, left % 1000000000};
+        if (ppoll(&wanted, 1, &max, NULL) > 0) take_answers(c);
     }
 }
 
@@ -171,10 +171,10 @@ static lar_status finish(client *c, lar_error *error) {
                         "nobody at %s answered %llu packets; start a session with a tool on that "
                         "device first, and give the same token",
                         c->options->address, (unsigned long long)r->sent);
-    r->trip_p50 = 1e-9 * lar_histogram_quantile(&c->trip, 0.5);
-    r->trip_p99 = 1e-9 * lar_histogram_quantile(&c->trip, 0.99);
-    r->trip_p999 = 1e-9 * lar_histogram_quantile(&c->trip, 0.999);
-    r->trip_max = 1e-9 * (double)c->trip.most;
+    r->round_trip_p50 = 1e-9 * lar_histogram_quantile(&c->trip, 0.5);
+    r->round_trip_p99 = 1e-9 * lar_histogram_quantile(&c->trip, 0.99);
+    r->round_trip_p999 = 1e-9 * lar_histogram_quantile(&c->trip, 0.999);
+    r->round_trip_max = 1e-9 * (double)c->trip.max;
     r->force_mean = c->force_sum / (double)r->answered;
     return LAR_OK;
 }

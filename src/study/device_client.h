@@ -33,10 +33,10 @@ typedef struct lar_device_client_report {
     uint64_t lost;           /* sent and never answered */
     uint64_t strange;        /* packets that answer nothing */
     uint64_t steps;          /* of the engine, from the first answer to the last */
-    double trip_p50, trip_p99, trip_p999, trip_max; /* there and back [s] */
-    double force_most, force_mean;                  /* [N] */
-    double torque_most;                             /* [N m] */
-    uint64_t touching, holding;                     /* answers that said so */
+    double round_trip_p50, round_trip_p99, round_trip_p999, round_trip_max; /* there and back [s] */
+    double force_max, force_mean;                                           /* [N] */
+    double torque_max;                                                      /* [N m] */
+    uint64_t touching, holding; /* answers that said so */
 } lar_device_client_report;
 
 /* Sends for options->seconds and waits a tenth of a second for the last answers. LAR_ERROR_PEER

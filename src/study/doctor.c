@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "base/pin.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/thread.h"
 #include "comm/comm.h"
 #include "comm/mpi_world.h"
@@ -115,7 +115,7 @@ void lar_doctor_look(lar_doctor_machine *machine) {
     struct timespec tick = {0};
     clock_getres(CLOCK_MONOTONIC, &tick);
     *machine =
-        (lar_doctor_machine){.usable_cores = lar_share_cores(),
+        (lar_doctor_machine){.usable_cores = lar_usable_cores(),
                              .memory = memory_line("MemTotal"),
                              .free = memory_line("MemAvailable"),
                              .priority = may_be_urgent(),

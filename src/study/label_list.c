@@ -14,13 +14,13 @@ void lar_label_list_clear(lar_label_list *list) {
 }
 
 static lar_status fill(const lar_image *image, lar_label_list *list, lar_error *error) {
-    int64_t *voxels = lar_calloc(LAR_IMAGE_LABEL_MOST + 1, sizeof *voxels);
+    int64_t *voxels = lar_calloc(LAR_IMAGE_LABEL_MAX + 1, sizeof *voxels);
     size_t rows = 0;
     if (voxels) lar_image_count(image, voxels);
-    for (int32_t l = 1; voxels && l <= LAR_IMAGE_LABEL_MOST; l++) rows += voxels[l] > 0;
+    for (int32_t l = 1; voxels && l <= LAR_IMAGE_LABEL_MAX; l++) rows += voxels[l] > 0;
     list->row = voxels ? lar_calloc(rows, sizeof *list->row) : NULL;
     bool good = list->row != NULL;
-    for (int32_t l = 1; good && l <= LAR_IMAGE_LABEL_MOST; l++) {
+    for (int32_t l = 1; good && l <= LAR_IMAGE_LABEL_MAX; l++) {
         if (voxels[l] == 0) continue;
         const char *name = lar_image_label_name(image, l);
         lar_label_row *row = &list->row[list->count++];

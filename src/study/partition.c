@@ -36,13 +36,13 @@ static void partition_clear(partition *p) {
 
 /* ---- making distributions --------------------------------------------------------------- */
 
-static bool watch_genetic(void *context, const lar_genetic_progress *progress) {
+static bool genetic_progress(void *context, const lar_genetic_progress *progress) {
     const partition *p = context;
     const lar_partition_options *o = p->options;
     double done = o->generations ? (double)progress->generation / (double)o->generations : 0;
     if (o->seconds > 0 && progress->seconds / o->seconds > done)
         done = progress->seconds / o->seconds;
-    o->watch(o->context, done < 1 ? done : 1, progress->start.worst, progress->best.worst);
+    o->progress(o->context, done < 1 ? done : 1, progress->start.worst, progress->best.worst);
     return true;
 }
 
@@ -55,7 +55,7 @@ static lar_status make_genetic(partition *p, lar_distribution *out) {
     options.seed = p->options->seed;
     options.seconds = p->options->seconds;
     options.generations = p->options->generations;
-    options.watch = p->options->watch ? watch_genetic : NULL;
+    options.callback = p->options->progress ? genetic_progress : NULL;
     options.context = p;
     status = lar_genetic_search(p->mesh, &p->incidence, &p->grid, &options, d.processor, &result,
                                 p->error);
@@ -85,7 +85,7 @@ static lar_status make(partition *p, lar_partition_method method, lar_distributi
 }
 
 static lar_status measure(partition *p, const lar_distribution *d, lar_cost *cost) {
-    int32_t *set = lar_calloc((size_t)p->incidence.most, sizeof *set);
+    int32_t *set = lar_calloc((size_t)p->incidence.max, sizeof *set);
     int64_t *pays = lar_calloc((size_t)p->grid.count, sizeof *pays);
     bool good = set && pays;
     if (good) *cost = lar_cost_measure(&p->incidence, d->processor, p->grid.count, set, pays);
@@ -190,19 +190,19 @@ static void report_traffic(const lar_schedule_set *set, lar_partition_scheme *r)
         global += t.global;
         packets += of_this;
         largest = larger(largest, t.largest_packet);
-        r->local_most = larger(r->local_most, t.local);
-        r->global_most = larger(r->global_most, t.global);
-        r->vectors_most = larger(r->vectors_most, t.local + t.global);
-        r->packets_most = larger(r->packets_most, of_this);
+        r->local_max = larger(r->local_max, t.local);
+        r->global_max = larger(r->global_max, t.global);
+        r->vectors_max = larger(r->vectors_max, t.local + t.global);
+        r->packets_max = larger(r->packets_max, of_this);
     }
     double n = set->count, vectors = (double)(local + global);
     r->local_mean = (double)local / n;
     r->global_mean = (double)global / n;
     r->vectors_mean = vectors / n;
-    r->bytes_most = LAR_VECTOR_BYTES * r->vectors_most;
+    r->bytes_max = LAR_VECTOR_BYTES * r->vectors_max;
     r->bytes_mean = LAR_VECTOR_BYTES * r->vectors_mean;
     r->packets_mean = (double)packets / n;
-    r->packet_bytes_most = LAR_VECTOR_BYTES * largest;
+    r->packet_bytes_max = LAR_VECTOR_BYTES * largest;
     r->packet_bytes_mean = packets > 0 ? LAR_VECTOR_BYTES * vectors / (double)packets : 0;
 }
 
@@ -212,9 +212,9 @@ static void report_schedules(const lar_schedule_set *set, lar_partition_schedule
         const lar_schedule *s = &set->of[i];
         batches += s->batch_count;
         waits += s->wait_count;
-        r->batches_most = larger(r->batches_most, s->batch_count);
-        r->waits_most = larger(r->waits_most, s->wait_count);
-        r->buffer_bytes_most = larger(r->buffer_bytes_most, 2 * s->receive_bytes);
+        r->batches_max = larger(r->batches_max, s->batch_count);
+        r->waits_max = larger(r->waits_max, s->wait_count);
+        r->buffer_bytes_max = larger(r->buffer_bytes_max, 2 * s->receive_bytes);
     }
     r->threads = set->of[0].threads;
     r->scheme = lar_scheme_name[set->of[0].scheme];

@@ -24,7 +24,7 @@ enum { LAR_PARTITION_SCHEMES = 4 };
 
 /* Called during the genetic search: the share that is done, the cost of the cut and the best so
  * far. */
-typedef void lar_partition_watch(void *context, double done, int64_t start, int64_t best);
+typedef void lar_partition_progress(void *context, double done, int64_t start, int64_t best);
 
 typedef struct lar_partition_options {
     const char *grid; /* "2x2x3"; with a file NULL or the file's */
@@ -38,7 +38,7 @@ typedef struct lar_partition_options {
     const char *out;       /* distribution file to write, or NULL */
     const char *schedules; /* folder for schedule files, or NULL */
     const char *vtu;       /* mesh with the cell field "processor" to write, or NULL */
-    lar_partition_watch *watch;
+    lar_partition_progress *progress;
     void *context;
 } lar_partition_options;
 
@@ -52,13 +52,13 @@ typedef struct lar_partition_cost {
  * the mean, counted from the scheme's schedules. A vector has 24 bytes. */
 typedef struct lar_partition_scheme {
     const char *name;
-    int64_t local_most, global_most, vectors_most; /* vectors */
+    int64_t local_max, global_max, vectors_max; /* vectors */
     double local_mean, global_mean, vectors_mean;
-    int64_t bytes_most;
+    int64_t bytes_max;
     double bytes_mean;
-    int64_t packets_most;
+    int64_t packets_max;
     double packets_mean;
-    int64_t packet_bytes_most; /* the largest packet */
+    int64_t packet_bytes_max; /* the largest packet */
     double packet_bytes_mean;
 } lar_partition_scheme;
 
@@ -66,9 +66,9 @@ typedef struct lar_partition_scheme {
 typedef struct lar_partition_schedules {
     int32_t threads;
     const char *scheme, *channels;
-    int64_t batches_most, waits_most; /* of a processor, all threads */
+    int64_t batches_max, waits_max; /* of a processor, all threads */
     double batches_mean, waits_mean;
-    int64_t buffer_bytes_most; /* of a receive buffer, both halves */
+    int64_t buffer_bytes_max; /* of a receive buffer, both halves */
 } lar_partition_schedules;
 
 typedef struct lar_partition_report {

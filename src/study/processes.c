@@ -26,7 +26,7 @@
 static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0;
 
 /* Whoever wants more on one machine has mistyped the grid. */
-enum { STARTED_MOST = 64 };
+enum { STARTED_MAX = 64 };
 
 /* By this variable of the environment a process knows which one has started it. */
 static const char PARENT[] = "LARIAT_PARENT";
@@ -43,7 +43,7 @@ struct lar_processes {
     /* of those that were started here */
     int32_t count;
     pid_t *pid;   /* [count], 0: not running; of processor 0 it is not used */
-    int listener; /* kept for every meeting; -1: none */
+    int listener; /* kept for every rendezvous; -1: none */
     char address[LAR_COMM_ADDRESS_TEXT];
     int32_t named; /* whose end has been told already; 0: nobody's */
 };
@@ -227,11 +227,11 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
     bool starts = p->several && p->start == LAR_COMM_BY_ADDRESS && p->job.count == 1 &&
                   !by_hand(p) && count > 1;
     if (status || !starts) return status;
-    if (count > STARTED_MOST)
+    if (count > STARTED_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d processes on one machine; at most %d are started here: leave --comm "
                         "out, or start them by hand or by mpirun on several machines",
-                        (int)count, STARTED_MOST);
+                        (int)count, STARTED_MAX);
     p->pid = lar_calloc((size_t)count, sizeof *p->pid);
     if (!p->pid) return lar_fail_memory(error, (size_t)count * sizeof *p->pid, "processes");
     p->count = count;
@@ -239,7 +239,7 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
     return status ? status : start_all(p, error);
 }
 
-/* ---- meeting ------------------------------------------------------------------------------- */
+/* ---- rendezvous ----------------------------------------------------------------------------- */
 
 static lar_status meet_in_job(lar_processes *p, lar_options *options, lar_error *error) {
     lar_comm_options comm = lar_comm_options_default();
@@ -258,7 +258,7 @@ static lar_status meet(lar_processes *p, lar_options *options, lar_error *error)
     options->processor = p->self;
     options->master = by_hand(p) ? p->setting.master : p->address;
     if (p->listener < 0) return LAR_OK;
-    /* The others of a second meeting may come before the first one is over: they queue here. */
+    /* The others of a second rendezvous may come before the first one is over: they queue here. */
     options->listener = fcntl(p->listener, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     if (options->listener >= 0) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO, "no second number for a socket: %s; see ulimit -n",

@@ -6,7 +6,7 @@
 #include "study/bench/step_clock.h"
 
 /* Steps that warm the caches, and those that are the least to be measured. */
-enum { WARM = 5, LEAST = 10 };
+enum { WARM = 5, MIN = 10 };
 
 /* Steps of one processor were measured one by one, which says more than batches of them. */
 static lar_status look_at_divisions(const lar_model *model, lar_real_time *found,
@@ -31,8 +31,8 @@ static lar_status measure_alone(const lar_model *model, double seconds, lar_real
     }
     lar_step_clock clock;
     lar_step_clock_start(&clock, simulation, false);
-    while (!status && (clock.times.count < LEAST || lar_step_clock_elapsed(&clock) < seconds))
-        status = lar_step_clock_advance(&clock, simulation, LEAST, NULL, NULL, error);
+    while (!status && (clock.times.count < MIN || lar_step_clock_elapsed(&clock) < seconds))
+        status = lar_step_clock_advance(&clock, simulation, MIN, NULL, NULL, error);
     if (!status) {
         double step = 1e-6 * lar_step_clock_quantile(&clock, 0.5);
         *found = (lar_real_time){.factor = lar_simulation_time_step(simulation) / step,

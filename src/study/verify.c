@@ -4,7 +4,7 @@
 #include "parallel/verification.h"
 #include "model/model.h"
 
-enum { LISTED_LEAST = 20, SEED = 1 };
+enum { LISTED_MIN = 20, SEED = 1 };
 
 /* ---- schedules ------------------------------------------------------------------------------ */
 
@@ -49,7 +49,7 @@ lar_status lar_verify_lists(const lar_verify_setting *setting, lar_verify_report
     lar_status status = lar_verification_create(setting->model, &check, error);
     if (status) return status;
     report->passes = check.passes;
-    report->listed = check.passes > LISTED_LEAST ? (uint64_t)check.passes : LISTED_LEAST;
+    report->listed = check.passes > LISTED_MIN ? (uint64_t)check.passes : LISTED_MIN;
     lar_verification_destroy(&check);
     lar_options options = options_for(setting, true);
     report->seed = options.delays;

@@ -93,7 +93,7 @@ static void tails_are_found(void **state) {
     assert_true(fabs(lar_histogram_quantile(h, 0.5) - 20000) < 400);
     assert_true(fabs(lar_histogram_quantile(h, 0.998) - 20000) < 400);
     assert_true(fabs(lar_histogram_quantile(h, 0.9995) - 500000) < 8000);
-    assert_true(h->most == 7000000 && h->least == 20000);
+    assert_true(h->max == 7000000 && h->min == 20000);
     free(h);
 }
 

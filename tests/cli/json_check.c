@@ -11,17 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_BYTES = 1 << 20, MOST_PATH = 256, MOST_VALUES = 4096 };
+enum { MAX_BYTES = 1 << 20, MAX_PATH = 256, MAX_VALUES = 4096 };
 
 typedef struct value {
-    char path[MOST_PATH];
+    char path[MAX_PATH];
     const char *at;
     size_t length;
 } value;
 
-static char text[MOST_BYTES];
+static char text[MAX_BYTES];
 static const char *at = text;
-static value values[MOST_VALUES];
+static value values[MAX_VALUES];
 static int value_count;
 
 static void fail(const char *what) {
@@ -87,7 +87,7 @@ static void read_members(const char *path, char open, char close) {
     expect(open);
     skip_space();
     for (int i = 0; *at != close; i++) {
-        char name[MOST_PATH], inner[2 * MOST_PATH];
+        char name[MAX_PATH], inner[2 * MAX_PATH];
         snprintf(name, sizeof name, "%d", i);
         if (i > 0) {
             expect(',');
@@ -99,7 +99,7 @@ static void read_members(const char *path, char open, char close) {
             expect(':');
         }
         snprintf(inner, sizeof inner, "%s%s%s", path, *path ? "." : "", name);
-        if (strlen(inner) >= MOST_PATH) fail("the path is too long");
+        if (strlen(inner) >= MAX_PATH) fail("the path is too long");
         for (int k = 0; k < value_count; k++)
             if (strcmp(values[k].path, inner) == 0) fail("a key stands twice");
         read_value(inner);
@@ -115,7 +115,7 @@ static bool skip_word(const char *word) {
 
 static void read_value(const char *path) {
     skip_space();
-    if (value_count == MOST_VALUES) fail("too many values");
+    if (value_count == MAX_VALUES) fail("too many values");
     value *v = &values[value_count++];
     snprintf(v->path, sizeof v->path, "%s", path);
     v->at = at;

@@ -50,7 +50,7 @@ expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 600 --title 
 [ ! -s "$SCRATCH/err" ] || fail "messages while all was well: $(cat "$SCRATCH/err")"
 says '^Two organs: [56][0-9][0-9] elements of about [23][.0-9]* mm'
 says 'left kidney (7): [0-9]* elements'
-says '^held  *at the back, and on [1-9] pads* that bears* its weight: [0-9]* nodes'
+says '^held  *at the back, and on [1-9] extra supports* that bears* its weight: [0-9]* nodes'
 says '^volume  *[12][0-9.]* mL, the true surface holds'
 says '^shortest edge  *[0-9.]* mm$'
 says '^deviation  *mean 0\.[0-9]* mm ('
@@ -61,7 +61,7 @@ for file in .vtu .yaml _surface.vtp; do
 done
 find . -name '*.part' | grep -q . && fail "a part file is left"
 
-# The pull moves the handle alike whatever the mesh; frames hold the fine surface when asked to.
+# The pull moves the handle alike whatever the mesh; frames hold the embedded surface when asked to.
 furthest() { # the largest mean displacement of the handle in a run's probes
     awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /^"*handle/) at[++n] = c; next }
         { d = 0; for (c = 1; c <= n; c++) d += $at[c] ^ 2; if (d > most) most = d }
@@ -75,12 +75,12 @@ done
 awk "BEGIN { a = $(furthest pull150/out); b = $(furthest pull600/out); c = $(furthest pull2400/out)
     exit !(a > 0.5e-3 && b / a < 1.25 && a / b < 1.25 && c / b < 1.25 && b / c < 1.25) }" ||
     fail "pulls of $(furthest pull150/out), $(furthest pull600/out), $(furthest pull2400/out) m"
-[ ! -e pull600/out/surface_000000.vtp ] || fail "a fine surface that nobody asked for"
+[ ! -e pull600/out/surface_000000.vtp ] || fail "an embedded surface that nobody asked for"
 expect 0 "$LARIAT" run pull600/pull.yaml --time 0.05 --surface --out pull600/fine
-[ -s pull600/fine/surface_000000.vtp ] && [ -s pull600/fine/surface.pvd ] || fail "no fine surface"
+[ -s pull600/fine/surface_000000.vtp ] && [ -s pull600/fine/surface.pvd ] || fail "no embedded surface"
 sed 's/^# surface: true.*/  surface: true/' pull600/pull.yaml >pull600/asks.yaml
 expect 0 "$LARIAT" run pull600/asks.yaml --time 0.05 --out pull600/asked
-[ -s pull600/asked/surface_000000.vtp ] || fail "the scene asks for the fine surface in vain"
+[ -s pull600/asked/surface_000000.vtp ] || fail "the scene asks for the embedded surface in vain"
 
 # One core or many: the same files.
 if taskset -c 0 true 2>/dev/null; then

@@ -91,7 +91,7 @@ static void meshing_calls(void **unused) {
     REFUSED(lar_model_quality(model, "organ.stl", -1, &quality, &error));
     REFUSED(lar_model_quality(model, "organ.stl", INFINITY, &quality, &error));
     assert_int_equal(lar_model_quality(model, NULL, 1, &quality, &error), LAR_OK);
-    assert_true(quality.true_volume == 0 && quality.deviation_most == 0);
+    assert_true(quality.true_volume == 0 && quality.deviation_max == 0);
     assert_true(quality.above_05 == 1 && quality.volume > 0);
     assert_int_equal(lar_model_embedded(model, &embedded), 0);
     REFUSED(lar_meshing_create(NULL, 1, NULL, &meshing, &error));
@@ -108,7 +108,7 @@ static void meshing_calls(void **unused) {
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
     options = (lar_meshing_options){.fix = "sideways"};
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
-    options = (lar_meshing_options){.watch = never};
+    options = (lar_meshing_options){.progress = never};
     REFUSED(lar_meshing_create(image, 1, &options, &meshing, &error));
     assert_int_equal(lar_meshing_create(image, 1, NULL, &meshing, NULL), LAR_ERROR_IO);
     assert_null(meshing);

@@ -8,32 +8,32 @@
 /* ---- global packets ----------------------------------------------------------------------- */
 
 lar_status lar_packet_start(lar_packet *packet, lar_comm *comm, int32_t peer, size_t offset,
-                            size_t most, uint64_t step, void *gather, lar_error *error) {
-    unsigned char *room = lar_comm_room(comm, peer, offset, most, step);
-    if (!room && !gather && most > 0)
+                            size_t max, uint64_t step, void *gather, lar_error *error) {
+    unsigned char *room = lar_comm_room(comm, peer, offset, max, step);
+    if (!room && !gather && max > 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a packet to processor %d needs memory to be gathered in", (int)peer);
-    *packet = (lar_packet){comm, peer, offset, 0, most, step, room ? room : gather};
+    *packet = (lar_packet){comm, peer, offset, 0, max, step, room ? room : gather};
     return LAR_OK;
 }
 
 lar_status lar_packet_queue(lar_packet *packet, const void *data, size_t bytes, lar_error *error) {
-    if (bytes > packet->most - packet->filled)
+    if (bytes > packet->max - packet->filled)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a packet to processor %d has %zu bytes and should take %zu more; start it "
                         "with its full size",
-                        (int)packet->peer, packet->most, bytes);
+                        (int)packet->peer, packet->max, bytes);
     if (bytes) memcpy(packet->bytes + packet->filled, data, bytes);
     packet->filled += bytes;
     return LAR_OK;
 }
 
 lar_status lar_packet_send(lar_packet *packet, lar_error *error) {
-    if (packet->filled != packet->most)
+    if (packet->filled != packet->max)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a packet to processor %d is sent with %zu of its %zu bytes; queue all of "
                         "them, its size may not change",
-                        (int)packet->peer, packet->filled, packet->most);
+                        (int)packet->peer, packet->filled, packet->max);
     return lar_comm_put(packet->comm, packet->peer, packet->offset, packet->bytes, packet->filled,
                         packet->step, error);
 }

@@ -34,15 +34,15 @@ typedef struct lar_packet {
     lar_comm *comm;
     int32_t peer;
     size_t offset; /* in the peer's half */
-    size_t filled, most;
+    size_t filled, max;
     uint64_t step;
     unsigned char *bytes;
 } lar_packet;
 
-/* Begins a packet of at most `most` bytes. `gather` (at least `most` bytes) is used where the
+/* Begins a packet of at most `max` bytes. `gather` (at least `max` bytes) is used where the
  * peer's memory cannot be written; it may serve the next packet after lar_packet_send. */
 lar_status lar_packet_start(lar_packet *packet, lar_comm *comm, int32_t peer, size_t offset,
-                            size_t most, uint64_t step, void *gather, lar_error *error);
+                            size_t max, uint64_t step, void *gather, lar_error *error);
 lar_status lar_packet_queue(lar_packet *packet, const void *data, size_t bytes, lar_error *error);
 /* The packet must be filled: its size is part of the layout. */
 lar_status lar_packet_send(lar_packet *packet, lar_error *error);

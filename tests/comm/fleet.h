@@ -22,7 +22,7 @@
 #include "comm/comm.h"
 #include "comm/job.h"
 
-enum { FLEET_MOST = 32, FLEET_TEXT = 1100 };
+enum { FLEET_MAX = 32, FLEET_TEXT = 1100 };
 
 typedef const char *(*fleet_body)(lar_comm *comm, void *context, char text[FLEET_TEXT]);
 
@@ -131,8 +131,8 @@ static inline void fleet_threads(fleet f, char (*texts)[FLEET_TEXT]) {
 
 typedef struct fleet_processes {
     int32_t count;
-    pid_t pid[FLEET_MOST];
-    int words[FLEET_MOST]; /* the reading end of each one's pipe */
+    pid_t pid[FLEET_MAX];
+    int words[FLEET_MAX]; /* the reading end of each one's pipe */
     char master[LAR_COMM_ADDRESS_TEXT];
 } fleet_processes;
 

@@ -1,5 +1,5 @@
 /* For the tests of losses: fleets of processes in which one gets into trouble, and what the others
- * must show then. Everyone writes on a board of shared memory, each with its own clock, so that
+ * must show then. Everyone writes its results into shared memory, each with its own clock, so that
  * the time from the trouble to the end of a process does not depend on when the test looks. What
  * the machine itself was late in that time, a sleeping thread measures, and that is allowed for. */
 #ifndef LAR_TESTS_COMM_LOSS_H
@@ -18,7 +18,7 @@
 #include <sys/time.h>
 #include <time.h>
 
-enum { LOSS_MOST = 8, LOSS_BYTES = 256 * LOSS_MOST };
+enum { LOSS_MAX = 8, LOSS_BYTES = 256 * LOSS_MAX };
 static const double LOSS_LIMIT = 2.0;     /* [s], the promise */
 static const unsigned LOSS_TOO_LONG = 60; /* [s], then a process that hangs is ended */
 
@@ -39,15 +39,15 @@ typedef struct loss_entry {
 } loss_entry;
 
 /* In memory that all share. */
-typedef struct loss_board {
+typedef struct loss_results {
     int32_t victim;
     loss_kind kind;
     int cut;        /* LOSS_CUT_ONE: which of its sockets */
     long self_kill; /* [us] after its start the victim kills itself; 0: it does not */
     double began;   /* when the trouble came */
     int released;   /* atomic: who hangs may end */
-    loss_entry entries[LOSS_MOST];
-} loss_board;
+    loss_entry entries[LOSS_MAX];
+} loss_results;
 
 static inline double loss_now(void) {
     struct timespec at;
@@ -55,18 +55,18 @@ static inline double loss_now(void) {
     return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
 
-static inline loss_board *loss_board_create(int32_t victim, loss_kind kind) {
-    loss_board *board =
-        mmap(NULL, sizeof *board, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    assert_true(board != MAP_FAILED);
-    board->victim = victim;
-    board->kind = kind;
-    return board;
+static inline loss_results *loss_results_create(int32_t victim, loss_kind kind) {
+    loss_results *results =
+        mmap(NULL, sizeof *results, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(results != MAP_FAILED);
+    results->victim = victim;
+    results->kind = kind;
+    return results;
 }
 
 /* ---- in the victim --------------------------------------------------------------------------- */
 
-static loss_board *loss_mine;            /* for signal handlers */
+static loss_results *loss_mine;          /* for signal handlers */
 static volatile sig_atomic_t loss_asked; /* the trouble begins at the next step */
 
 /* In both directions: a connection that is being closed carries nothing. */
@@ -115,8 +115,8 @@ static inline int loss_count_fds(void) {
 }
 
 static inline void loss_around(void *context, int32_t self, bool closed) {
-    loss_board *board = context;
-    loss_entry *own = &board->entries[self];
+    loss_results *results = context;
+    loss_entry *own = &results->entries[self];
     if (closed) {
         own->ended = loss_now();
         /* The listener of processor 0 was there before and is taken over. */
@@ -125,13 +125,13 @@ static inline void loss_around(void *context, int32_t self, bool closed) {
     }
     alarm(LOSS_TOO_LONG);
     own->fds = loss_count_fds();
-    if (self != board->victim) return;
-    loss_mine = board;
+    if (self != results->victim) return;
+    loss_mine = results;
     signal(SIGUSR1, loss_cut);
     signal(SIGUSR2, loss_ask);
-    if (!board->self_kill) return;
+    if (!results->self_kill) return;
     signal(SIGALRM, loss_die);
-    struct itimerval timer = {.it_value.tv_usec = board->self_kill};
+    struct itimerval timer = {.it_value.tv_usec = results->self_kill};
     setitimer(ITIMER_REAL, &timer, NULL);
 }
 
@@ -156,17 +156,17 @@ static inline lar_status loss_exchange(lar_comm *comm, bool everyone, uint64_t s
 
 /* Exchange for ever. */
 static inline const char *loss_ring(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
-    loss_board *board = context;
-    loss_entry *own = &board->entries[lar_comm_self(comm)];
+    loss_results *results = context;
+    loss_entry *own = &results->entries[lar_comm_self(comm)];
     lar_error error;
     for (uint64_t step = 1;; step++) {
         __atomic_store_n(&own->step, step, __ATOMIC_RELEASE);
-        if (loss_asked && board->kind == LOSS_FAIL) {
+        if (loss_asked && results->kind == LOSS_FAIL) {
             lar_comm_abort(comm);
             return "its own failure";
         }
-        while (loss_asked && !__atomic_load_n(&board->released, __ATOMIC_ACQUIRE)) usleep(1000);
-        lar_status status = loss_exchange(comm, board->kind == LOSS_CUT_ONE, step, &error);
+        while (loss_asked && !__atomic_load_n(&results->released, __ATOMIC_ACQUIRE)) usleep(1000);
+        lar_status status = loss_exchange(comm, results->kind == LOSS_CUT_ONE, step, &error);
         if (!status) continue;
         own->reported = loss_now();
         own->status = status;
@@ -204,19 +204,19 @@ static inline double loss_control_stop(loss_control *control) {
 }
 
 /* Waits until everyone exchanges. */
-static inline void loss_await_steps(const loss_board *board, int32_t count, uint64_t step) {
+static inline void loss_await_steps(const loss_results *results, int32_t count, uint64_t step) {
     double deadline = loss_now() + 30;
     for (int32_t p = 0; p < count; p++)
-        while (__atomic_load_n(&board->entries[p].step, __ATOMIC_ACQUIRE) < step) {
+        while (__atomic_load_n(&results->entries[p].step, __ATOMIC_ACQUIRE) < step) {
             assert_true(loss_now() < deadline);
             usleep(500);
         }
 }
 
-static inline void loss_begin(loss_board *board, pid_t victim) {
+static inline void loss_begin(loss_results *results, pid_t victim) {
     static const int signals[] = {SIGKILL, SIGSTOP, SIGUSR1, SIGUSR1, SIGUSR2, SIGUSR2};
-    board->began = loss_now();
-    assert_int_equal(kill(victim, signals[board->kind]), 0);
+    results->began = loss_now();
+    assert_int_equal(kill(victim, signals[results->kind]), 0);
 }
 
 /* Our objects that nobody alive owns; those of tests that run beside this one are locked, or go
@@ -262,24 +262,24 @@ static inline int loss_sockets_left(const char *master) {
 }
 
 /* What everyone but the victim must show after a loss in the step loop; counts what is wrong. */
-static inline int loss_check(const loss_board *board, const char *backend, int32_t p,
+static inline int loss_check(const loss_results *results, const char *backend, int32_t p,
                              const char *text, double late) {
-    const loss_entry *own = &board->entries[p];
+    const loss_entry *own = &results->entries[p];
     char lost[40], complete[80];
-    snprintf(lost, sizeof lost, "processor %d is lost", (int)board->victim);
+    snprintf(lost, sizeof lost, "processor %d is lost", (int)results->victim);
     snprintf(complete, sizeof complete, "the last complete step of processor %d is %llu;", (int)p,
              (unsigned long long)own->step - 1);
     /* Of one connection that is cut there are two ends. */
-    bool named = strstr(text, lost) || (board->kind == LOSS_CUT_ONE &&
+    bool named = strstr(text, lost) || (results->kind == LOSS_CUT_ONE &&
                                         (strstr(text, "is lost") || strstr(text, "given up")));
     bool stepped = strstr(text, complete) != NULL;
-    bool in_time = own->ended > 0 && own->ended - board->began < LOSS_LIMIT + late;
+    bool in_time = own->ended > 0 && own->ended - results->began < LOSS_LIMIT + late;
     bool clean = own->status == LAR_ERROR_PEER && own->lost == 0;
     if (named && stepped && in_time && clean) return 0;
     print_error("%s, victim %d, kind %d: processor %d ends with status %d after %.3f s "
                 "(the machine: %.3f s late), %d descriptors more, and says: %s\n",
-                backend, (int)board->victim, (int)board->kind, (int)p, own->status,
-                own->ended - board->began, late, own->lost, text);
+                backend, (int)results->victim, (int)results->kind, (int)p, own->status,
+                own->ended - results->began, late, own->lost, text);
     return 1;
 }
 

@@ -15,28 +15,28 @@ static uint64_t chance(uint64_t below) {
 }
 
 /* In the step loop everything must be right; during start-up the victim must be named. */
-static int judge(const loss_board *board, const char *backend, int32_t p, const char *text,
+static int judge(const loss_results *results, const char *backend, int32_t p, const char *text,
                  bool killed, double late) {
-    const loss_entry *own = &board->entries[p];
-    if (own->step > 0) return loss_check(board, backend, p, text, late);
+    const loss_entry *own = &results->entries[p];
+    if (own->step > 0) return loss_check(results, backend, p, text, late);
     char name[40];
-    snprintf(name, sizeof name, "processor %d", (int)board->victim);
+    snprintf(name, sizeof name, "processor %d", (int)results->victim);
     /* Who calls processor zero waits a second longer than it would. */
     double limit = START_LIMIT + 1 + LOSS_LIMIT + late;
     /* Who comes when zero has given up and gone finds nobody. */
     bool named = strstr(text, name) || (late > 0.5 && strstr(text, "nobody answers"));
-    if (named && own->ended > 0 && own->ended - board->began < limit && killed && own->lost == 0)
+    if (named && own->ended > 0 && own->ended - results->began < limit && killed && own->lost == 0)
         return 0;
     print_error("%s, victim %d in start-up: processor %d ends after %.3f s (the machine: %.3f s "
                 "late), %d descriptors more, and says: %s\n",
-                backend, (int)board->victim, (int)p, own->ended - board->began, late, own->lost,
+                backend, (int)results->victim, (int)p, own->ended - results->began, late, own->lost,
                 text);
     return 1;
 }
 
 static int start_and_kill(const char *backend, int32_t victim, long moment) {
-    loss_board *board = loss_board_create(victim, LOSS_KILL);
-    board->self_kill = moment;
+    loss_results *results = loss_results_create(victim, LOSS_KILL);
+    results->self_kill = moment;
     fleet_processes running;
     loss_control control;
     char texts[PROCESSORS][FLEET_TEXT];
@@ -44,7 +44,7 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
                          .count = PROCESSORS,
                          .bytes = LOSS_BYTES,
                          .body = loss_ring,
-                         .context = board,
+                         .context = results,
                          .around = loss_around,
                          .start_timeout = START_LIMIT},
                  &running);
@@ -59,8 +59,8 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
     double late = loss_control_stop(&control);
     bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
     for (int32_t p = 0; p < PROCESSORS; p++) {
-        started += board->entries[p].step > 0;
-        if (p != victim) wrong += judge(board, backend, p, texts[p], killed, late);
+        started += results->entries[p].step > 0;
+        if (p != victim) wrong += judge(results, backend, p, texts[p], killed, late);
     }
     /* UCX 1.13 has assertions of its own that fail when a peer dies while they are being connected:
      * whoever it ends then cannot say anything, and is the one whom the others name. */
@@ -73,7 +73,7 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
     print_message("%s, processor %d killed after %.1f ms, %d of %d had begun: %s\n", backend,
                   (int)victim, 1e-3 * (double)moment, started, PROCESSORS,
                   texts[victim == 0 ? 1 : 0]);
-    munmap(board, sizeof *board);
+    munmap(results, sizeof *results);
     return wrong;
 }
 

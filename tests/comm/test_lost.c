@@ -3,70 +3,70 @@
  * victim. */
 #include "loss.h"
 
-enum { PROCESSORS = 4, BACKENDS_MOST = 8 };
+enum { PROCESSORS = 4, BACKENDS_MAX = 8 };
 
 typedef struct scene {
     const char *backend;
-    loss_board *board;
+    loss_results *results;
     fleet_processes running;
 } scene;
 
 static void launch(scene *s, const char *backend, int32_t victim, loss_kind kind, int cut) {
     s->backend = backend;
-    s->board = loss_board_create(victim, kind);
-    s->board->cut = cut;
+    s->results = loss_results_create(victim, kind);
+    s->results->cut = cut;
     fleet_launch((fleet){.backend = backend,
                          .count = PROCESSORS,
                          .bytes = LOSS_BYTES,
                          .body = loss_ring,
-                         .context = s->board,
+                         .context = s->results,
                          .around = loss_around},
                  &s->running);
-    loss_await_steps(s->board, PROCESSORS, 100);
+    loss_await_steps(s->results, PROCESSORS, 100);
 }
 
 /* Takes all words, then looks at what is left. Returns how many things are wrong. */
 static int finish(scene *s, loss_control *control) {
     char texts[PROCESSORS][FLEET_TEXT];
-    int32_t victim = s->board->victim;
+    int32_t victim = s->results->victim;
     int wrong = 0;
     for (int32_t p = 0; p < PROCESSORS; p++)
         if (p != victim) fleet_reap(&s->running, p, texts[p]);
     double late = loss_control_stop(control), last = 0;
-    __atomic_store_n(&s->board->released, 1, __ATOMIC_RELEASE);
-    if (s->board->kind == LOSS_STOP) kill(s->running.pid[victim], SIGKILL);
+    __atomic_store_n(&s->results->released, 1, __ATOMIC_RELEASE);
+    if (s->results->kind == LOSS_STOP) kill(s->running.pid[victim], SIGKILL);
     fleet_reap(&s->running, victim, texts[victim]);
     for (int32_t p = 0; p < PROCESSORS; p++) {
         if (p == victim) continue;
-        wrong += loss_check(s->board, s->backend, p, texts[p], late);
-        if (s->board->entries[p].ended > last) last = s->board->entries[p].ended;
+        wrong += loss_check(s->results, s->backend, p, texts[p], late);
+        if (s->results->entries[p].ended > last) last = s->results->entries[p].ended;
     }
     print_message("%s, processor %d, kind %d: all stopped after %.2f s\n", s->backend, (int)victim,
-                  (int)s->board->kind, last - s->board->began);
-    bool cut = s->board->kind == LOSS_CUT || s->board->kind == LOSS_CUT_ONE;
-    if (cut && s->board->entries[victim].status != LAR_ERROR_PEER) {
+                  (int)s->results->kind, last - s->results->began);
+    bool cut = s->results->kind == LOSS_CUT || s->results->kind == LOSS_CUT_ONE;
+    if (cut && s->results->entries[victim].status != LAR_ERROR_PEER) {
         print_error("processor %d, cut off, says: %s\n", (int)victim, texts[victim]);
         wrong++;
     }
     if (loss_sockets_left(s->running.master)) print_error("sockets are left\n"), wrong++;
-    munmap(s->board, sizeof *s->board);
+    munmap(s->results, sizeof *s->results);
     return wrong;
 }
 
 /* The same trouble over every backend at once: most of the time is waiting. */
 static void lose(int32_t victim, loss_kind kind, int cut) {
-    scene scenes[BACKENDS_MOST];
-    loss_control controls[BACKENDS_MOST];
+    scene scenes[BACKENDS_MAX];
+    loss_control controls[BACKENDS_MAX];
     lar_comm_backend_info info;
     int count = 0, wrong = 0;
     for (int i = 0; fleet_backend(i, &info); i++)
         /* Which of its sockets carry packets is UCX's own affair. */
-        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MOST &&
+        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MAX &&
             !(kind == LOSS_CUT_ONE && strcmp(info.name, "ucx") == 0))
             launch(&scenes[count++], info.name, victim, kind, cut);
     for (int i = 0; i < count; i++) {
         loss_control_start(&controls[i]);
-        loss_begin(scenes[i].board, scenes[i].running.pid[victim]);
+        loss_begin(scenes[i].results, scenes[i].running.pid[victim]);
     }
     for (int i = 0; i < count; i++) wrong += finish(&scenes[i], &controls[i]);
     assert_int_equal(wrong, 0);

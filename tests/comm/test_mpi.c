@@ -168,7 +168,7 @@ int main(int argc, char **argv) {
     if (strcmp(mode, "lose") == 0 && argc > 4)
         good = run(&job, (fleet){.backend = argv[2],
                                  .count = job.count,
-                                 .bytes = 256 * FLEET_MOST,
+                                 .bytes = 256 * FLEET_MAX,
                                  .body = exchange_for_ever,
                                  .context = &t});
     if (lar_comm_job_end(&job, !good, &error)) return complain(&error);

@@ -2,12 +2,12 @@
  * every backend. The argument is the number of packets (a million). */
 #include "fleet.h"
 
-enum { SLOTS = 8, WORDS_LEAST = 25, WORDS_MOST = 64, SLOT_BYTES = 8 * WORDS_MOST + 64 };
+enum { SLOTS = 8, WORDS_MIN = 25, WORDS_MAX = 64, SLOT_BYTES = 8 * WORDS_MAX + 64 };
 
 static uint64_t packets = 1000000;
 
 static size_t words_in(uint64_t slot) {
-    return WORDS_LEAST + slot * 39 / (SLOTS - 1);
+    return WORDS_MIN + slot * 39 / (SLOTS - 1);
 }
 
 static bool differs(const uint64_t *words, size_t count, uint64_t expected) {
@@ -23,8 +23,8 @@ static const char *exchange(lar_comm *comm, void *context, char text[FLEET_TEXT]
     int32_t peer = 1 - lar_comm_self(comm);
     for (uint64_t step = 1; step <= steps; step++) {
         for (uint64_t slot = 0; slot < SLOTS; slot++) {
-            uint64_t words[WORDS_MOST];
-            for (size_t i = 0; i < WORDS_MOST; i++) words[i] = (step << 16) + (slot << 8) + i;
+            uint64_t words[WORDS_MAX];
+            for (size_t i = 0; i < WORDS_MAX; i++) words[i] = (step << 16) + (slot << 8) + i;
             if (lar_comm_put(comm, peer, slot * SLOT_BYTES, words, 8 * words_in(slot), step,
                              &error))
                 return fleet_say(text, "%s", error.message);

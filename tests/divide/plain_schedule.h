@@ -14,7 +14,7 @@
 
 #include "divide/incidence.h"
 #include "divide/schedule/schedule.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 
 /* A mesh and who has what of it. */
 typedef struct divided {
@@ -31,9 +31,9 @@ static TEST_UNUSED void divided_clear(divided *d) {
     lar_mesh_clear(&d->mesh);
 }
 
-/* A lattice on a grid, cut. */
-static TEST_UNUSED divided divided_lattice(int nx, int ny, int nz, int gx, int gy, int gz) {
-    divided d = {.mesh = lattice(nx, ny, nz)};
+/* A brick mesh on a grid, cut. */
+static TEST_UNUSED divided divided_brick(int nx, int ny, int nz, int gx, int gy, int gz) {
+    divided d = {.mesh = brick_mesh(nx, ny, nz)};
     lar_grid grid = grid_of(gx, gy, gz);
     assert_int_equal(lar_incidence_build(&d.mesh, &d.incidence, NULL), LAR_OK);
     assert_int_equal(lar_distribution_cut(&d.mesh, &grid, &d.distribution, NULL), LAR_OK);

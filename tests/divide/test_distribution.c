@@ -1,6 +1,6 @@
 /* Distributions: load balance of every way to make one, and the file in and out and damaged. */
 #include "divide/balance.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 static const int edges[][3] = {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {2, 2, 3}, {3, 3, 3},
@@ -9,7 +9,7 @@ enum { GRIDS = sizeof edges / sizeof *edges };
 
 /* Eq. 6.7, and no processor below the floor either. */
 static void check_balance(const lar_distribution *d) {
-    int32_t count[LAR_GRID_MOST];
+    int32_t count[LAR_GRID_MAX];
     assert_true(lar_distribution_load(d, count));
     for (int32_t p = 0; p < d->grid.count; p++)
         assert_true(count[p] >= d->element_count / d->grid.count);
@@ -17,7 +17,7 @@ static void check_balance(const lar_distribution *d) {
 
 static void cut_and_random_are_balanced(void **state) {
     (void)state;
-    lar_mesh organ = {0}, block = lattice(5, 7, 3);
+    lar_mesh organ = {0}, block = brick_mesh(5, 7, 3);
     assert_int_equal(lar_demo_mesh(&organ, NULL), LAR_OK);
     const lar_mesh *const meshes[] = {&organ, &block};
     for (int m = 0; m < 2; m++)
@@ -37,7 +37,7 @@ static void cut_and_random_are_balanced(void **state) {
 
 static void cutting_equal_positions_goes_by_element(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(12, 1, 1);
+    lar_mesh mesh = brick_mesh(12, 1, 1);
     for (int n = 0; n < mesh.node_count; n++) mesh.position[n][0] = 0;
     lar_grid grid = grid_of(4, 1, 1);
     lar_distribution d = {0};
@@ -49,7 +49,7 @@ static void cutting_equal_positions_goes_by_element(void **state) {
 
 static void random_follows_its_seed(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 4, 4);
+    lar_mesh mesh = brick_mesh(4, 4, 4);
     lar_grid grid = grid_of(2, 2, 2);
     lar_distribution a = {0}, b = {0}, c = {0};
     lar_distribution_random(&mesh, &grid, 1, &a, NULL);
@@ -65,7 +65,7 @@ static void random_follows_its_seed(void **state) {
 
 static void balancing(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(6, 5, 4);
+    lar_mesh mesh = brick_mesh(6, 5, 4);
     lar_incidence incidence;
     assert_int_equal(lar_incidence_build(&mesh, &incidence, NULL), LAR_OK);
     for (int way = 0; way < 3; way++) {
@@ -123,7 +123,7 @@ static lar_status parse(const char *text, size_t size, const lar_mesh *mesh, lar
 static void write_and_read(void **state) {
     (void)state;
     static const char path[] = LAR_TEST_BUILD "/divide.dist";
-    lar_mesh mesh = lattice(4, 3, 3);
+    lar_mesh mesh = brick_mesh(4, 3, 3);
     lar_grid grid = grid_of(2, 1, 3);
     lar_distribution d = {0}, again = {0};
     lar_distribution_random(&mesh, &grid, 4, &d, NULL);
@@ -144,7 +144,7 @@ static void write_and_read(void **state) {
     }
     lar_bytes_free(&bytes);
     /* The same numbers of elements, but another mesh. */
-    lar_mesh other = lattice(3, 4, 3);
+    lar_mesh other = brick_mesh(3, 4, 3);
     lar_distribution none = {0};
     lar_error error = {0};
     assert_int_equal(lar_distribution_read(path, &other, &none, &error), LAR_ERROR_FORMAT);
@@ -162,7 +162,7 @@ static void write_and_read(void **state) {
 
 static void by_hand(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     lar_distribution d = {0};
     static const char text[] = "# the left one works less\nlariat-distribution   1\r\n\n"
                                "grid 2x1x1 # two\nelements 4\n"
@@ -207,7 +207,7 @@ static void damaged(void **state) {
         {HEAD "mesh 0123456789abcdef\n0 0\n1 1\n2 1\n3 1\nend\n", "x.dist:4: the file was made"},
         {HEAD "0 0\n1 1\n2 1\n3 1\n", "the file ends before"},
     };
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         lar_distribution d = {0};
         lar_error error = {0};
@@ -225,7 +225,7 @@ static void damaged(void **state) {
 
 static void too_many_processors(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(2, 1, 1);
+    lar_mesh mesh = brick_mesh(2, 1, 1);
     lar_grid grid = grid_of(3, 1, 1);
     lar_distribution d = {0};
     lar_error error = {0};

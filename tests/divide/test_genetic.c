@@ -2,7 +2,7 @@
 #include "divide/genetic.h"
 
 #include "divide/exchange.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 typedef struct organ {
@@ -32,7 +32,7 @@ static int tear_down(void **state) {
 }
 
 static void check_balance(const organ *o, const lar_grid *grid) {
-    int32_t count[LAR_GRID_MOST];
+    int32_t count[LAR_GRID_MAX];
     lar_distribution d = {*grid, o->mesh.element_count, o->processor};
     assert_true(lar_distribution_load(&d, count));
     for (int32_t p = 0; p < grid->count; p++)
@@ -59,7 +59,7 @@ static void same_for_a_seed(void **state) {
     assert_memory_equal(o->processor, o->other, bytes);
     int32_t set[64];
     int64_t pays[12];
-    assert_true(o->incidence.most <= 64);
+    assert_true(o->incidence.max <= 64);
     lar_cost cost = lar_cost_measure(&o->incidence, o->processor, grid.count, set, pays);
     assert_int_equal(cost.worst, result.best.worst);
     assert_int_equal(cost.total, result.best.total);
@@ -90,7 +90,7 @@ static void any_grid(void **state) {
  * elements of an exchange often have nodes in common. */
 static void exchange_counts_right(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 4, 4);
+    lar_mesh mesh = brick_mesh(4, 4, 4);
     lar_grid grid = grid_of(2, 1, 2);
     lar_incidence incidence;
     lar_distribution d = {0};
@@ -126,7 +126,7 @@ static void can_be_stopped(void **state) {
     lar_grid grid = grid_of(2, 2, 3);
     lar_genetic_options options = lar_genetic_options_default();
     int64_t seen = 0;
-    options.watch = stop_at_three;
+    options.callback = stop_at_three;
     options.context = &seen;
     lar_genetic_search(&o->mesh, &o->incidence, &grid, &options, o->processor, NULL, NULL);
     assert_int_equal(seen, 3);

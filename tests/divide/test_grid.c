@@ -1,5 +1,5 @@
 /* The grid of processors: places, distances, neighbours, and what it refuses. */
-#include "lattice.h"
+#include "brick_mesh.h"
 
 static void place_and_inverse(void **state) {
     (void)state;
@@ -48,7 +48,7 @@ static void spread_is_the_greatest_of_all_pairs(void **state) {
     lar_grid g = grid_of(4, 4, 4);
     uint32_t seed = 7;
     for (int round = 0; round < 500; round++) {
-        int32_t set[6], count = round % 7 < 6 ? round % 7 : 6, greatest = 0, most[3] = {0};
+        int32_t set[6], count = round % 7 < 6 ? round % 7 : 6, greatest = 0, max[3] = {0};
         for (int i = 0; i < count; i++) set[i] = (int32_t)((seed = seed * 1664525 + 1) >> 26);
         for (int i = 0; i < count; i++)
             for (int j = 0; j < count; j++) {
@@ -56,13 +56,13 @@ static void spread_is_the_greatest_of_all_pairs(void **state) {
                 if (d > greatest) greatest = d;
                 for (int axis = 0; axis < 3; axis++) {
                     d = lar_grid_distance_along(&g, axis, set[i], set[j]);
-                    if (d > most[axis]) most[axis] = d;
+                    if (d > max[axis]) max[axis] = d;
                 }
             }
         int32_t spread[3];
         assert_int_equal(lar_grid_spread(&g, set, count), greatest);
         lar_grid_spread_along(&g, set, count, spread);
-        assert_memory_equal(spread, most, sizeof most);
+        assert_memory_equal(spread, max, sizeof max);
     }
 }
 

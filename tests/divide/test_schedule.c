@@ -2,7 +2,7 @@
 #include "divide/schedule/schedule.h"
 
 #include "divide/proof/schedule_proof.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 typedef struct divided {
@@ -13,7 +13,7 @@ typedef struct divided {
 
 /* gx x gy x gz cubes of n^3 elements, one for each processor. */
 static divided cubes(int n, int gx, int gy, int gz) {
-    divided d = {.mesh = lattice(n * gx, n * gy, n * gz)};
+    divided d = {.mesh = brick_mesh(n * gx, n * gy, n * gz)};
     lar_grid grid = grid_of(gx, gy, gz);
     assert_int_equal(lar_distribution_cut(&d.mesh, &grid, &d.distribution, NULL), LAR_OK);
     assert_int_equal(lar_incidence_build(&d.mesh, &d.incidence, NULL), LAR_OK);
@@ -157,18 +157,18 @@ static void urgent_ones_first(void **state) {
 
 /* ---- what holds for every schedule --------------------------------------------------------- */
 
-static void count_once(const int32_t *number, int32_t count, int32_t most, char *seen) {
-    memset(seen, 0, (size_t)most);
+static void count_once(const int32_t *number, int32_t count, int32_t max, char *seen) {
+    memset(seen, 0, (size_t)max);
     for (int32_t i = 0; i < count; i++) {
-        assert_in_range(number[i], 0, most - 1);
+        assert_in_range(number[i], 0, max - 1);
         assert_false(seen[number[i]]);
         seen[number[i]] = 1;
     }
 }
 
 static void covers(const divided *d, const lar_schedule *s) {
-    size_t most = (size_t)(d->mesh.element_count + d->mesh.node_count);
-    char *seen = calloc(most, 1), *node = calloc(most, 1);
+    size_t max = (size_t)(d->mesh.element_count + d->mesh.node_count);
+    char *seen = calloc(max, 1), *node = calloc(max, 1);
     count_once(s->element, s->element_count, d->mesh.element_count, seen);
     for (int32_t e = 0; e < d->mesh.element_count; e++) {
         assert_int_equal(seen[e], d->distribution.processor[e] == s->processor);
@@ -230,7 +230,7 @@ static void places_are_apart(const lar_schedule *s) {
 
 /* No stage before an earlier one on a thread; the last batch moves, a gate waits for all others. */
 static void threads_in_order(const lar_schedule *s) {
-    int least = s->element_count, most = 0;
+    int min = s->element_count, max = 0;
     for (int t = 0; t < s->threads; t++) {
         int stage = 0, elements = 0, end = s->thread_first[t + 1] - 1;
         for (int b = s->thread_first[t]; b <= end; b++) {
@@ -243,8 +243,8 @@ static void threads_in_order(const lar_schedule *s) {
             }
             if (b < end - (s->threads > 1)) assert_int_equal(batch->positions.count, 0);
         }
-        if (elements < least) least = elements;
-        if (elements > most) most = elements;
+        if (elements < min) min = elements;
+        if (elements > max) max = elements;
         if (s->threads == 1) continue;
         const lar_batch *gate = &s->batch[end];
         assert_int_equal(gate->waits.count, s->threads - 1);
@@ -254,7 +254,7 @@ static void threads_in_order(const lar_schedule *s) {
         }
     }
     /* Threads share the elements evenly, one here or there. */
-    assert_in_range(most - least, 0, s->element_count < 10 * s->threads ? 3 : 1);
+    assert_in_range(max - min, 0, s->element_count < 10 * s->threads ? 3 : 1);
 }
 
 static void check(const divided *d, const lar_schedule_set *set) {
@@ -273,10 +273,10 @@ static void check(const divided *d, const lar_schedule_set *set) {
     assert_int_equal(transfers, 2 * sends);
 }
 
-static void check_all(const divided *d, int most_threads) {
+static void check_all(const divided *d, int max_threads) {
     for (int s = 0; s < LAR_SCHEMES; s++)
         for (int c = 0; c < (s == LAR_SCHEME_LOCAL ? LAR_CHANNEL_USES : 1); c++)
-            for (int threads = 1; threads <= most_threads; threads++) {
+            for (int threads = 1; threads <= max_threads; threads++) {
                 lar_schedule_set set;
                 build(d, (lar_scheme)s, (lar_channel_use)c, threads, &set);
                 check(d, &set);
@@ -307,10 +307,10 @@ static void the_organ(void **state) {
 static void few_elements(void **state) {
     (void)state;
     divided d = cubes(1, 3, 1, 1);
-    check_all(&d, LAR_THREADS_MOST);
+    check_all(&d, LAR_THREADS_MAX);
     clear(&d);
     d = cubes(3, 1, 1, 1);
-    check_all(&d, LAR_THREADS_MOST);
+    check_all(&d, LAR_THREADS_MAX);
     clear(&d);
 }
 
@@ -349,7 +349,7 @@ static void something_flows_back(void **state) {
 /* Five bodies that do not touch, one for each processor, hear of each other all the same. */
 static void bodies_apart(void **state) {
     (void)state;
-    divided d = {.mesh = lattice(9, 1, 1)};
+    divided d = {.mesh = brick_mesh(9, 1, 1)};
     for (int i = 0; i < 5; i++)
         memcpy(d.mesh.element[i], d.mesh.element[2 * i], sizeof *d.mesh.element);
     d.mesh.element_count = 5;
@@ -411,7 +411,7 @@ static void options(void **state) {
     assert_int_equal(lar_schedule_build(&d.mesh, &d.incidence, &d.distribution, &bad, &set, &error),
                      LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "1 to 16"));
-    bad.threads = LAR_THREADS_MOST + 1;
+    bad.threads = LAR_THREADS_MAX + 1;
     assert_int_equal(lar_schedule_build(&d.mesh, &d.incidence, &d.distribution, &bad, &set, NULL),
                      LAR_ERROR_ARGUMENT);
     bad = good;

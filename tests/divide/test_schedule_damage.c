@@ -196,8 +196,7 @@ static void plain(void **state) {
     (void)state;
     for (int kind = 0; kind < 8; kind++) {
         int threads = 1 + kind % 2;
-        divided d =
-            kind & 4 ? divided_lattice(2, 3, 2, 2, 2, 2) : divided_lattice(4, 2, 1, 2, 2, 1);
+        divided d = kind & 4 ? divided_brick(2, 3, 2, 2, 2, 2) : divided_brick(4, 2, 1, 2, 2, 1);
         lar_schedule_set set =
             plain_schedules(&d, (lar_scheme)(kind % 4), LAR_CHANNELS_SEQUENTIAL, threads);
         damage_one_kind(&d, &set, (uint64_t)kind);
@@ -209,8 +208,7 @@ static void plain(void **state) {
 static void built(void **state) {
     (void)state;
     for (int kind = 0; kind < 12; kind++) {
-        divided d =
-            kind & 1 ? divided_lattice(4, 3, 2, 2, 2, 1) : divided_lattice(2, 3, 4, 2, 2, 2);
+        divided d = kind & 1 ? divided_brick(4, 3, 2, 2, 2, 1) : divided_brick(2, 3, 4, 2, 2, 2);
         lar_schedule_options options = lar_schedule_options_default();
         lar_schedule_set set;
         options.scheme = (lar_scheme)(kind % 4);

@@ -102,9 +102,9 @@ static void demonstration_organ(void **state) {
     prove_mesh(&mesh, false);
 }
 
-static void regular_lattice(void **state) {
+static void regular_brick(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(8, 8, 8);
+    lar_mesh mesh = brick_mesh(8, 8, 8);
     prove_mesh(&mesh, false);
 }
 
@@ -135,7 +135,7 @@ static void bodies_apart(void **state) {
     (void)state;
     for (int32_t keep = 20; keep <= 60; keep += 40) {
         lar_random random = {(uint64_t)keep};
-        lar_mesh mesh = lattice(7, 6, 5);
+        lar_mesh mesh = brick_mesh(7, 6, 5);
         thin_out(&mesh, &random, keep);
         prove_mesh(&mesh, true);
     }
@@ -194,7 +194,7 @@ static void meshes_of_others(void **state) {
 /* 20,000 elements on 64 processors. */
 static void larger(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(28, 27, 27);
+    lar_mesh mesh = brick_mesh(28, 27, 27);
     lar_incidence incidence;
     assert_int_equal(lar_incidence_build(&mesh, &incidence, NULL), LAR_OK);
     for (int distribution = CUT; distribution <= RANDOM; distribution++) {
@@ -211,7 +211,7 @@ static void larger(void **state) {
 int main(int argc, char **argv) {
     if (argc > 1 && strcmp(argv[1], "all") == 0) some_divisions = some_schedules = 1;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(demonstration_organ), cmocka_unit_test(regular_lattice),
+        cmocka_unit_test(demonstration_organ), cmocka_unit_test(regular_brick),
         cmocka_unit_test(bodies_apart),        cmocka_unit_test(many_elements_at_a_node),
         cmocka_unit_test(meshes_of_others),    cmocka_unit_test(larger),
     };

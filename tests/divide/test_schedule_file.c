@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "divide/schedule/file.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 #include "same_schedule.h"
 
@@ -132,7 +132,7 @@ static void remove_folder(int32_t processors) {
 
 static void by_hand(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *text = for_mesh(left, &mesh);
     lar_schedule s = parse_good(text, &mesh);
     assert_int_equal(s.grid.count, 2);
@@ -251,7 +251,7 @@ static const struct {
 
 static void damaged(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *good = for_mesh(left, &mesh);
     for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
         char *text = replaced(good, damages[i].what, damages[i].with);
@@ -271,7 +271,7 @@ static void damaged(void **state) {
 /* The example of docs/formats.md. */
 static void documented(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     lar_bytes docs = {0};
     assert_int_equal(lar_bytes_read(LAR_TEST_FORMATS, &docs, NULL), LAR_OK);
     char *start = strstr((char *)docs.data, "```\nlariat-schedule 1\n");
@@ -288,7 +288,7 @@ static void documented(void **state) {
 
 static void overlapping_receives(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *good = for_mesh(right, &mesh), *text = replaced(good, "offset 192", "offset 128");
     lar_schedule s = {0};
     lar_error error = {0};
@@ -301,7 +301,7 @@ static void overlapping_receives(void **state) {
 
 static void zero_bytes(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *good = for_mesh(left, &mesh);
     size_t size = strlen(good);
     for (size_t at = 0; at < size; at++) {
@@ -320,7 +320,7 @@ static void zero_bytes(void **state) {
 
 static void cut_off(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *text = for_mesh(left, &mesh);
     size_t complete = (size_t)(strstr(text, "\nend\n") + 4 - text);
     size_t head = (size_t)(strstr(text, "thread 0") - text);
@@ -349,7 +349,7 @@ static void nothing_to_do(void **state) {
                                "channels sequential\nmesh MESHMESHMESHMESH\n"
                                "division 0123456789abcdef\nreceive-bytes 0\nbatches 1\n"
                                "thread 0 batches 1\nbatch 0\nend\n";
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *text = for_mesh(idle, &mesh);
     lar_schedule s = {0};
     lar_error error = {0};
@@ -361,7 +361,7 @@ static void nothing_to_do(void **state) {
 
 static void another_mesh(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1), other = lattice(1, 4, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1), other = brick_mesh(1, 4, 1);
     char *text = for_mesh(left, &mesh);
     lar_schedule s = {0};
     lar_error error = {0};
@@ -386,7 +386,7 @@ static void names(void **state) {
 
 static void write_and_read(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     lar_schedule_set set, again = {0};
     set_of(&mesh, &set);
     remove_folder(2);
@@ -437,7 +437,7 @@ static void organ(void **state) {
 
 static void whole_or_not_at_all(void **state) {
     (void)state;
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     lar_schedule_set set;
     set_of(&mesh, &set);
     remove_folder(2);
@@ -471,7 +471,7 @@ static void folders_that_do_not_fit(void **state) {
         {"division 0", "division 1", LAR_ERROR_FORMAT, "is of another division than"},
         {"recover 2", "recover 3", LAR_ERROR_FORMAT, ":13: here must stand a number"},
     };
-    lar_mesh mesh = lattice(4, 1, 1);
+    lar_mesh mesh = brick_mesh(4, 1, 1);
     char *texts[2] = {for_mesh(left, &mesh), for_mesh(right, &mesh)};
     lar_schedule_set set = {0};
     lar_error error = {0};

@@ -14,7 +14,7 @@ typedef struct patient {
 } patient;
 
 static patient patient_make(lar_scheme scheme, int threads) {
-    patient p = {.d = divided_lattice(4, 4, 2, 2, 2, 1)};
+    patient p = {.d = divided_brick(4, 4, 2, 2, 2, 1)};
     p.set = plain_schedules(&p.d, scheme, LAR_CHANNELS_SEQUENTIAL, threads);
     return p;
 }
@@ -97,7 +97,7 @@ static void plain_schedules_are_right(void **state) {
             for (int use = 0; use < LAR_CHANNEL_USES; use++) {
                 lar_schedule_proof proof;
                 lar_error error = {0};
-                patient p = {.d = divided_lattice(3, 4, 3, 2, 2, 2)};
+                patient p = {.d = divided_brick(3, 4, 3, 2, 2, 2)};
                 p.set = plain_schedules(&p.d, (lar_scheme)scheme, (lar_channel_use)use, threads);
                 if (prove(&p, &proof, &error)) fail_msg("%s", error.message);
                 assert_int_equal(proof.batches, 8 * threads * plain_batches(threads));
@@ -123,7 +123,7 @@ static void counts(void **state) {
     assert_int_equal(proof.spread, 1);
     patient_clear(&p);
     /* A whole force comes from the lowest processor only. */
-    p = (patient){.d = divided_lattice(2, 2, 2, 2, 2, 2)};
+    p = (patient){.d = divided_brick(2, 2, 2, 2, 2, 2)};
     p.set = plain_schedules(&p.d, LAR_SCHEME_TWO, LAR_CHANNELS_SEQUENTIAL, 1);
     assert_int_equal(prove(&p, &proof, NULL), LAR_OK);
     assert_int_equal(proof.empty_packets, 6);
@@ -134,7 +134,7 @@ static void counts(void **state) {
 /* Twelve processors in 2 x 2 x 3: the thesis's example, four steps. */
 static void distances(void **state) {
     (void)state;
-    patient p = {.d = divided_lattice(4, 4, 6, 2, 2, 3)};
+    patient p = {.d = divided_brick(4, 4, 6, 2, 2, 3)};
     p.set = plain_schedules(&p.d, LAR_SCHEME_LOCAL, LAR_CHANNELS_SEQUENTIAL, 1);
     lar_schedule_proof proof;
     assert_int_equal(prove(&p, &proof, NULL), LAR_OK);
@@ -146,7 +146,7 @@ static void distances(void **state) {
     free(steps);
     patient_clear(&p);
     /* One direction alone holds nobody together. */
-    p = (patient){.d = divided_lattice(4, 1, 1, 2, 1, 1)};
+    p = (patient){.d = divided_brick(4, 1, 1, 2, 1, 1)};
     p.set = plain_schedules(&p.d, LAR_SCHEME_ALL, LAR_CHANNELS_SEQUENTIAL, 1);
     remove_end(&p.set.of[0], true, 1, 0);
     steps = lar_schedule_distances(&p.set);
@@ -158,7 +158,7 @@ static void distances(void **state) {
 
 static void unbalanced_is_said(void **state) {
     (void)state;
-    patient p = {.d = divided_lattice(4, 4, 2, 2, 2, 1)};
+    patient p = {.d = divided_brick(4, 4, 2, 2, 2, 1)};
     p.d.distribution.processor[0] = 1;
     lar_sharing_clear(&p.d.sharing);
     assert_int_equal(lar_sharing_build(&p.d.incidence, &p.d.distribution, &p.d.sharing, NULL),
@@ -303,7 +303,7 @@ static void places_in_buffers(void **state) {
 
 static void nothing_flows_back(void **state) {
     (void)state;
-    patient p = {.d = divided_lattice(2, 2, 2, 2, 2, 2)};
+    patient p = {.d = divided_brick(2, 2, 2, 2, 2, 2)};
     p.set = plain_schedules(&p.d, LAR_SCHEME_TWO, LAR_CHANNELS_SEQUENTIAL, 1);
     /* 3 is a neighbour of 7, which tells it the sum; 0 has nothing to tell. */
     remove_end(&p.set.of[0], true, 3, 0);

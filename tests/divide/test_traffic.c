@@ -2,7 +2,7 @@
 #include "divide/traffic.h"
 
 #include "divide/cost.h"
-#include "lattice.h"
+#include "brick_mesh.h"
 #include "model/demo/demo.h"
 
 /* Everything that the tests ask about one division. */
@@ -20,7 +20,7 @@ static void finish(divided *d) {
 
 /* gx x gy x gz cubes of n^3 elements, one for each processor. */
 static divided cubes(int n, int gx, int gy, int gz) {
-    divided d = {.mesh = lattice(n * gx, n * gy, n * gz)};
+    divided d = {.mesh = brick_mesh(n * gx, n * gy, n * gz)};
     lar_grid grid = grid_of(gx, gy, gz);
     assert_int_equal(lar_distribution_cut(&d.mesh, &grid, &d.distribution, NULL), LAR_OK);
     for (int e = 0; e < d.mesh.element_count; e++) {

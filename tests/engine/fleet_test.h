@@ -7,7 +7,7 @@
 
 #include <pthread.h>
 
-enum { FLEET_MOST = 4 };
+enum { FLEET_MAX = 4 };
 
 typedef struct participant {
     const lar_model *model;
@@ -20,8 +20,8 @@ typedef struct participant {
 
 typedef struct fleet {
     int count;
-    participant other[FLEET_MOST]; /* from 1 on */
-    pthread_t thread[FLEET_MOST];
+    participant other[FLEET_MAX]; /* from 1 on */
+    pthread_t thread[FLEET_MAX];
     lar_simulation *zero;
 } fleet;
 

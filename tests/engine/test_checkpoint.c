@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "simulation/checkpoint.h"
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 #include "engine/engine_test.h"
 #include "engine/fleet_test.h"
 #include "engine/tools_test.h"
@@ -377,7 +377,7 @@ static void forged_files_are_refused(void **unused) {
     lar_simulation *simulation = start_with(model, setting(0));
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
-    size_t level = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
+    size_t offset = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
     enum { DIVISION = 144, SETTINGS = DIVISION + 56, TOOL = SETTINGS + 552 };
     enum { FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
@@ -441,8 +441,8 @@ static void forged_files_are_refused(void **unused) {
         {HAND + 152 + 80, 4, 1, "tool"},      /* hands do not lag */
         {bytes.size - 16, 8, NAN, "numbers"}, /* a velocity */
         {bytes.size - 16, 8, 3, "hash"},
-        {level, 8, -1e-3, "numbers"}, /* from the side, outside */
-        {level, 8, 1e-3, "hash"},
+        {offset, 8, -1e-3, "numbers"}, /* from the side, outside */
+        {offset, 8, 1e-3, "hash"},
     };
     for (size_t i = 0; i < sizeof forged / sizeof forged[0]; i++) {
         lar_bytes bad = {lar_calloc(bytes.size, 1), bytes.size};
@@ -558,14 +558,14 @@ static void *save_often(void *argument) {
 /* Each writes a file of its own, and the last name given stands. */
 static void several_save_to_one_path(void **unused) {
     (void)unused;
-    enum { SAVERS = 4, MOST = 400000 };
+    enum { SAVERS = 4, MAX = 400000 };
     saver s[SAVERS];
     pthread_t thread[SAVERS];
     lar_bytes left;
     remove(SHARED);
     for (int k = 0; k < SAVERS; k++) {
-        s[k] = (saver){.bytes = {malloc(MOST), (size_t)(MOST / (k + 1))}};
-        memset(s[k].bytes.data, 'a' + k, MOST);
+        s[k] = (saver){.bytes = {malloc(MAX), (size_t)(MAX / (k + 1))}};
+        memset(s[k].bytes.data, 'a' + k, MAX);
         memcpy(s[k].bytes.data, "LARIATCP", 8);
         assert_int_equal(pthread_create(&thread[k], NULL, save_often, &s[k]), 0);
     }

@@ -179,8 +179,8 @@ static void a_motion_may_begin_displaced(void **unused) {
     finish(simulation, model);
 }
 
-/* Nothing that is not part of the body may fall out of the range of the watch: without damping, for
- * longer than a free fall takes to become too fast. */
+/* Nothing that is not part of the body may fall out of the range of the monitor: without damping,
+ * for longer than a free fall takes to become too fast. */
 static void a_heavy_body_swings_for_ever(void **unused) {
     (void)unused;
     brick b = soft_brick;
@@ -188,7 +188,7 @@ static void a_heavy_body_swings_for_ever(void **unused) {
     model->gravity[2] = -9.81;
     fix_nodes(model, brick_side(&b, 2, 0), LAR_AXIS_ALL);
     lar_simulation *simulation = start(model);
-    while (9.81 * lar_simulation_time(simulation) < 1.02 * simulation->domain.motion.speed)
+    while (9.81 * lar_simulation_time(simulation) < 1.02 * simulation->domain.leapfrog.speed)
         advance(simulation, 1000);
     finish(simulation, model);
 }

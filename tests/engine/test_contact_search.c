@@ -1,7 +1,7 @@
 /* The search over boxes finds what comparing everything with everything finds, keeps doing so while
  * things move by as much as its skin allows, and leaves neighbours and the body's own shape alone.
  */
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 #include "mechanics/face_contact.h"
 
 static const brick one_brick = {{5, 4, 3}, 0.01, 0.1, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};

@@ -91,7 +91,7 @@ static course plain(const lar_model *model) {
     lar_simulation *simulation = start_with(model, setting(NULL, 0));
     const lar_tools *tools = &simulation->tools;
     uint64_t interval = simulation->domain.interval;
-    int32_t most = 1, changes = 0, before = 1, came_back = 0, lagged = 0, barriers = 0;
+    int32_t max = 1, changes = 0, before = 1, came_back = 0, lagged = 0, barriers = 0;
     while (lar_simulation_steps(simulation) < LONG_RUN) {
         uint64_t step = lar_simulation_steps(simulation);
         int32_t lagging = tools->follower[BALL].lagging;
@@ -100,14 +100,14 @@ static course plain(const lar_model *model) {
         lagged += tools->follower[BALL].lagging;
         changes += tools->division.parts != before;
         before = tools->division.parts;
-        if (before > most) most = before;
+        if (before > max) max = before;
         const lar_domain *d = &simulation->domain;
         for (int32_t r = 0; r < d->run_count; r++) barriers += d->strained_count[r];
         if (!middle && before > 1 && lagging && (step + 1) % interval == interval / 2)
             if (tools->follower[BALL].felt.steps > 0 && step % MOVE_STEPS > 5) middle = step + 1;
     }
     assert_true(interval > 2 && middle > 0);
-    assert_true(most >= 4 && changes >= 2);
+    assert_true(max >= 4 && changes >= 2);
     assert_true(lagged > 20 && came_back > 0 && barriers > 0);
     uint64_t late = hash_of(simulation);
     lar_simulation_destroy(simulation);
@@ -309,7 +309,7 @@ static void copies_hold_all_of_it(void **unused) {
         go(simulation, middle + 90, 10);
         if (lar_simulation_reset(simulation, &error)) fail_msg("%s", error.message);
         go(simulation, 20, 10);                /* nothing is strained */
-        simulation->state.part = grid ? 0 : 1; /* a trip leaves it so */
+        simulation->state.part = grid ? 0 : 1; /* a fault leaves it so */
         if (lar_simulation_go_back(simulation, &state, tools, &error))
             fail_msg("%s", error.message);
         assert_true(hash_of(simulation) == c.middle);
@@ -330,7 +330,7 @@ static void what_hands_feel_is_forgotten(void **unused) {
     lar_model *model = organ();
     lar_simulation *simulation = start_with(model, setting(NULL, 0));
     go(simulation, 6 * MOVE_STEPS, 10);
-    assert_true(simulation->tools.hold_count > 0);
+    assert_true(simulation->tools.grasp_count > 0);
     for (int32_t t = 0; t < simulation->tools.count; t++)
         assert_true(simulation->tools.follower[t].felt.steps <= simulation->domain.interval);
     finish(simulation, model);
@@ -342,7 +342,7 @@ static double account_error(const char *grid) {
     lar_model *model = organ();
     model->damping = 60;
     lar_simulation *simulation = start_with(model, setting(grid, 2));
-    double worst = 0, most = 0, swing = 0;
+    double worst = 0, max = 0, swing = 0;
     int32_t divided = 0;
     while (lar_simulation_steps(simulation) < LONG_RUN) {
         uint64_t step = lar_simulation_steps(simulation);
@@ -353,7 +353,7 @@ static double account_error(const char *grid) {
         lar_energy e;
         lar_simulation_energy(simulation, &e);
         double in = e.kinetic + e.strain + e.hourglass + e.damping;
-        most = fmax(most, in);
+        max = fmax(max, in);
         worst = fmax(worst, fabs(in + e.contact - e.external));
         if (lar_simulation_step_parts(simulation) == 1) continue;
         swing = fmax(swing, e.kinetic);
@@ -361,9 +361,9 @@ static double account_error(const char *grid) {
     }
     finish(simulation, model);
     printf("%s: error %.3g J of %.3g J, swinging with %.3g J; %d looks at divided steps\n",
-           grid ? grid : "plain", worst, most, swing, divided);
+           grid ? grid : "plain", worst, max, swing, divided);
     assert_true(divided > 50);
-    return worst / most;
+    return worst / max;
 }
 
 static void the_account_of_energy_closes(void **unused) {

@@ -1,6 +1,6 @@
 /* Bars that cross with their sharp edges first stay outside each other. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 #include "mechanics/face_contact.h"
 
 /* How two bars meet. */

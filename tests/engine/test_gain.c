@@ -1,7 +1,7 @@
 /* Contact that has given more than it took stops a run in the same step, with the same sentence,
  * however the run is divided into advances and among processors. No scene of a few elements does
  * that reliably, so energy is put into the books of contact by hand. */
-#include "engine/collide_test.h"
+#include "engine/body_contact_test.h"
 #include "parallel/computer.h"
 
 static const brick LOWER = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};

@@ -1,7 +1,7 @@
 /* Jaws that hold tissue: what they press it with, that opening lets go without a jump, and that two
  * of them stretch an organ between them. */
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 static const double upright[4] = {1, 0, 0, 0};
 
@@ -47,12 +47,12 @@ static void wait(lar_simulation *simulation, double seconds) {
 }
 
 static double fastest(const lar_simulation *simulation) {
-    double most = 0;
+    double max = 0;
     for (int32_t n = 0; n < simulation->domain.model->mesh.node_count; n++) {
         const double *v = node_v(simulation, n);
-        most = fmax(most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+        max = fmax(max, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
-    return most;
+    return max;
 }
 
 /* ---- what they press with ------------------------------------------------------------------- */
@@ -78,7 +78,7 @@ static void press_capsules(double half, double pushed[2]) {
     wait(simulation, 0.001);
     for (int s = 0; s < 2; s++) {
         lar_tool_force force = felt(simulation, s);
-        assert_true(force.grasp == 0); /* it has no jaws */
+        assert_true(force.grasp_force == 0); /* it has no jaws */
         pushed[s] = (s ? -1 : 1) * force.force[0] * cos(half) + force.force[2] * sin(half);
     }
     finish(simulation, model);
@@ -90,7 +90,7 @@ static void grasp_is_what_one_jaw_is_pushed_with(void **unused) {
     lar_model *model = fold_model();
     touch_tool(model, "jaws", jaws, above);
     lar_simulation *simulation = start(model);
-    assert_true(felt(simulation, 0).grasp == 0);
+    assert_true(felt(simulation, 0).grasp_force == 0);
     lead(simulation, 0, above, opening, 0.5);
     wait(simulation, 0.5);
     wait(simulation, 0.001);
@@ -103,11 +103,12 @@ static void grasp_is_what_one_jaw_is_pushed_with(void **unused) {
     press_capsules(0.5 * jaws.spread * opening, pushed);
     print_message("jaws grasp with %.4g N, capsules in their place with %.4g and %.4g N; the jaws "
                   "differ by %.1g of it; %.2g N across\n",
-                  grasped.grasp, pushed[0], pushed[1], differ, grasped.force[0]);
-    assert_true(grasped.grasp > 0.02);
+                  grasped.grasp_force, pushed[0], pushed[1], differ, grasped.force[0]);
+    assert_true(grasped.grasp_force > 0.02);
     assert_below(fabs(differ), 1e-6); /* action and reaction */
-    assert_below(fabs(grasped.force[0]), 1e-6 * grasped.grasp);
-    for (int s = 0; s < 2; s++) assert_below(fabs(pushed[s] - grasped.grasp), 0.01 * grasped.grasp);
+    assert_below(fabs(grasped.force[0]), 1e-6 * grasped.grasp_force);
+    for (int s = 0; s < 2; s++)
+        assert_below(fabs(pushed[s] - grasped.grasp_force), 0.01 * grasped.grasp_force);
 }
 
 /* Jaws that are asked to close hold a fold by both sides and stop before they have crushed it: it
@@ -123,8 +124,8 @@ static void jaws_hold_a_fold_without_crushing_it(void **unused) {
     lar_tool_pose pose;
     lar_simulation_tool_pose(simulation, 0, &pose, NULL);
     int side[2] = {0};
-    for (int32_t i = 0; i < simulation->tools.hold_count; i++) {
-        double across = simulation->tools.hold[i].anchor[0];
+    for (int32_t i = 0; i < simulation->tools.grasp_count; i++) {
+        double across = simulation->tools.grasps[i].anchor[0];
         side[0] += across < -0.0015;
         side[1] += across > 0.0015;
     }
@@ -133,17 +134,17 @@ static void jaws_hold_a_fold_without_crushing_it(void **unused) {
     double parts = simulation->tools.division.parts, speed = fastest(simulation);
     print_message("%d points held, %d and %d of them at the sides, with %.3g N; jaws at %.2f, the "
                   "fold's edge %.2g mm thick; %.2g m/s, %.0f parts\n",
-                  (int)force.held, side[0], side[1], force.grasp, pose.opening,
+                  (int)force.held, side[0], side[1], force.grasp_force, pose.opening,
                   6 + 1e3 * (right - left), speed, parts);
     assert_true(side[0] > 5 && side[1] > 5);
-    assert_true(force.limited == 1 && force.grasp > 0.05);
+    assert_true(force.limited == 1 && force.grasp_force > 0.05);
     assert_true(pose.opening > 0.2 && right - left > -0.0052);
     assert_below(speed, 1e-3);
     assert_true(parts <= 2);
     lead(simulation, 0, above, 1, 0.1);
     wait(simulation, 1);
     force = felt(simulation, 0);
-    assert_true(force.held == 0 && force.grasp == 0 && force.limited == 0);
+    assert_true(force.held == 0 && force.grasp_force == 0 && force.limited == 0);
     for (int32_t n = 0; n < model->mesh.node_count; n++)
         assert_below(size_of(node_u(simulation, n)), 1e-5);
     finish(simulation, model);
@@ -155,14 +156,14 @@ static void jaws_hold_a_fold_without_crushing_it(void **unused) {
 static void vanish(lar_simulation *simulation) {
     lar_tool_pose away = {{0, 0, 1}, {1, 0, 0, 0}, 1};
     lar_tools *tools = &simulation->tools;
-    tools->hold_count = 0;
+    tools->grasp_count = 0;
     tools->motion[0] = (lar_tool_motion){.from = away, .to = away};
     tools->follower[0] = (lar_tool_follower){.hand = tools->motion[0]};
-    lar_touch_forget(&simulation->domain.acting.touch);
+    lar_tool_contact_forget(&simulation->domain.interactions.tool_contact);
 }
 
 typedef struct release {
-    double held, most, fall, speed; /* force before [N]; the largest, and its largest fall in a
+    double held, max, fall, speed; /* force before [N]; the largest, and its largest fall in a
                                        millisecond [N]; of a node [m/s] */
 } release;
 
@@ -185,7 +186,7 @@ static release let_go(double way, double seconds) {
         else
             wait(simulation, 0.001);
         double now = size_of(felt(simulation, 0).force);
-        r.most = fmax(r.most, now);
+        r.max = fmax(r.max, now);
         r.fall = fmax(r.fall, before - now);
         before = now;
         r.speed = fmax(r.speed, fastest(simulation));
@@ -204,10 +205,10 @@ static void opening_lets_go_without_a_jump(void **unused) {
             release r = let_go(ways[w], opens[o]);
             print_message("held with %.3g N, opened in %g s: up to %.3g N, falls by %.3g N in a "
                           "ms at most; %.3g m/s, tissue alone %.3g m/s\n",
-                          r.held, opens[o], r.most, r.fall, r.speed, free.speed);
+                          r.held, opens[o], r.max, r.fall, r.speed, free.speed);
             assert_below(r.speed, (o == 0 ? 0.6 : 0.2) * free.speed);
             if (o == 0) continue;
-            assert_below(r.most, r.held + 0.005);
+            assert_below(r.max, r.held + 0.005);
             assert_below(r.fall, 0.01);
         }
     }
@@ -275,7 +276,7 @@ static void two_graspers_stretch_an_organ_between_them(void **unused) {
             "hands %.1f mm apart, tissue %.1f mm: %.3f and %.3f N, grasp %.3f and %.3f N, "
             "%d parts, %.2g m/s\n",
             1e3 * way * i / 6, 1e3 * (drawn(simulation) - begun), pull[0], pull[1],
-            felt(simulation, 0).grasp, felt(simulation, 1).grasp,
+            felt(simulation, 0).grasp_force, felt(simulation, 1).grasp_force,
             (int)simulation->tools.division.parts, fastest(simulation));
         assert_true(pull[0] > before && pull[1] < -before);
         assert_below(fabs(pull[0] + pull[1]), 0.05 * pull[0]);

@@ -2,7 +2,7 @@
  * the machine, what comes of it does not. */
 #include <stdlib.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "divide/grid.h"
 #include "engine/engine_test.h"
 
@@ -33,7 +33,7 @@ static void what_is_measured_is_told(void **unused) {
     const lar_grid_aim aims[] = {{0}, {.tick = 1e-3}};
     for (size_t i = 0; i < sizeof aims / sizeof aims[0]; i++) {
         lar_grid_choice choice = choose(model, NULL, &aims[i]);
-        if (lar_share_cores() < 2) {
+        if (lar_usable_cores() < 2) {
             assert_int_equal(choice.tried, 0);
             continue;
         }
@@ -100,7 +100,7 @@ static void auto_computes_the_same_bits(void **unused) {
     uint64_t alone = hash_with(model, NULL, &processors);
     assert_int_equal(processors, 1);
     assert_int_equal(hash_with(model, "auto", &processors), alone);
-    assert_in_range(processors, 1, lar_share_cores());
+    assert_in_range(processors, 1, lar_usable_cores());
     setenv("LARIAT_GRID", "1x3x1", 1);
     assert_int_equal(hash_with(model, "auto", &processors), alone);
     assert_int_equal(processors, 3);

@@ -135,7 +135,7 @@ static void write_odd_schedules(const lar_model *model, const char *folder) {
     lar_incidence_clear(&incidence);
 }
 
-/* Who is compiled does not go to a meeting to which the other cannot come: its limit is 20 s. */
+/* Who is compiled does not go to a rendezvous to which the other cannot come: its limit is 20 s. */
 static void who_cannot_be_compiled_is_not_waited_for(void **unused) {
     (void)unused;
     static const char folder[] = LAR_TEST_BUILD "/odd-schedules";

@@ -125,7 +125,7 @@ static int stop_at(void *context, uint64_t step) {
 }
 
 /* Everyone stops in the same step, soon; going on gives what not stopping would have given. */
-static void a_watched_advance_ends_in_a_common_step(void **unused) {
+static void an_advance_with_a_callback_ends_in_a_common_step(void **unused) {
     (void)unused;
     lar_model *model = everything_model(&small);
     uint64_t wanted = hash_of(model, lar_options_default(), 200);
@@ -133,7 +133,7 @@ static void a_watched_advance_ends_in_a_common_step(void **unused) {
         lar_simulation *simulation = start_with(model, combination(grid, 2, 1, 0));
         uint64_t limit = 50;
         lar_error error;
-        if (lar_simulation_advance_watched(simulation, 200, stop_at, &limit, &error))
+        if (lar_simulation_advance_with(simulation, 200, stop_at, &limit, &error))
             fail_msg("%s", error.message);
         uint64_t stopped = lar_simulation_steps(simulation);
         assert_true(stopped >= limit && stopped <= limit + 8);
@@ -152,7 +152,7 @@ static void assert_stops_everywhere(const lar_model *model, int kind) {
     lar_simulation *simulation = start(model);
     assert_int_equal(lar_simulation_advance(simulation, 500, &alone), LAR_ERROR_UNSTABLE);
     print_message("%s\n", alone.message);
-    assert_int_equal(simulation->trip.kind, kind);
+    assert_int_equal(simulation->fault.kind, kind);
     lar_simulation_destroy(simulation);
     for (int grid = 0; grid < GRIDS; grid++) {
         simulation = start_with(model, combination(grid, 1 + grid % THREADS, 0, 0));
@@ -172,11 +172,11 @@ static void an_unstable_run_stops_everywhere(void **unused) {
     static const double crash[3] = {-200, 0, 0}, rush[3] = {0, 0, 1e5};
     lar_model *model = everything_model(&small);
     throw_node(model, brick_node(&small, 3, 2, 2), crash);
-    assert_stops_everywhere(model, LAR_TRIP_ELEMENT);
+    assert_stops_everywhere(model, LAR_FAULT_ELEMENT);
     lar_model_destroy(model);
     model = everything_model(&small);
     throw_node(model, brick_node(&small, 3, 2, 2), rush);
-    assert_stops_everywhere(model, LAR_TRIP_SPEED);
+    assert_stops_everywhere(model, LAR_FAULT_SPEED);
     lar_model_destroy(model);
 }
 
@@ -297,7 +297,7 @@ int main(int count, char **argument) {
     const struct CMUnitTest fast[] = {
         cmocka_unit_test(the_hash_is_the_same_everywhere),
         cmocka_unit_test(boxes_and_oracles_agree_with_themselves),
-        cmocka_unit_test(a_watched_advance_ends_in_a_common_step),
+        cmocka_unit_test(an_advance_with_a_callback_ends_in_a_common_step),
         cmocka_unit_test(an_unstable_run_stops_everywhere),
         cmocka_unit_test(energies_do_not_depend_on_the_division),
         cmocka_unit_test(every_element_arrives_at_every_node_once),

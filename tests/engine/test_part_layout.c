@@ -39,19 +39,19 @@ static void give_nodes(const lar_mesh *mesh, slice *s, bool any) {
 }
 
 /* Batch 0 at the border to other processors, 1 behind it, and so on. */
-static void batches_from_border(const lar_mesh *mesh, slice *s, int32_t most) {
+static void batches_from_border(const lar_mesh *mesh, slice *s, int32_t max) {
     int32_t *depth = lar_calloc((size_t)mesh->node_count, sizeof *depth);
-    for (int32_t n = 0; n < mesh->node_count; n++) depth[n] = most;
+    for (int32_t n = 0; n < mesh->node_count; n++) depth[n] = max;
     for (int32_t e = 0; e < mesh->element_count; e++)
         for (int a = 0; s->thread[e] < 0 && a < 8; a++) depth[mesh->element[e][a]] = 0;
-    for (int32_t e = 0; e < mesh->element_count; e++) s->batch[e] = most;
-    for (int32_t layer = 0; layer < most; layer++) {
+    for (int32_t e = 0; e < mesh->element_count; e++) s->batch[e] = max;
+    for (int32_t layer = 0; layer < max; layer++) {
         for (int32_t e = 0; e < mesh->element_count; e++)
-            for (int a = 0; s->thread[e] >= 0 && s->batch[e] == most && a < 8; a++)
+            for (int a = 0; s->thread[e] >= 0 && s->batch[e] == max && a < 8; a++)
                 if (depth[mesh->element[e][a]] == layer) s->batch[e] = layer;
         for (int32_t e = 0; e < mesh->element_count; e++)
             for (int a = 0; s->batch[e] == layer && a < 8; a++)
-                if (depth[mesh->element[e][a]] == most) depth[mesh->element[e][a]] = layer + 1;
+                if (depth[mesh->element[e][a]] == max) depth[mesh->element[e][a]] = layer + 1;
     }
     free(depth);
 }

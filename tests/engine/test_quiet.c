@@ -5,8 +5,8 @@
  * the functions below; system calls are forbidden by a seccomp filter in a child process, which the
  * kernel kills at the first one. Where the sandbox of the test allows no filter, that part says so
  * and is skipped. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 
 #include <errno.h>
 #include <linux/audit.h>
@@ -154,7 +154,7 @@ static void processors_allocate_and_lock_nothing(void **unused) {
         lar_simulation *simulation = start_with(model, options);
         lar_error error;
         calls_within = intervals = 0;
-        if (lar_simulation_advance_watched(simulation, 400, count_within, simulation, &error))
+        if (lar_simulation_advance_with(simulation, 400, count_within, simulation, &error))
             fail_msg("%s", error.message);
         assert_true(intervals > 40);
         assert_int_equal(calls_within, 0);

@@ -12,10 +12,10 @@ static lar_model *hanging(double share) {
     return model;
 }
 
-static lar_rest follow(lar_simulation *simulation, uint64_t most) {
+static lar_rest follow(lar_simulation *simulation, uint64_t max) {
     lar_rest rest;
     lar_rest_begin(&rest, simulation);
-    while (!lar_rest_look(&rest, simulation) && rest.next <= most)
+    while (!lar_rest_look(&rest, simulation) && rest.next <= max)
         advance(simulation, rest.next - lar_simulation_steps(simulation));
     return rest;
 }
@@ -27,7 +27,7 @@ static void positions(const lar_simulation *simulation, double (*u)[3]) {
 /* Largest difference between the displacements now and those after ten times as long. */
 static double still_to_go(lar_simulation *simulation, const lar_model *model, double *largest) {
     int32_t nodes = model->mesh.node_count;
-    double(*before)[3] = lar_calloc((size_t)nodes, sizeof *before), most = 0;
+    double(*before)[3] = lar_calloc((size_t)nodes, sizeof *before), max = 0;
     double(*after)[3] = lar_calloc((size_t)nodes, sizeof *after);
     positions(simulation, before);
     advance(simulation, 10 * lar_simulation_steps(simulation));
@@ -35,12 +35,12 @@ static double still_to_go(lar_simulation *simulation, const lar_model *model, do
     *largest = 0;
     for (int32_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++) {
-            most = fmax(most, fabs(after[n][i] - before[n][i]));
+            max = fmax(max, fabs(after[n][i] - before[n][i]));
             *largest = fmax(*largest, fabs(after[n][i]));
         }
     free(before);
     free(after);
-    return most;
+    return max;
 }
 
 /* From a tenth of the critical damping, where it swings, to twelve times as much, where it creeps:

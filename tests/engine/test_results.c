@@ -280,19 +280,19 @@ static void a_line_is_whole_or_not_there(void **state) {
     assert_int_equal(lar_probe_file_close(&file, &f->error), LAR_OK);
 }
 
-/* ---- the fine surface ------------------------------------------------------------------- */
+/* ---- the embedded surface ------------------------------------------------------------------- */
 
 static void let_ball_ride(fixture *f) {
     lar_triangles ball;
     shape_ellipsoid_surface(&ball, (double[3]){0.012, 0.011, 0.009}, (double[3]){0.01, 0.01, 0.01},
                             6);
-    if (lar_embedding_bind(&f->model->mesh, &ball, &f->model->embedding, &f->error))
+    if (lar_embedded_surface_bind(&f->model->mesh, &ball, &f->model->embedded, &f->error))
         fail_msg("%s", f->error.message);
     f->model->output.surface = true;
 }
 
 /* It takes many times the room of the mesh, so it is written only when it is asked for. */
-static void a_riding_surface_waits_to_be_asked(void **state) {
+static void an_embedded_surface_waits_to_be_asked(void **state) {
     fixture *f = *state;
     remove(FOLDER "/surface_000000.vtp");
     remove(FOLDER "/surface.pvd");
@@ -310,7 +310,7 @@ static void a_riding_surface_waits_to_be_asked(void **state) {
     assert_int_equal(access(FOLDER "/surface_000000.vtp", F_OK), 0);
 }
 
-static void a_riding_surface_has_frames_of_its_own(void **state) {
+static void an_embedded_surface_has_frames_of_its_own(void **state) {
     fixture *f = *state;
     lar_triangles read;
     lar_embedded_info info;
@@ -331,13 +331,13 @@ static void a_riding_surface_has_frames_of_its_own(void **state) {
         lar_model_embedded_move(f->model, frame ? (const double(*)[3])u : NULL, place);
         assert_int_equal(read.vertex_count, info.vertices);
         assert_int_equal(read.triangle_count, info.triangles);
-        double most = 0, moved = 0;
+        double max = 0, moved = 0;
         for (int32_t v = 0; v < info.vertices; v++)
             for (int i = 0; i < 3; i++) {
-                most = fmax(most, fabs(read.vertex[v][i] - place[v][i]));
+                max = fmax(max, fabs(read.vertex[v][i] - place[v][i]));
                 moved = fmax(moved, fabs(place[v][i] - info.rest[v][i]));
             }
-        assert_true(most < 1e-8);
+        assert_true(max < 1e-8);
         assert_true((moved > 1e-5) == (frame == 1));
         lar_triangles_clear(&read);
     }
@@ -370,13 +370,13 @@ static void the_surface_it_was_read_from_is_spared(void **state) {
     let_ball_ride(f);
     open_results(f);
     add(f);
-    free(f->model->embedding.surface.source);
-    f->model->embedding.surface.source = lar_strdup(FOLDER "/surface_000001.vtp");
+    free(f->model->embedded.surface.source);
+    f->model->embedded.surface.source = lar_strdup(FOLDER "/surface_000001.vtp");
     FILE *file = fopen(FOLDER "/surface_000001.vtp", "w");
     assert_non_null(file);
     fclose(file);
     assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_IO);
-    assert_non_null(strstr(f->error.message, "is the fine surface of this model"));
+    assert_non_null(strstr(f->error.message, "is the embedded surface of this model"));
 }
 
 /* A checkpoint does not know of it: it is taken up with another surface, and without one. */
@@ -478,8 +478,8 @@ int main(void) {
                                        WITH_FIXTURE(probes_have_names_units_and_values),
                                        WITH_FIXTURE(without_probes_there_is_the_time),
                                        WITH_FIXTURE(a_line_is_whole_or_not_there),
-                                       WITH_FIXTURE(a_riding_surface_waits_to_be_asked),
-                                       WITH_FIXTURE(a_riding_surface_has_frames_of_its_own),
+                                       WITH_FIXTURE(an_embedded_surface_waits_to_be_asked),
+                                       WITH_FIXTURE(an_embedded_surface_has_frames_of_its_own),
                                        WITH_FIXTURE(the_frames_of_the_mesh_keep_their_name),
                                        WITH_FIXTURE(the_surface_it_was_read_from_is_spared),
                                        WITH_FIXTURE(checkpoints_do_not_know_of_it),

@@ -1,6 +1,6 @@
 /* A body that slides over another one keeps its speed: there is no friction. */
-#include "engine/collide_test.h"
-#include "engine/touch_test.h"
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
 
 /* One slide: a brick that has come to rest on a slab is set going, and runs over some of the slab's
  * elements. */
@@ -78,14 +78,14 @@ static void set_going(lar_simulation *s, lar_model *model, int32_t first, double
     lar_domain *domain = &s->domain;
     double dt = domain->time_step;
     model->damping = 0;
-    domain->motion.keep = 1;
-    for (int i = 0; i < 3; i++) domain->motion.drift[i] = model->gravity[i] * dt;
+    domain->leapfrog.keep = 1;
+    for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = model->gravity[i] * dt;
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0) domain->push[n] = dt / (domain->mass[n] * domain->scale);
     for (int32_t n = first; n < model->mesh.node_count; n++)
         s->state.v[4 * domain->layout.local[n]] += speed;
     s->state.fastest = speed;
-    lar_collide_forget(&domain->acting.collide);
+    lar_body_contact_forget(&domain->interactions.body_contact);
 }
 
 static outcome slide(const ride *r) {
@@ -171,9 +171,9 @@ static void a_slide_over_what_gives_way_costs_next_to_none(void **unused) {
             if (which == 2) continue;
             outcome o = slide(&r);
             print_ride(&r, &o);
-            double most = r.speed > 0.2 ? 2e-4 : 1e-4;
-            assert_below(fabs(o.lost), most);
-            assert_below(0.5 * (o.taken + o.trembling) / o.kinetic, most);
+            double max = r.speed > 0.2 ? 2e-4 : 1e-4;
+            assert_below(fabs(o.lost), max);
+            assert_below(0.5 * (o.taken + o.trembling) / o.kinetic, max);
             assert_below(o.worst, 6e-4);
         }
 }

@@ -43,7 +43,7 @@ static void assert_same_force(const lar_tool_force *a, const lar_tool_force *b) 
     assert_int_equal(a->held, b->held);
     assert_int_equal(a->limited, b->limited);
     assert_true(a->limit == b->limit && a->depth == b->depth && a->apart == b->apart &&
-                a->grasp == b->grasp);
+                a->grasp_force == b->grasp_force);
 }
 
 static lar_tool_force force_of(const lar_simulation *simulation, int32_t tool) {
@@ -156,10 +156,10 @@ static void an_added_tool_is_as_one_of_the_scene(void **unused) {
 
 static double highest(const lar_simulation *simulation) {
     const lar_mesh *mesh = &simulation->domain.model->mesh;
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (int32_t n = 0; n < mesh->node_count; n++)
-        most = fmax(most, mesh->position[n][2] + node_u(simulation, n)[2]);
-    return most;
+        max = fmax(max, mesh->position[n][2] + node_u(simulation, n)[2]);
+    return max;
 }
 
 /* Above the body at rest, and above one that has risen. */
@@ -219,7 +219,7 @@ static void every_joule_is_accounted_for(void **unused) {
     lar_options options = with_spares(2);
     options.time_step = 5e-5;
     lar_simulation *simulation = start_with(model, options);
-    double worst = 0, most = 0;
+    double worst = 0, max = 0;
     for (int turn = 0; turn < 3; turn++) {
         int32_t tool = add(simulation, LAR_TOOL_SPHERE, 0.008, 0);
         press_down(simulation, tool, 12);
@@ -230,11 +230,11 @@ static void every_joule_is_accounted_for(void **unused) {
             lar_simulation_energy(simulation, &e);
             worst = fmax(worst, fabs(e.kinetic + e.strain + e.hourglass + e.damping + e.contact -
                                      e.external));
-            most = fmax(most, fabs(e.external));
+            max = fmax(max, fabs(e.external));
         }
     }
-    print_message("%.2g of %.3g J\n", worst / most, most);
-    assert_below(worst / most, 2e-3);
+    print_message("%.2g of %.3g J\n", worst / max, max);
+    assert_below(worst / max, 2e-3);
     finish(simulation, model);
 }
 

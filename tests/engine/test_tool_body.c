@@ -2,7 +2,7 @@
  * and comes back to it. */
 #include "contact/tool_body.h"
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 static const brick block = {{6, 6, 4}, 0.005, 0.05, LAR_LAW_neo_hookean, 2e3, 2e5, 1000};
 static const double upright[4] = {1, 0, 0, 0};
@@ -33,7 +33,7 @@ typedef struct pushed {
 } pushed;
 
 /* So many steps in ticks; the tool's centre never comes inside. */
-static pushed watch(lar_simulation *simulation, uint64_t steps) {
+static pushed vicinity(lar_simulation *simulation, uint64_t steps) {
     pushed seen = {0};
     uint64_t ticks = steps / TICK;
     for (uint64_t i = 0; i < ticks; i++) {
@@ -68,7 +68,7 @@ static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
     assert_true(winding(simulation, (double[]){0.015, 0.015, 0.01}) > 0.99);
 
     place(simulation, 0, below, upright, 1, second / 4);
-    pushed in = watch(simulation, second / 4), rest = watch(simulation, second / 4);
+    pushed in = vicinity(simulation, second / 4), rest = vicinity(simulation, second / 4);
     force = force_of(simulation);
     print_message("limit %.3g N: up to %.3g N on the way, %.3g N at rest, %.3g mm apart, tissue "
                   "up to %.3g mm deep; up to %d parts\n",
@@ -80,7 +80,7 @@ static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
     assert_true(rest.depth > 0 && rest.depth < ball.radius);
 
     place(simulation, 0, above, upright, 1, second / 4);
-    watch(simulation, second / 2);
+    vicinity(simulation, second / 2);
     force = force_of(simulation);
     lar_tool_pose pose, wanted = {.orientation = {1, 0, 0, 0}, .opening = 1};
     memcpy(wanted.position, above, sizeof wanted.position);
@@ -99,7 +99,7 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
     lar_model *model = pressed_model();
     lar_tool_force force[2];
     uint64_t divided[2], counted = 0;
-    int32_t most[2];
+    int32_t max[2];
     for (int g = 0; g < 2; g++) {
         lar_options options = lar_options_default();
         options.grid = grids[g];
@@ -111,15 +111,15 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
             if (g == 0) counted += lar_simulation_step_parts(simulation) > 1;
         }
         assert_int_equal(lar_simulation_tool_force(simulation, 0, &force[g], NULL), LAR_OK);
-        divided[g] = lar_simulation_divided_steps(simulation, &most[g]);
+        divided[g] = lar_simulation_divided_steps(simulation, &max[g]);
         lar_simulation_destroy(simulation);
     }
-    print_message("%.0f steps divided, into %d parts at most\n", (double)divided[0], (int)most[0]);
+    print_message("%.0f steps divided, into %d parts at most\n", (double)divided[0], (int)max[0]);
     assert_int_equal(force[0].limited, 1);
-    assert_true(divided[0] > 0 && most[0] > 1);
+    assert_true(divided[0] > 0 && max[0] > 1);
     assert_int_equal(divided[0], counted);
     assert_int_equal(divided[0], divided[1]);
-    assert_int_equal(most[0], most[1]);
+    assert_int_equal(max[0], max[1]);
     assert_memory_equal(&force[0], &force[1], sizeof force[0]);
     lar_model_destroy(model);
 }
@@ -128,20 +128,20 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
 static void hardness_grows_with_time(void **unused) {
     (void)unused;
     static const double SECONDS = 1e-4, UNIT = 1e-12;
-    const lar_step_room room = {.most = 0.9};
+    const lar_step_room room = {.max = 0.9};
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.acting.touch.list;
+    const lar_tool_list *list = simulation->domain.interactions.tool_contact.list;
     lar_tools tools = simulation->tools;
     for (int n = 1; n <= 100; n++) {
         double before = tools.division.hardness;
         tools.follower[0].felt = (lar_tool_felt){.depth = 0.6 * ball.radius, .steps = 1};
         lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
         assert_below(tools.division.hardness, exp(n * SECONDS / 1e-3) * 1.001);
-        assert_true(tools.division.hardness > before || before == LAR_HARDNESS_MOST);
+        assert_true(tools.division.hardness > before || before == LAR_HARDNESS_MAX);
         assert_true(tools.division.parts * tools.division.parts >= tools.division.hardness);
     }
-    assert_true(tools.division.hardness == LAR_HARDNESS_MOST);
+    assert_true(tools.division.hardness == LAR_HARDNESS_MAX);
     for (int n = 0; n < 10000; n++) {
         tools.follower[0].felt = (lar_tool_felt){.steps = 1};
         lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);

@@ -121,8 +121,8 @@ static void holds_of_others_are_looked_at(void **unused) {
         fleet f;
         start_fleet(&f, model, options, 2, NULL);
         lar_tools tools = f.zero->tools;
-        tools.hold_count = 1;
-        tools.hold[0] = (lar_hold){.tool = wrong[i][0], .face = wrong[i][1]};
+        tools.grasp_count = 1;
+        tools.grasps[0] = (lar_grasp){.tool = wrong[i][0], .face = wrong[i][1]};
         const lar_order order = {LAR_ORDER_ADVANCE, 0};
         assert_int_equal(lar_control_order(f.zero->computer->control, &order, &tools,
                                            lar_tools_bytes(&tools), &error),
@@ -281,21 +281,21 @@ static void forces_are_means_of_the_last_advance(void **unused) {
 /* A hundred seconds of a firm grip, of four threads: more than 64 bits. */
 static void long_advances_add_up(void **unused) {
     (void)unused;
-    static lar_acting acting;
+    static lar_interactions interactions;
     const lar_state state = {.contact = 0.25};
     lar_report sum = {0};
-    acting.touch.sum[1] = (lar_tool_sum){.touching = 2};
+    interactions.tool_contact.sum[1] = (lar_tool_sum){.touching = 2};
     for (int step = 0; step < 1000; step++) {
-        acting.touch.sum[1].force[0] -= (int64_t)1 << 60;
-        acting.touch.sum[1].torque[2] += (int64_t)1 << 60;
+        interactions.tool_contact.sum[1].force[0] -= (int64_t)1 << 60;
+        interactions.tool_contact.sum[1].torque[2] += (int64_t)1 << 60;
     }
-    for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &acting, &state);
+    for (int thread = 0; thread < 4; thread++) lar_report_add(&sum, &interactions, &state);
     assert_true(sum.taken == 1);
     assert_true((double)sum.tool[1].force[0] == -4000 * 0x1p60);
     assert_true((double)sum.tool[1].torque[2] == 4000 * 0x1p60);
     assert_int_equal(sum.tool[1].touching, 8);
-    lar_report_begin(&acting);
-    assert_true(acting.touch.sum[1].force[0] == 0);
+    lar_report_begin(&interactions);
+    assert_true(interactions.tool_contact.sum[1].force[0] == 0);
 }
 
 int main(void) {

@@ -57,18 +57,18 @@ static void repair(lar_bytes *bytes) {
     memcpy(bytes->data + AT_BYTES, &length, sizeof length);
     memcpy(bytes->data + AT_IDENTITY, &identity, sizeof identity);
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
-    size_t levels = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
-    if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_HOLDS_MOST &&
+    size_t offsets = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
+    if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_GRASPS_MAX &&
         last == AT_DIVISION + sizeof(lar_step_division) + sizeof(lar_settings) +
                     3 * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-                    (size_t)counts[1] * sizeof(lar_hold) + levels + values) {
+                    (size_t)counts[1] * sizeof(lar_grasp) + offsets + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));
         for (size_t n = 0; n < NODES; n++) {
-            uint64_t level = word_at(bytes, last - values - levels + 8 * n);
+            uint64_t offset = word_at(bytes, last - values - offsets + 8 * n);
             for (size_t i = 0; i < 6; i++)
                 hash = lar_hash_word(hash, word_at(bytes, last - values + (i < 3 ? 0 : values / 2) +
                                                               8 * (3 * n + i % 3)));
-            if (level != 0) hash = lar_hash_word(hash, level);
+            if (offset != 0) hash = lar_hash_word(hash, offset);
         }
         memcpy(bytes->data + AT_HASH, &hash, sizeof hash);
     }

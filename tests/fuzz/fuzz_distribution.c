@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     lar_distribution distribution = {0};
     lar_error error = {0};
     if (lar_distribution_parse("fuzz.dist", &bytes, &mesh, &distribution, &error) == LAR_OK) {
-        int32_t count[LAR_GRID_MOST];
+        int32_t count[LAR_GRID_MAX];
         lar_distribution_load(&distribution, count);
         for (int32_t p = 0; p < distribution.grid.count; p++)
             if (count[p] < 1) __builtin_trap();

@@ -36,7 +36,7 @@ static void check_transfers(const lar_schedule *s, lar_range span, bool received
 
 static void check_schedule(const lar_schedule *s) {
     require(s->processor >= 0 && s->processor < s->grid.count);
-    require(s->threads >= 1 && s->threads <= LAR_THREADS_MOST);
+    require(s->threads >= 1 && s->threads <= LAR_THREADS_MAX);
     require(s->thread_first[0] == 0 && s->thread_first[s->threads] == s->batch_count);
     for (int32_t t = 0; t < s->threads; t++) require(s->thread_first[t] <= s->thread_first[t + 1]);
     for (int32_t i = 0; i < s->batch_count; i++) {

@@ -16,18 +16,18 @@ static void demand(int holds) {
     if (!holds) abort();
 }
 
-static void check_wish(const lar_wish *wish) {
+static void check_command(const lar_command *command) {
     double square = 0;
-    demand(wish->tool >= 0 && wish->tool < TOOLS);
-    demand(wish->hand >= 0 && wish->hand < LAR_VIEWER_HANDS);
-    demand(wish->steps <= 100000 && (wish->kind != LAR_WISH_STEP || wish->steps > 0));
-    demand(wish->pace == 0 || (wish->pace >= 0.001 && wish->pace <= 100));
-    demand(wish->opening >= 0 && wish->opening <= 1);
-    for (int i = 0; i < 3; i++) demand(fabs(wish->point[i]) <= 1000);
-    for (int i = 0; i < 4; i++) square += wish->orientation[i] * wish->orientation[i];
-    demand(!wish->turns || fabs(square - 1) < 1e-12);
-    demand(memchr(wish->name, '\0', sizeof wish->name) != NULL);
-    demand(lar_field_names[lar_field_index(wish->field)].field == wish->field);
+    demand(command->tool >= 0 && command->tool < TOOLS);
+    demand(command->hand >= 0 && command->hand < LAR_VIEWER_HANDS);
+    demand(command->steps <= 100000 && (command->kind != LAR_COMMAND_STEP || command->steps > 0));
+    demand(command->pace == 0 || (command->pace >= 0.001 && command->pace <= 100));
+    demand(command->opening >= 0 && command->opening <= 1);
+    for (int i = 0; i < 3; i++) demand(fabs(command->point[i]) <= 1000);
+    for (int i = 0; i < 4; i++) square += command->orientation[i] * command->orientation[i];
+    demand(!command->turns || fabs(square - 1) < 1e-12);
+    demand(memchr(command->name, '\0', sizeof command->name) != NULL);
+    demand(lar_field_names[lar_field_index(command->field)].field == command->field);
 }
 
 static void check_reason(const char *reason) {
@@ -42,11 +42,11 @@ static void check_reason(const char *reason) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char reason[LAR_REASON_BYTES] = "", *exact = malloc(size ? size : 1);
-    lar_wish wish;
+    lar_command command;
     if (!exact) return 0;
     if (size > 0) memcpy(exact, data, size);
-    if (lar_wish_read(exact, size, TOOLS, &wish, reason) == LAR_CLOSE_NOT)
-        check_wish(&wish);
+    if (lar_command_read(exact, size, TOOLS, &command, reason) == LAR_CLOSE_NOT)
+        check_command(&command);
     else
         check_reason(reason);
     free(exact);

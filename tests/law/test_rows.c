@@ -177,7 +177,7 @@ static void strained_is_as_stiff_as_it_says(void **state) {
     static const double rest[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     uint64_t seed = 24;
     for (int law = 0; law < LAR_LAW_COUNT; law++) {
-        double least = INFINITY, most = 0;
+        double min = INFINITY, max = 0;
         for (int n = 0; n < 20 * STATES; n++) {
             lar_material material = {.law = (lar_law)law, .density = 1000};
             lar_material_from_shear_bulk(&material, 1000, n % 2 ? 3000 : 1e5);
@@ -191,11 +191,11 @@ static void strained_is_as_stiff_as_it_says(void **state) {
             double growth = stiffest(&material, (rows)F) / stiffest(&material, rest);
             if (J < 0.5 || J > 1.3 || strain[LAR_STRAIN_AREA] > 20 || growth < 1.5) continue;
             double ratio = lar_hex8_growth(&material, strain) / growth;
-            least = fmin(least, ratio);
-            most = fmax(most, ratio);
+            min = fmin(min, ratio);
+            max = fmax(max, ratio);
         }
-        print_message("%s: said over true growth %.2f to %.2f\n", lar_law_name[law], least, most);
-        assert_below(0.45, least);
+        print_message("%s: said over true growth %.2f to %.2f\n", lar_law_name[law], min, max);
+        assert_below(0.45, min);
     }
 }
 

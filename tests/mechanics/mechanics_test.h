@@ -72,17 +72,17 @@ TEST_UNUSED static void random_deformation(uint64_t *state, double size, double 
 }
 
 TEST_UNUSED static double largest(const double *values, int count) {
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < count; i++)
-        if (!(fabs(values[i]) <= most)) most = fabs(values[i]);
-    return most;
+        if (!(fabs(values[i]) <= max)) max = fabs(values[i]);
+    return max;
 }
 
 TEST_UNUSED static double largest_difference(const double *a, const double *b, int count) {
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < count; i++)
-        if (!(fabs(a[i] - b[i]) <= most)) most = fabs(a[i] - b[i]);
-    return most;
+        if (!(fabs(a[i] - b[i]) <= max)) max = fabs(a[i] - b[i]);
+    return max;
 }
 
 /* ---- materials and shapes ------------------------------------------------------------------ */
@@ -157,9 +157,9 @@ TEST_UNUSED static double jacobi_largest(double *A, int n) {
                 }
             }
     }
-    double most = A[0];
-    for (int p = 1; p < n; p++) most = fmax(most, A[p * n + p]);
-    return most;
+    double max = A[0];
+    for (int p = 1; p < n; p++) max = fmax(max, A[p * n + p]);
+    return max;
 }
 
 /* ---- two elements that share a face ---------------------------------------------------------- */

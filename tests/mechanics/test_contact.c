@@ -28,20 +28,20 @@ static void a_bounce_takes_energy(void **unused) {
     static const double shares[] = {0.01, 0.3, 0.8, 0.95, 1};
     for (int s = 0; s < 5; s++) {
         lar_contact_law law = lar_contact_law_for(DT, DT / shares[s]);
-        double most = 0, least = 1, deepest = 0;
+        double max = 0, min = 1, deepest = 0;
         for (int i = 1; i <= 1000; i++)
             for (int k = 0; k < 4; k++) {
                 double depth,
                     left = bounce(&law, (double[]){0.01, 0.1, 1, 5}[k], i / 1000.0, &depth);
-                most = fmax(most, left);
-                least = fmin(least, left);
+                max = fmax(max, left);
+                min = fmin(min, left);
                 deepest = fmax(deepest, depth / ((double[]){0.01, 0.1, 1, 5}[k] * DT));
             }
         print_message(
             "%.2f of the stable step: %.3f to %.3f of the energy comes back, at most %.1f "
             "steps of flight deep\n",
-            shares[s], least, most, deepest);
-        assert_below(most, 0.9);
+            shares[s], min, max, deepest);
+        assert_below(max, 0.9);
         assert_below(deepest, 5);
     }
 }

@@ -27,7 +27,7 @@ static void random_face(double corner[4][3], double bend) {
 /* The least distance over many points of the four triangles. */
 static double searched_distance(const double x[3], const double corner[4][3]) {
     enum { FINE = 60 };
-    double least = INFINITY;
+    double min = INFINITY;
     for (int t = 0; t < 4; t++)
         for (int i = 0; i <= FINE; i++)
             for (int j = 0; i + j <= FINE; j++) {
@@ -37,9 +37,9 @@ static double searched_distance(const double x[3], const double corner[4][3]) {
                         0.25 * (corner[0][k] + corner[1][k] + corner[2][k] + corner[3][k]);
                     point[k] = m * middle + n * corner[(t + 1) % 4][k] + (1 - m - n) * corner[t][k];
                 }
-                least = fmin(least, apart(x, point));
+                min = fmin(min, apart(x, point));
             }
-    return least;
+    return min;
 }
 
 static void the_closest_point_is_the_closest(void **unused) {
@@ -120,18 +120,18 @@ static void inside_is_inside_also_at_edges(void **unused) {
             bool inside = fabs(x[0]) < 1 && fabs(x[1]) < 1 && fabs(x[2]) < 1;
             x[0] += shear[k] * x[2];
             lar_face_point face[6];
-            double least = INFINITY;
+            double min = INFINITY;
             for (int f = 0; f < 6; f++) {
                 cube_face(f, shear[k], corner);
                 lar_face_closest(x, (const double(*)[3])corner, 1e-9, &face[f]);
-                least = fmin(least, face[f].distance);
+                min = fmin(min, face[f].distance);
             }
             int chosen = -1;
             for (int f = 0; f < 6; f++)
-                if (face[f].distance <= least + 1e-9 &&
+                if (face[f].distance <= min + 1e-9 &&
                     (chosen < 0 || lar_face_point_before(&face[f], &face[chosen])))
                     chosen = f;
-            if (least > 1e-6) assert_true((face[chosen].height < 0) == inside);
+            if (min > 1e-6) assert_true((face[chosen].height < 0) == inside);
         }
 }
 
@@ -167,7 +167,7 @@ static void inside_is_inside_also_at_dented_corners(void **unused) {
     (void)unused;
     int at_corners = 0;
     for (int trial = 0; trial < 40000; trial++) {
-        double node[8][3], corner[6][4][3], x[3], least = INFINITY;
+        double node[8][3], corner[6][4][3], x[3], min = INFINITY;
         for (int n = 0; n < 8; n++)
             for (int i = 0; i < 3; i++) node[n][i] = (n >> i & 1 ? 1 : -1) + 0.6 * noise();
         for (int i = 0; i < 3; i++) {
@@ -184,15 +184,15 @@ static void inside_is_inside_also_at_dented_corners(void **unused) {
                 memcpy(c, node[(c[0] > 0) + 2 * (c[1] > 0) + 4 * (c[2] > 0)], sizeof corner[f][a]);
             }
             lar_face_closest(x, (const double(*)[3])corner[f], 1e-9, &face[f]);
-            least = fmin(least, face[f].distance);
+            min = fmin(min, face[f].distance);
         }
         int chosen = -1;
         for (int f = 0; f < 6; f++)
-            if (face[f].distance <= least + 1e-9 &&
+            if (face[f].distance <= min + 1e-9 &&
                 (chosen < 0 || lar_face_point_before(&face[f], &face[chosen])))
                 chosen = f;
         double around = winding(x, (const double(*)[4][3])corner);
-        if (least < 1e-6) continue;
+        if (min < 1e-6) continue;
         at_corners += face[chosen].toward < -LAR_TOWARD_TIE;
         assert_true((face[chosen].height < 0) == (around > 0.5));
     }

@@ -136,8 +136,8 @@ static void patch(void **state) {
                 memcpy(here[a], u[n], sizeof u[n]);
                 if (n == 13) inner = a;
             }
-            double least = lar_hex8_full_force((rows)corner, &material, (rows)here, force);
-            assert_below(fabs(least - J), 1e-12 * J);
+            double min = lar_hex8_full_force((rows)corner, &material, (rows)here, force);
+            assert_below(fabs(min - J), 1e-12 * J);
             for (int i = 0; i < 3; i++) sum[i] += force[inner][i];
             lar_hex8_full_stress((rows)corner, &material, (rows)here, cauchy);
             assert_below(largest_difference(cauchy, exact, 6),
@@ -230,7 +230,7 @@ static void check_equilibrium(const char *mesh, const char *field, double bulk, 
     if (!read_reference(mesh, field, &r)) skip();
     lar_material material = {.law = LAR_LAW_neo_hookean, .density = 1000};
     lar_material_from_shear_bulk(&material, bulk == 10000 ? 3000 / 2.9 : 3000 / 2.98, bulk);
-    double(*rest)[3] = calloc((size_t)r.nodes, sizeof *rest), most = 0, total = 0;
+    double(*rest)[3] = calloc((size_t)r.nodes, sizeof *rest), max = 0, total = 0;
     assert_non_null(rest);
     for (int e = 0; e < r.elements; e++) {
         double corner[8][3], u[8][3], force[8][3];
@@ -247,12 +247,12 @@ static void check_equilibrium(const char *mesh, const char *field, double bulk, 
     }
     for (int n = 0; n < r.nodes; n++)
         for (int i = 0; i < 3; i++) {
-            most = fmax(most, fabs(rest[n][i] - r.reaction[n][i]));
+            max = fmax(max, fabs(rest[n][i] - r.reaction[n][i]));
             total = fmax(total, fabs(r.reaction[n][i]));
         }
     free(rest);
-    print_message("%s: out of balance by %.1e of the largest reaction\n", field, most / total);
-    assert_below(most, tolerance * total);
+    print_message("%s: out of balance by %.1e of the largest reaction\n", field, max / total);
+    assert_below(max, tolerance * total);
 }
 
 static void febio_beam(void **state) {

@@ -33,15 +33,15 @@ static void forces_are_slopes_of_the_energy(void **state) {
         lar_guard guard;
         crooked(&seed, 0.6, rest, now);
         lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, force, &guard);
-        if (guard.least >= LAR_GUARD_START) {
+        if (guard.min >= LAR_GUARD_START) {
             assert_true(guard.energy == 0 && guard.stiffness == 0);
             assert_true(largest(&force[0][0], 24) == 0);
             continue;
         }
         guarded++;
-        folded += guard.least < 0;
+        folded += guard.min < 0;
         assert_true(guard.energy >= 0 && guard.stiffness > 0);
-        double step = 1e-7 * size, most = largest(&force[0][0], 24);
+        double step = 1e-7 * size, max = largest(&force[0][0], 24);
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++) {
                 double at = now[a][i];
@@ -51,11 +51,11 @@ static void forces_are_slopes_of_the_energy(void **state) {
                 double below = energy_of((rows)rest, (rows)now, &material);
                 now[a][i] = at;
                 double bound =
-                    1e-5 * most + 1e-13 * guard.energy / step + 2 * step * guard.stiffness;
+                    1e-5 * max + 1e-13 * guard.energy / step + 2 * step * guard.stiffness;
                 assert_below(fabs((above - below) / (2 * step) - force[a][i]), bound);
                 sum[i] += force[a][i];
             }
-        assert_below(largest(sum, 3), 1e-12 * most);
+        assert_below(largest(sum, 3), 1e-12 * max);
     }
     assert_true(guarded > 500 && folded > 100);
 }
@@ -72,14 +72,14 @@ static void damping_only_takes(void **state) {
         random_fill(&seed, 1, &v[0][0], 24);
         lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, still, &guard);
         lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, 1e-4, force, &guard);
-        double power = 0, most = 0;
+        double power = 0, max = 0;
         for (int i = 0; i < 24; i++) {
             double part = (force[i / 3][i % 3] - still[i / 3][i % 3]) * v[i / 3][i % 3];
             power += part;
-            most += fabs(part);
+            max += fabs(part);
         }
         assert_true(guard.taken <= 0);
-        assert_below(fabs(power + guard.taken), 1e-10 * most + 1e-300);
+        assert_below(fabs(power + guard.taken), 1e-10 * max + 1e-300);
     }
 }
 
@@ -108,7 +108,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
         }
 }
 
-static double least_of(const lar_hex8_block *block, const block_nodes *nodes, int lane) {
+static double min_of(const lar_hex8_block *block, const block_nodes *nodes, int lane) {
     double rest[8][3], now[8][3];
     lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
     lar_guard guard;
@@ -119,7 +119,7 @@ static double least_of(const lar_hex8_block *block, const block_nodes *nodes, in
             now[a][i] = rest[a][i] + nodes->u[node][i];
         }
     lar_hex8_guard((rows)rest, (rows)now, &material, &guard);
-    return guard.least;
+    return guard.min;
 }
 
 static void kernels_see_the_same_corners(void **state) {
@@ -139,10 +139,10 @@ static void kernels_see_the_same_corners(void **state) {
                              .blocks = &block};
         unsigned expected = 0;
         for (int lane = 0; lane < LAR_BLOCK; lane++) {
-            double least = least_of(&block, &nodes, lane);
+            double min = min_of(&block, &nodes, lane);
             for (int s = 0; s < 2; s++)
-                if (!(least > share[s])) expected |= 1u << (lane + LAR_BLOCK * s);
-            seen[least < 0.3 ? 0 : least < 0.6 ? 1 : 2]++;
+                if (!(min > share[s])) expected |= 1u << (lane + LAR_BLOCK * s);
+            seen[min < 0.3 ? 0 : min < 0.6 ? 1 : 2]++;
         }
         for (int i = 0; i < 4; i++) {
             const lar_kernels *kernels;
@@ -204,15 +204,15 @@ static void what_stiffens_is_listed(void **state) {
                 const lar_kernels *kernels;
                 int32_t lane[LAR_BLOCK];
                 float strain[LAR_BLOCK][LAR_STRAIN_NUMBERS];
-                lar_hex8_watch watch = {.limit = limit, .lane = lane, .strain = strain};
+                lar_hex8_monitor monitor = {.limit = limit, .lane = lane, .strain = strain};
                 const lar_block_run run = {.law = (lar_law)law,
                                            .count = 1,
                                            .blocks = &block,
                                            .more = lar_law_has_more((lar_law)law) ? &more : NULL};
                 if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
-                kernels->recover(&run, &nodes.u[0][0], &force[0][0], &limits, &watch);
+                kernels->recover(&run, &nodes.u[0][0], &force[0][0], &limits, &monitor);
                 unsigned found = 0;
-                for (int k = 0; k < watch.count; k++) found |= 1U << lane[k];
+                for (int k = 0; k < monitor.count; k++) found |= 1U << lane[k];
                 for (int n = 0; n < LAR_BLOCK; n++) {
                     double cof[9], *f = &F[n][0][0], J = lar_lane_cofactor(f, cof);
                     const float now[LAR_STRAIN_NUMBERS] = {(float)J, (float)lar_lane_square_sum(f),

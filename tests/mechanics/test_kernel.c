@@ -98,27 +98,28 @@ static void empty_lane(load *l, int n) {
 /* Loose blocks of general elements. */
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, const lar_block_more *more,
                     int count, const double *u, int64_t *force, const lar_hex8_limits *limits,
-                    bool watch) {
+                    bool monitor) {
     lar_block_run run = {law,           LAR_SHAPE_GENERAL,
                          LAR_ROWS_NONE, 0,
                          false,         count,
                          blocks,        lar_law_has_more(law) ? more : NULL};
-    enum { MOST = 64 };
-    static int32_t lane[MOST * LAR_BLOCK];
-    static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
-    assert_true(count <= MOST);
-    for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
-    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(&run, u, force, limits, watch ? &listed : NULL);
+    enum { MAX = 64 };
+    static int32_t lane[MAX * LAR_BLOCK];
+    static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
+    assert_true(count <= MAX);
+    for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
+    static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
+    int64_t found = kernels[k]->recover(&run, u, force, limits, monitor ? &listed : NULL);
     /* The first lane of those of the block that is named. */
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
-static int64_t recover(const load *l, int k, bool watch, const lar_hex8_limits *limits, forces *f) {
+static int64_t recover(const load *l, int k, bool monitor, const lar_hex8_limits *limits,
+                       forces *f) {
     lar_law law = l->material[0].law;
     memset(f, 0, sizeof *f);
-    return call(k, law, l->block, l->more, BLOCKS, &l->u[0][0], &f->at[0][0], limits, watch);
+    return call(k, law, l->block, l->more, BLOCKS, &l->u[0][0], &f->at[0][0], limits, monitor);
 }
 
 /* Each element within the rounding of its seven modal forces (half a unit each); the scale is
@@ -174,8 +175,8 @@ static void same_bits_everywhere(void **state) {
         recover(&l, 0, false, &no_limits, &first);
         assert_true(first.at[SPARE][0] == 0 && first.at[SPARE][1] == 0 && first.at[SPARE][2] == 0);
         for (int k = 0; k < kernel_count; k++)
-            for (int watch = 0; watch < 2; watch++) {
-                assert_true(recover(&l, k, watch, &no_limits, &f) == -1);
+            for (int monitor = 0; monitor < 2; monitor++) {
+                assert_true(recover(&l, k, monitor, &no_limits, &f) == -1);
                 assert_memory_equal(&f, &first, sizeof f);
                 compared++;
             }
@@ -221,14 +222,14 @@ static void integers_balance(void **state) {
             f = once;
             call(k, (lar_law)law, l.block, l.more, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits,
                  false);
-            int64_t sum[4] = {0}, most = 0;
+            int64_t sum[4] = {0}, max = 0;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) {
                     assert_true(f.at[p][i] == 2 * once.at[p][i]);
                     sum[i] += once.at[p][i];
-                    most = most < once.at[p][i] ? once.at[p][i] : most;
+                    max = max < once.at[p][i] ? once.at[p][i] : max;
                 }
-            assert_true(most > 1000000);
+            assert_true(max > 1000000);
             for (int i = 0; i < 4; i++) assert_true(sum[i] == 0);
         }
 }
@@ -286,7 +287,7 @@ static void move_element(load *l, bool hourglass, double amount) {
         l->u[a][0] = amount * lar_node_sign[a][0] * (hourglass ? lar_node_sign[a][1] : 1);
 }
 
-static void limits_trip_their_lane(void **state) {
+static void limits_name_their_lane(void **state) {
     (void)state;
     static load l;
     static forces f;
@@ -298,27 +299,27 @@ static void limits_trip_their_lane(void **state) {
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 int64_t own = (BLOCKS - 1) * LAR_BLOCK + lane;
                 make_loose(&l, law, lane);
-                for (int watch = 0; watch < 2; watch++) {
+                for (int monitor = 0; monitor < 2; monitor++) {
                     move_element(&l, false, 0); /* at rest */
-                    assert_true(recover(&l, k, watch, &limits, &f) == -1);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == -1);
                     move_element(&l, false, -0.1 * size); /* F11 = 0.8 */
-                    assert_true(recover(&l, k, watch, &limits, &f) == -1);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == -1);
                     move_element(&l, false, -0.49 * size); /* F11 = 0.02: nearly flat */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, -0.6 * size); /* F11 = -0.2: inverted */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, 20 * size); /* F11 = 41: too much stress */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, NAN);
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     move_element(&l, false, 0);
                     l.u[7][1] = NAN; /* one number of one node */
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     l.u[7][1] = INFINITY;
-                    assert_true(recover(&l, k, watch, &limits, &f) == own);
+                    assert_true(recover(&l, k, monitor, &limits, &f) == own);
                     l.u[7][1] = 0;
                     move_element(&l, true, size); /* hourglass: seen by a watching call only */
-                    assert_true(recover(&l, k, watch, &limits, &f) == (watch ? own : -1));
+                    assert_true(recover(&l, k, monitor, &limits, &f) == (monitor ? own : -1));
                 }
                 /* two bad elements: the first in order is named */
                 move_element(&l, false, -0.6 * size);
@@ -505,7 +506,7 @@ int main(void) {
         cmocka_unit_test(every_lane_alike),
         cmocka_unit_test(integers_balance),
         cmocka_unit_test(any_count_of_blocks),
-        cmocka_unit_test(limits_trip_their_lane),
+        cmocka_unit_test(limits_name_their_lane),
         cmocka_unit_test(first_of_all_blocks),
         cmocka_unit_test(neighbours_keep_their_bits),
         cmocka_unit_test(rounds_to_nearest_even),

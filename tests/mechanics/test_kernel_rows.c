@@ -5,7 +5,7 @@
 #include "base/simd.h"
 #include "mechanics/hex8_block.h"
 
-enum { MOST = 9, LANES = MOST * LAR_BLOCK, ROOM = 8 * LANES + 2, SPARE = ROOM - 1 };
+enum { MAX = 9, LANES = MAX * LAR_BLOCK, ROOM = 8 * LANES + 2, SPARE = ROOM - 1 };
 static const double size = 0.01, scale = 0x1p52; /* m, force units per newton: every bit shows */
 static const double modulus_shear = 4e3, modulus_bulk = 2e5;
 
@@ -26,9 +26,9 @@ typedef struct body {
     int turn; /* of boxes; -1: crooked elements */
     lar_law law;
     lar_block_rows rows;
-    lar_hex8_block general[MOST];
-    lar_box_block box[MOST];
-    lar_block_more more[MOST];
+    lar_hex8_block general[MAX];
+    lar_box_block box[MAX];
+    lar_block_more more[MAX];
     double x[ROOM][3];
     double u[ROOM][4] __attribute__((aligned(64)));
 } body;
@@ -133,18 +133,18 @@ static void make_body(body *b, uint64_t *seed, int turn, lar_law law, lar_block_
 
 /* The first lane of those that the kernel names, or -1. */
 static int64_t recover_run(int k, const lar_block_run *run, const double *u, int64_t *force,
-                           const lar_hex8_limits *limits, bool watch) {
-    static int32_t lane[MOST * LAR_BLOCK];
-    static double limit[MOST * LAR_BLOCK] __attribute__((aligned(64)));
-    for (int i = 0; i < MOST * LAR_BLOCK; i++) limit[i] = INFINITY;
-    static float strain[MOST * LAR_BLOCK][LAR_STRAIN_NUMBERS];
-    lar_hex8_watch listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(run, u, force, limits, watch ? &listed : NULL);
+                           const lar_hex8_limits *limits, bool monitor) {
+    static int32_t lane[MAX * LAR_BLOCK];
+    static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
+    for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
+    static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
+    lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
+    int64_t found = kernels[k]->recover(run, u, force, limits, monitor ? &listed : NULL);
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
 static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, int count,
-                       const lar_hex8_limits *limits, bool watch, forces *f) {
+                       const lar_hex8_limits *limits, bool monitor, forces *f) {
     lar_block_run run = {.law = b->law,
                          .shape = boxes ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL,
                          .rows = joined,
@@ -153,7 +153,7 @@ static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, 
                          .blocks = boxes ? (const void *)b->box : b->general,
                          .more = lar_law_has_more(b->law) ? b->more : NULL};
     memset(f, 0, sizeof *f);
-    return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, watch);
+    return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, monitor);
 }
 
 static const lar_hex8_limits no_limits = {-INFINITY, INFINITY, INFINITY};
@@ -170,18 +170,18 @@ static void every_kind_gives_the_same_bits(void **state) {
             for (int joined = 0; joined < LAR_ROWS_COUNT; joined++) {
                 uint64_t seed = (uint64_t)(100 * turn + 10 * law + joined + 1000);
                 make_body(&b, &seed, turn, (lar_law)law, (lar_block_rows)joined);
-                for (int count = 0; count <= MOST; count++) {
+                for (int count = 0; count <= MAX; count++) {
                     recover(&b, 0, false, LAR_ROWS_NONE, count, &no_limits, false, &expected);
-                    int64_t most = 0;
+                    int64_t max = 0;
                     for (int p = 0; p < ROOM; p++)
                         for (int i = 0; i < 3; i++)
-                            if (most < expected.at[p][i]) most = expected.at[p][i];
-                    assert_true(count == 0 ? most == 0 : most > 1000000);
+                            if (max < expected.at[p][i]) max = expected.at[p][i];
+                    assert_true(count == 0 ? max == 0 : max > 1000000);
                     for (int k = 0; k < kernel_count; k++)
                         for (int form = 0; form < 4; form++) {
-                            bool boxes = turn >= 0 && form / 2, watch = form % 2;
+                            bool boxes = turn >= 0 && form / 2, monitor = form % 2;
                             assert_true(recover(&b, k, boxes, (lar_block_rows)joined, count,
-                                                &no_limits, watch, &f) == -1);
+                                                &no_limits, monitor, &f) == -1);
                             assert_memory_equal(&f, &expected, sizeof f);
                             compared++;
                         }
@@ -195,13 +195,13 @@ static void every_kind_gives_the_same_bits(void **state) {
 
 /* Squeezes, stretches or spoils one element of an otherwise resting body by the node in its middle
  * (`corner` 6 of place p), which only it and its neighbours in the row see. */
-static int64_t tripped(body *b, int k, bool boxes, int n, const double u[3], bool watch,
-                       const lar_hex8_limits *limits) {
+static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool monitor,
+                      const lar_hex8_limits *limits) {
     static forces f, loose;
     double *at = b->u[b->general[n / 8].head.node[6][n % 8] / 4];
     memcpy(at, u, 3 * sizeof *u);
-    int64_t lane = recover(b, k, boxes, b->rows, MOST, limits, watch, &f);
-    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MOST, limits, watch, &loose));
+    int64_t lane = recover(b, k, boxes, b->rows, MAX, limits, monitor, &f);
+    assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MAX, limits, monitor, &loose));
     memset(at, 0, 3 * sizeof *at);
     return lane;
 }
@@ -215,7 +215,7 @@ static int64_t first_with_node(const body *b, int n) {
     return -1;
 }
 
-static void limits_trip_in_every_kind(void **state) {
+static void limits_are_reported_in_every_kind(void **state) {
     (void)state;
     static body b;
     double stress = 2e5 * size * size * size * scale, hourglass = 0.004 * scale;
@@ -233,14 +233,14 @@ static void limits_trip_in_every_kind(void **state) {
                 for (int n = 0; n < LANES; n += n % 8 == 7 && n < 56 ? 25 : 1)
                     for (int form = 0; form < 4 * kernel_count; form++) {
                         int k = form / 4;
-                        bool boxes = turn >= 0 && form % 2, watch = form / 2 % 2;
+                        bool boxes = turn >= 0 && form % 2, monitor = form / 2 % 2;
                         int64_t own = first_with_node(&b, n);
-                        assert_true(tripped(&b, k, boxes, n, nothing, watch, &limits) == -1);
-                        assert_true(tripped(&b, k, boxes, n, spoiled, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, endless, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, far, watch, &limits) == own);
-                        assert_true(tripped(&b, k, boxes, n, bent, watch, &limits) ==
-                                    (watch ? own : -1));
+                        assert_true(beyond(&b, k, boxes, n, nothing, monitor, &limits) == -1);
+                        assert_true(beyond(&b, k, boxes, n, spoiled, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, endless, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, far, monitor, &limits) == own);
+                        assert_true(beyond(&b, k, boxes, n, bent, monitor, &limits) ==
+                                    (monitor ? own : -1));
                     }
             }
 }
@@ -265,7 +265,7 @@ static void no_other_node_is_touched(void **state) {
                                  .shape = LAR_SHAPE_BOX,
                                  .rows = b.rows,
                                  .turn = b.turn,
-                                 .count = MOST,
+                                 .count = MAX,
                                  .blocks = b.box};
             recover_run(k, &run, &b.u[0][0], &f.at[0][0], &no_limits, true);
             int spared = 0;
@@ -282,7 +282,7 @@ static void no_other_node_is_touched(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_gives_the_same_bits),
-        cmocka_unit_test(limits_trip_in_every_kind),
+        cmocka_unit_test(limits_are_reported_in_every_kind),
         cmocka_unit_test(no_other_node_is_touched),
     };
     return cmocka_run_group_tests(tests, find_kernels, NULL);

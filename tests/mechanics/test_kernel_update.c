@@ -25,7 +25,7 @@ static int find_kernels(void **state) {
     return kernel_count == 0;
 }
 
-static const lar_motion falling = {0.9998, 1e-4, 50, {0.1e-4, -0.3e-4, -9.81e-4, 0}, 1};
+static const lar_leapfrog falling = {0.9998, 1e-4, 50, {0.1e-4, -0.3e-4, -9.81e-4, 0}, 1};
 
 static void make_nodes(uint64_t *seed, nodes *n) {
     memset(n, 0, sizeof *n);
@@ -41,20 +41,21 @@ static void make_nodes(uint64_t *seed, nodes *n) {
     }
 }
 
-static bool move(int k, const lar_motion *motion, int first, int end, nodes *n, double *damped) {
+static bool move(int k, const lar_leapfrog *leapfrog, int first, int end, nodes *n,
+                 double *damped) {
     double fastest = 0;
-    return kernels[k]->update(motion, first, end, n->u, n->v, n->force, n->push,
+    return kernels[k]->update(leapfrog, first, end, n->u, n->v, n->force, n->push,
                               damped ? n->mass : NULL, damped, &fastest);
 }
 
 /* The formula, written down once more. */
-static double formula(const lar_motion *motion, int first, int end, nodes *n) {
+static double formula(const lar_leapfrog *leapfrog, int first, int end, nodes *n) {
     double damped = 0;
     for (int k = 4 * first; k < 4 * end; k++) {
-        double before = n->v[k], after = fma(motion->keep, before, motion->drift[k % 4]);
+        double before = n->v[k], after = fma(leapfrog->keep, before, leapfrog->drift[k % 4]);
         after = fma(-(double)n->force[k], n->push[k / 4], after);
         n->v[k] = after;
-        n->u[k] = fma(motion->dt, after, n->u[k]);
+        n->u[k] = fma(leapfrog->dt, after, n->u[k]);
         n->force[k] = 0;
         damped += n->mass[k / 4] * (before + after) * (before + after);
     }
@@ -96,7 +97,7 @@ static void same_bits_everywhere(void **state) {
 static void free_fall(void **state) {
     (void)state;
     static nodes n;
-    const lar_motion fall = {1, 1e-3, 1e3, {0, 0, -9.81e-3, 0}, 1};
+    const lar_leapfrog fall = {1, 1e-3, 1e3, {0, 0, -9.81e-3, 0}, 1};
     for (int k = 0; k < kernel_count; k++) {
         memset(&n, 0, sizeof n);
         for (int step = 0; step < 1000; step++) assert_true(move(k, &fall, 0, NODES, &n, NULL));
@@ -113,7 +114,7 @@ static void free_fall(void **state) {
 static void damping_energy(void **state) {
     (void)state;
     static nodes n;
-    const lar_motion brake = {0.9, 1e-4, 1e3, {0}, 1};
+    const lar_leapfrog brake = {0.9, 1e-4, 1e3, {0}, 1};
     uint64_t seed = 62;
     for (int k = 0; k < kernel_count; k++) {
         double before = 0, after = 0, damped = 0;
@@ -130,7 +131,7 @@ static void damping_energy(void **state) {
 static void speed_limit(void **state) {
     (void)state;
     static nodes n;
-    const lar_motion still = {1, 1e-4, 10, {0}, 1};
+    const lar_leapfrog still = {1, 1e-4, 10, {0}, 1};
     const double bad[] = {10, -10, 10.5, -1e300, INFINITY, -INFINITY, NAN};
     const double good[] = {9.999999999, -9.999999999, 0};
     for (int k = 0; k < kernel_count; k++)
@@ -158,19 +159,19 @@ static void the_fastest_value(void **state) {
     (void)state;
     static nodes n;
     uint64_t seed = 64;
-    const lar_motion still = {1, 1e-4, 1e3, {0}, 1};
+    const lar_leapfrog still = {1, 1e-4, 1e3, {0}, 1};
     for (int k = 0; k < kernel_count; k++)
         for (int i = 0; i < VALUES; i++) {
             make_nodes(&seed, &n);
             memset(n.force, 0, sizeof n.force);
             int first = 2, end = NODES - 2;
             bool moved = i / 4 >= first && i / 4 < end;
-            double most = 0, fastest = 0, more = 1e6;
+            double max = 0, fastest = 0, more = 1e6;
             n.v[i] = i % 2 ? 500 : -500;
-            for (int j = 4 * first; j < 4 * end; j++) most = fmax(most, fabs(n.v[j]));
-            assert_true(moved ? most == 500 : most < 500);
+            for (int j = 4 * first; j < 4 * end; j++) max = fmax(max, fabs(n.v[j]));
+            assert_true(moved ? max == 500 : max < 500);
             kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &fastest);
-            assert_true(fastest == most);
+            assert_true(fastest == max);
             kernels[k]->update(&still, first, end, n.u, n.v, n.force, n.push, NULL, NULL, &more);
             assert_true(more == 1e6);
         }
@@ -199,7 +200,7 @@ static void integers_to_doubles(void **state) {
                                       0x7ffffffffffffe00LL,
                                       INT64_MAX};
     enum { SPECIAL = sizeof special / sizeof special[0] };
-    const lar_motion as_is = {0, 1, INFINITY, {0}, 1};
+    const lar_leapfrog as_is = {0, 1, INFINITY, {0}, 1};
     uint64_t seed = 63;
     for (int round = 0; round < 2000; round++) {
         int64_t values[VALUES];

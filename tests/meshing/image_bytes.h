@@ -43,13 +43,13 @@ static TEST_UNUSED void place_double(unsigned char *to, double value, bool big) 
 static TEST_UNUSED void gzip_from(lar_bytes *bytes, size_t from) {
     z_stream z = {0};
     assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY), Z_OK);
-    size_t size = bytes->size - from, most = deflateBound(&z, size);
-    unsigned char *packed = malloc(most);
+    size_t size = bytes->size - from, max = deflateBound(&z, size);
+    unsigned char *packed = malloc(max);
     assert_non_null(packed);
     z.next_in = bytes->data + from;
     z.avail_in = (uInt)size;
     z.next_out = packed;
-    z.avail_out = (uInt)most;
+    z.avail_out = (uInt)max;
     assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
     bytes->size = from;
     append(bytes, packed, z.total_out);

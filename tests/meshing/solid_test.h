@@ -1,4 +1,4 @@
-/* What tests of lattices and drafts share: lattices of implicit functions, and a judge of solids
+/* What tests of grids and unfitted meshes share: grids of implicit functions, and a judge of solids
  * that knows nothing of how they are cleaned: it looks at the quadrilaterals of a mesh only.
  */
 #ifndef LAR_TESTS_SOLID_H
@@ -7,43 +7,43 @@
 #include "testing.h"
 
 #include "meshing/fit/fit.h"
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 
 /* The region at a place, in cells; 0: outside. */
 typedef int solid_function(const double x[3]);
 
-/* A lattice of unit cubes by 4 x 4 x 4 samples per cell, its corner at the origin. */
-static TEST_UNUSED lar_lattice solid_lattice(solid_function *region, int ni, int nj, int nk) {
-    lar_lattice lattice = {.cells = {ni, nj, nk}, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    lattice.size = 1;
+/* A grid of unit cubes by 4 x 4 x 4 samples per cell, its corner at the origin. */
+static TEST_UNUSED lar_voxel_grid solid_voxel_grid(solid_function *region, int ni, int nj, int nk) {
+    lar_voxel_grid voxel_grid = {.cells = {ni, nj, nk}, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    voxel_grid.size = 1;
     const size_t cells = (size_t)ni * (size_t)nj * (size_t)nk;
-    lattice.region = lar_calloc(cells, 1);
-    lattice.inner = lar_calloc(cells, 1);
-    lattice.share = lar_calloc(cells, 1);
-    assert_non_null(lattice.share);
+    voxel_grid.region = lar_calloc(cells, 1);
+    voxel_grid.inner = lar_calloc(cells, 1);
+    voxel_grid.share = lar_calloc(cells, 1);
+    assert_non_null(voxel_grid.share);
     for (size_t c = 0; c < cells; c++) {
         const int at[3] = {(int)(c % (size_t)ni), (int)(c / (size_t)ni % (size_t)nj),
                            (int)(c / (size_t)ni / (size_t)nj)};
-        int count[256] = {0}, most = 0;
+        int count[256] = {0}, max = 0;
         for (int s = 0; s < 64; s++) {
             const double x[3] = {at[0] + (s % 4 + 0.5) / 4, at[1] + (s / 4 % 4 + 0.5) / 4,
                                  at[2] + (s / 16 + 0.5) / 4};
             count[region(x)]++;
         }
         for (int r = 1; r < 256; r++)
-            if (count[r] > 0 && (most == 0 || count[r] > count[most])) most = r;
-        lattice.inner[c] = (uint8_t)most;
-        lattice.share[c] = (uint8_t)((64 - count[0]) * 255 / 64);
-        lattice.region[c] = (uint8_t)(count[0] > 32 ? 0 : most);
+            if (count[r] > 0 && (max == 0 || count[r] > count[max])) max = r;
+        voxel_grid.inner[c] = (uint8_t)max;
+        voxel_grid.share[c] = (uint8_t)((64 - count[0]) * 255 / 64);
+        voxel_grid.region[c] = (uint8_t)(count[0] > 32 ? 0 : max);
     }
-    return lattice;
+    return voxel_grid;
 }
 
-static TEST_UNUSED int64_t solid_cells(const lar_lattice *lattice) {
+static TEST_UNUSED int64_t solid_cells(const lar_voxel_grid *voxel_grid) {
     int64_t cells = 0;
     const size_t all =
-        (size_t)lattice->cells[0] * (size_t)lattice->cells[1] * (size_t)lattice->cells[2];
-    for (size_t c = 0; c < all; c++) cells += lattice->region[c] != 0;
+        (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
+    for (size_t c = 0; c < all; c++) cells += voxel_grid->region[c] != 0;
     return cells;
 }
 
@@ -137,14 +137,15 @@ static TEST_UNUSED solid_surface solid_judge(const lar_mesh *mesh, int32_t tag) 
     return surface;
 }
 
-/* The surface of a lattice's cells. */
-static TEST_UNUSED solid_surface solid_judge_lattice(const lar_lattice *lattice, int32_t region) {
+/* The surface of a grid's cells. */
+static TEST_UNUSED solid_surface solid_judge_voxel_grid(const lar_voxel_grid *voxel_grid,
+                                                        int32_t region) {
     lar_boundary none = {0};
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
     lar_error error;
-    assert_int_equal(lar_draft_create(lattice, &none, &draft, &error), LAR_OK);
-    const solid_surface surface = solid_judge(&draft.mesh, region);
-    lar_draft_clear(&draft);
+    assert_int_equal(lar_unfitted_create(voxel_grid, &none, &unfitted, &error), LAR_OK);
+    const solid_surface surface = solid_judge(&unfitted.mesh, region);
+    lar_unfitted_clear(&unfitted);
     return surface;
 }
 

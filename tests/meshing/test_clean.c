@@ -48,12 +48,12 @@ static int bar(const double x[3]) {
     return fabs(x[0] - 12) < 9 && fabs(x[1] - 12.5) < 0.6 && fabs(x[2] - 12.45) < 0.6;
 }
 
-static solid_surface cleaned(solid_function *function, lar_lattice *lattice,
+static solid_surface cleaned(solid_function *function, lar_voxel_grid *voxel_grid,
                              lar_cleaning *cleaning) {
     lar_error error;
-    *lattice = solid_lattice(function, 24, 24, 24);
-    if (lar_lattice_clean(lattice, cleaning, &error)) fail_msg("%s", error.message);
-    const solid_surface surface = solid_judge_lattice(lattice, 0);
+    *voxel_grid = solid_voxel_grid(function, 24, 24, 24);
+    if (lar_voxel_grid_clean(voxel_grid, cleaning, &error)) fail_msg("%s", error.message);
+    const solid_surface surface = solid_judge_voxel_grid(voxel_grid, 0);
     assert_manifold(surface);
     return surface;
 }
@@ -64,31 +64,31 @@ static void shapes_keep_their_topology(void **state) {
         const char *name;
         solid_function *function;
         int shells, euler;
-        double most; /* flipped, part of the cells */
+        double max; /* flipped, part of the cells */
     } shape[] = {{"ellipsoid", ellipsoid, 1, 2, 0.02},       {"torus", torus, 1, 0, 0.03},
                  {"box with a hole", holes, 1, 0, 0.01},     {"hollow ball", hollow, 2, 4, 0.02},
                  {"two balls", two_balls, 1, 2, 0.03},       {"sheet", thin_sheet, 1, 2, 0},
                  {"curved sheet", curved_sheet, 1, 2, 0.15}, {"bar", bar, 1, 2, 0}};
     for (size_t s = 0; s < sizeof shape / sizeof *shape; s++) {
-        lar_lattice lattice;
+        lar_voxel_grid voxel_grid;
         lar_cleaning cleaning;
-        const solid_surface surface = cleaned(shape[s].function, &lattice, &cleaning);
-        const double cells = (double)solid_cells(&lattice);
+        const solid_surface surface = cleaned(shape[s].function, &voxel_grid, &cleaning);
+        const double cells = (double)solid_cells(&voxel_grid);
         assert_int_equal(surface.shells, shape[s].shells);
         assert_int_equal(surface.euler, shape[s].euler);
-        assert_below(cleaning.added + cleaning.removed, shape[s].most * cells);
-        lar_lattice_clear(&lattice);
+        assert_below(cleaning.added + cleaning.removed, shape[s].max * cells);
+        lar_voxel_grid_clear(&voxel_grid);
     }
 }
 
 static void touching_balls_become_one_solid(void **state) {
     (void)state;
-    lar_lattice lattice;
+    lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
-    const solid_surface surface = cleaned(touching_balls, &lattice, &cleaning);
+    const solid_surface surface = cleaned(touching_balls, &voxel_grid, &cleaning);
     assert_int_equal(surface.euler, 2 * surface.shells);
     assert_in_range(surface.shells, 1, 2);
-    lar_lattice_clear(&lattice);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 /* A ball that a wavy surface divides: each region by itself is manifold too. */
@@ -99,19 +99,19 @@ static int two_regions(const double x[3]) {
 
 static void regions_are_manifold(void **state) {
     (void)state;
-    lar_lattice lattice = solid_lattice(two_regions, 24, 24, 24);
-    const solid_surface raw = solid_judge_lattice(&lattice, 2);
+    lar_voxel_grid voxel_grid = solid_voxel_grid(two_regions, 24, 24, 24);
+    const solid_surface raw = solid_judge_voxel_grid(&voxel_grid, 2);
     assert_true(raw.bad_edges + raw.bad_nodes > 0);
-    lar_lattice_clear(&lattice);
+    lar_voxel_grid_clear(&voxel_grid);
     lar_cleaning cleaning;
-    cleaned(two_regions, &lattice, &cleaning);
+    cleaned(two_regions, &voxel_grid, &cleaning);
     for (int32_t region = 1; region <= 2; region++) {
-        const solid_surface surface = solid_judge_lattice(&lattice, region);
+        const solid_surface surface = solid_judge_voxel_grid(&voxel_grid, region);
         assert_manifold(surface);
         assert_int_equal(surface.shells, 1);
         assert_int_equal(surface.euler, 2);
     }
-    lar_lattice_clear(&lattice);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 /* A large ball, one of 3 % beside it, and a speck; with a thin stalk between the balls, or none. */
@@ -126,16 +126,16 @@ static int balls_on_a_stalk(const double x[3]) {
 static void islands_are_joined_kept_or_left_out(void **state) {
     (void)state;
     for (int stalk = 0; stalk < 2; stalk++) {
-        lar_lattice lattice;
+        lar_voxel_grid voxel_grid;
         lar_cleaning cleaning;
         has_stalk = stalk;
-        const solid_surface surface = cleaned(balls_on_a_stalk, &lattice, &cleaning);
+        const solid_surface surface = cleaned(balls_on_a_stalk, &voxel_grid, &cleaning);
         assert_int_equal(surface.shells, stalk ? 1 : 2);
         assert_int_equal(surface.euler, stalk ? 2 : 4);
         assert_int_equal(cleaning.islands, 1);
         assert_int_equal(cleaning.island_cells, 1);
-        assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 20, 20, 20)], 0);
-        lar_lattice_clear(&lattice);
+        assert_int_equal(voxel_grid.region[lar_voxel_grid_cell(&voxel_grid, 20, 20, 20)], 0);
+        lar_voxel_grid_clear(&voxel_grid);
     }
 }
 
@@ -150,19 +150,19 @@ static int ball_with_specks(const double x[3]) {
 
 static void pinholes_are_filled(void **state) {
     (void)state;
-    lar_lattice lattice;
+    lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
-    const solid_surface surface = cleaned(ball_with_specks, &lattice, &cleaning);
+    const solid_surface surface = cleaned(ball_with_specks, &voxel_grid, &cleaning);
     assert_int_equal(surface.shells, 2);
     assert_int_equal(cleaning.pinholes, 1);
     assert_int_equal(cleaning.pinhole_cells, 4);
     assert_int_equal(cleaning.islands, 0);
-    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 7, 12, 12)], 1);
-    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 12, 12, 7)], 1);
-    assert_int_equal(lattice.region[lar_lattice_cell(&lattice, 15, 12, 13)], 0);
-    assert_manifold(solid_judge_lattice(&lattice, 1));
-    assert_manifold(solid_judge_lattice(&lattice, 2));
-    lar_lattice_clear(&lattice);
+    assert_int_equal(voxel_grid.region[lar_voxel_grid_cell(&voxel_grid, 7, 12, 12)], 1);
+    assert_int_equal(voxel_grid.region[lar_voxel_grid_cell(&voxel_grid, 12, 12, 7)], 1);
+    assert_int_equal(voxel_grid.region[lar_voxel_grid_cell(&voxel_grid, 15, 12, 13)], 0);
+    assert_manifold(solid_judge_voxel_grid(&voxel_grid, 1));
+    assert_manifold(solid_judge_voxel_grid(&voxel_grid, 2));
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 static int nothing(const double x[3]) {
@@ -175,27 +175,27 @@ static void noise_ends_manifold(void **state) {
     (void)state;
     uint32_t random = 12345;
     for (int seed = 0; seed < 200; seed++) {
-        lar_lattice lattice = solid_lattice(nothing, 10, 9, 8);
+        lar_voxel_grid voxel_grid = solid_voxel_grid(nothing, 10, 9, 8);
         const uint32_t level = (uint32_t)(20 + seed % 8 * 30), regions = 1 + (uint32_t)seed % 3;
         for (int k = 1; k < 7; k++)
             for (int j = 1; j < 8; j++)
                 for (int i = 1; i < 9; i++) {
-                    const size_t c = lar_lattice_cell(&lattice, i, j, k);
+                    const size_t c = lar_voxel_grid_cell(&voxel_grid, i, j, k);
                     random = random * 1664525u + 1013904223u;
-                    lattice.share[c] = (uint8_t)(random >> 24);
-                    lattice.inner[c] =
-                        (uint8_t)(lattice.share[c] ? 1 + (random >> 16 & 0xff) % regions : 0);
-                    lattice.region[c] = lattice.share[c] > level ? lattice.inner[c] : 0;
+                    voxel_grid.share[c] = (uint8_t)(random >> 24);
+                    voxel_grid.inner[c] =
+                        (uint8_t)(voxel_grid.share[c] ? 1 + (random >> 16 & 0xff) % regions : 0);
+                    voxel_grid.region[c] = voxel_grid.share[c] > level ? voxel_grid.inner[c] : 0;
                 }
         lar_cleaning cleaning;
         lar_error error;
-        const lar_status status = lar_lattice_clean(&lattice, &cleaning, &error);
-        for (int c = 0; c < 90; c++) assert_int_equal(lattice.region[c], 0);
+        const lar_status status = lar_voxel_grid_clean(&voxel_grid, &cleaning, &error);
+        for (int c = 0; c < 90; c++) assert_int_equal(voxel_grid.region[c], 0);
         if (status == LAR_OK)
-            assert_manifold(solid_judge_lattice(&lattice, 0));
+            assert_manifold(solid_judge_voxel_grid(&voxel_grid, 0));
         else
             assert_int_equal(status, LAR_ERROR_MODEL);
-        lar_lattice_clear(&lattice);
+        lar_voxel_grid_clear(&voxel_grid);
     }
 }
 

@@ -124,11 +124,11 @@ static void test_clearance(void **state) {
             if (lar_faces_cross(at, first, name, gap) > 0) assert_true(clearance == 0);
             for (int w = 0; clearance > 0 && w < WAYS; w++) {
                 const double part = chance(&seed),
-                             most[2] = {part * clearance, (1 - part) * clearance};
+                             max[2] = {part * clearance, (1 - part) * clearance};
                 for (int k = 0; k < 8; k++) {
                     /* A node of both faces goes no farther than the shorter way. */
                     const bool both = (shared > 0 && k == 0) || (shared > 1 && k == 3);
-                    const double far = both ? fmin(most[0], most[1]) : most[k / 4];
+                    const double far = both ? fmin(max[0], max[1]) : max[k / 4];
                     const double z = 2 * chance(&seed) - 1, turn = 6.2831853 * chance(&seed);
                     const double r = sqrt(1 - z * z);
                     const double way[3] = {r * cos(turn), r * sin(turn), z};

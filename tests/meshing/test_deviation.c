@@ -51,7 +51,7 @@ static void a_ball_of_faces_in_a_sphere(void **state) {
         /* How far the bilinear faces lie inside the sphere, by a walk over them. */
         int32_t *face, count;
         lar_error error;
-        double mean = 0, area = 0, most = 0;
+        double mean = 0, area = 0, max = 0;
         assert_int_equal(lar_mesh_boundary(&mesh, &face, &count, &error), LAR_OK);
         for (int32_t f = 0; f < count; f++)
             for (int s = 0; s < 400; s++) {
@@ -73,14 +73,14 @@ static void a_ball_of_faces_in_a_sphere(void **state) {
                 const double distance = 1 - hypot(hypot(x[0], x[1]), x[2]);
                 area += own;
                 mean += own * distance;
-                most = fmax(most, distance);
+                max = fmax(max, distance);
             }
         mean /= area;
         const lar_deviation deviation = deviation_of(&mesh, &sphere);
         /* The sphere's own triangles lie up to 1e-4 inside. */
         assert_below(fabs(deviation.mean - mean), 0.02 * mean + 1e-4);
-        assert_below(fabs(deviation.hausdorff - most), 0.03 * most + 1e-4);
-        assert_true(deviation.mean < deviation.most_95 && deviation.most_95 <= deviation.hausdorff);
+        assert_below(fabs(deviation.hausdorff - max), 0.03 * max + 1e-4);
+        assert_true(deviation.mean < deviation.max_95 && deviation.max_95 <= deviation.hausdorff);
         free(face);
         lar_mesh_clear(&mesh);
     }
@@ -119,12 +119,12 @@ static void squares_apart(void **state) {
     (void)state;
     lar_deviation deviation = top_against_square(0, 0.25);
     assert_below(fabs(deviation.mean - 0.25), 1e-12);
-    assert_below(fabs(deviation.most_95 - 0.25), 1e-12);
+    assert_below(fabs(deviation.max_95 - 0.25), 1e-12);
     assert_below(fabs(deviation.hausdorff - 0.25), 1e-12);
     /* Shifted in its own plane: the strip beside has distances 0 .. s, in both directions. */
     deviation = top_against_square(0.5, 0);
     assert_below(fabs(deviation.mean - 0.125), 0.01);
-    assert_below(fabs(deviation.most_95 - 0.45), 0.03);
+    assert_below(fabs(deviation.max_95 - 0.45), 0.03);
     assert_below(fabs(deviation.hausdorff - 0.5), 1e-12);
 }
 
@@ -152,13 +152,13 @@ static void jacobians(void **state) {
     assert_below(fabs(jacobians.above_05 - high / 216.0), 1e-12);
     double corner[8][3];
     lar_mesh_corners(&mesh, jacobians.worst, corner);
-    assert_true(lar_scaled_jacobian((const double(*)[3])corner) == jacobians.least);
-    assert_true(jacobians.least < jacobians.mean && jacobians.mean < 1);
+    assert_true(lar_scaled_jacobian((const double(*)[3])corner) == jacobians.min);
+    assert_true(jacobians.min < jacobians.mean && jacobians.mean < 1);
     /* Turned inside out all are in the first bin. */
     for (int n = 0; n < mesh.node_count; n++) mesh.position[n][0] = -mesh.position[n][0];
     lar_jacobians_count(&mesh, &jacobians);
     assert_int_equal(jacobians.bin[0], 216);
-    assert_true(jacobians.above_02 == 0 && jacobians.least < 0);
+    assert_true(jacobians.above_02 == 0 && jacobians.min < 0);
     lar_mesh_clear(&mesh);
 }
 

@@ -20,7 +20,7 @@ static lar_mesh cube_mesh(double (*x)[3], int32_t (*element)[8], double distorti
 /* The largest difference to the production element's forces under small displacements, over the
  * largest force. `linear`: displacements of a linear field, otherwise any. */
 static double difference(double distortion, bool linear) {
-    double x[8][3], u[8][3], exact[8][3], matrix[24][24], most = 0, apart = 0;
+    double x[8][3], u[8][3], exact[8][3], matrix[24][24], max = 0, apart = 0;
     int32_t element[1][8];
     const bool held[8] = {true};
     const lar_elastic_material soft = {G, K};
@@ -40,11 +40,11 @@ static double difference(double distortion, bool linear) {
     for (int row = 0; row < 24; row++) {
         double sum = 0;
         for (int k = 0; k < 24; k++) sum += matrix[row][k] * u[k / 3][k % 3];
-        most = fmax(most, fabs(exact[row / 3][row % 3]));
+        max = fmax(max, fabs(exact[row / 3][row % 3]));
         apart = fmax(apart, fabs(sum - exact[row / 3][row % 3]));
     }
     lar_elastic_clear(&elastic);
-    return apart / most;
+    return apart / max;
 }
 
 static void it_is_the_production_element(void **state) {

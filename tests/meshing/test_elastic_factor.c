@@ -11,11 +11,11 @@
 
 #include "meshing/starter/elastic_factor.h"
 
-enum { MOST = 40, ROWS = MOST * LAR_BLOCK };
+enum { MAX = 40, ROWS = MAX * LAR_FACTOR_BLOCK };
 
 typedef struct problem {
-    int32_t count, place[MOST];
-    int32_t pair[8 * MOST][2];
+    int32_t count, place[MAX];
+    int32_t pair[8 * MAX][2];
     size_t pairs;
     double dense[ROWS][ROWS]; /* by columns of the factor */
     lar_factor factor;
@@ -34,7 +34,7 @@ static void know(problem *p, int32_t a, int32_t b) {
 }
 
 static void lay(problem *p) {
-    bool taken[MOST] = {false};
+    bool taken[MAX] = {false};
     assert_int_equal(lar_factor_lay(p->count, (const int32_t(*)[2])p->pair, p->pairs, p->place,
                                     &p->factor, &p->error),
                      LAR_OK);
@@ -46,7 +46,7 @@ static void lay(problem *p) {
 }
 
 static void put(problem *p, int32_t row, int32_t column, int i, int k, double value) {
-    const int32_t r = row * LAR_BLOCK + i, c = column * LAR_BLOCK + k;
+    const int32_t r = row * LAR_FACTOR_BLOCK + i, c = column * LAR_FACTOR_BLOCK + k;
     if (row < column || (row == column && i < k)) return;
     (*lar_factor_at(&p->factor, row, column))[i][k] += value;
     p->dense[r][c] += value;
@@ -56,27 +56,27 @@ static void put(problem *p, int32_t row, int32_t column, int i, int k, double va
 /* Each pair is held together by springs v v^T, each unknown to the ground by some stiffness. */
 static void fill(problem *p, uint32_t seed, double ground) {
     for (size_t s = 0; s < p->pairs; s++)
-        for (int spring = 0; spring < LAR_BLOCK; spring++) {
-            double v[2][LAR_BLOCK];
+        for (int spring = 0; spring < LAR_FACTOR_BLOCK; spring++) {
+            double v[2][LAR_FACTOR_BLOCK];
             const int32_t at[2] = {p->place[p->pair[s][0]], p->place[p->pair[s][1]]};
             for (int e = 0; e < 2; e++)
-                for (int i = 0; i < LAR_BLOCK; i++) v[e][i] = any(&seed);
+                for (int i = 0; i < LAR_FACTOR_BLOCK; i++) v[e][i] = any(&seed);
             for (int e = 0; e < 2; e++)
                 for (int f = 0; f < 2; f++)
-                    for (int i = 0; i < LAR_BLOCK; i++)
-                        for (int k = 0; k < LAR_BLOCK; k++)
+                    for (int i = 0; i < LAR_FACTOR_BLOCK; i++)
+                        for (int k = 0; k < LAR_FACTOR_BLOCK; k++)
                             put(p, at[e], at[f], i, k, v[e][i] * v[f][k]);
         }
     for (int32_t n = 0; n < p->count; n++)
-        for (int i = 0; i < LAR_BLOCK; i++) put(p, n, n, i, i, ground);
+        for (int i = 0; i < LAR_FACTOR_BLOCK; i++) put(p, n, n, i, i, ground);
 }
 
 /* The largest that is left of the loads. */
 static double solve(problem *p) {
     static lar_loads x[ROWS], f[ROWS];
     uint32_t seed = 5;
-    double most = 0;
-    const int32_t rows = p->count * LAR_BLOCK;
+    double max = 0;
+    const int32_t rows = p->count * LAR_FACTOR_BLOCK;
     for (int32_t r = 0; r < rows; r++)
         for (int l = 0; l < LAR_LOADS; l++) x[r][l] = f[r][l] = any(&seed);
     lar_factor_solve(&p->factor, x);
@@ -84,9 +84,9 @@ static double solve(problem *p) {
         for (int l = 0; l < LAR_LOADS; l++) {
             double left = f[r][l];
             for (int32_t c = 0; c < rows; c++) left -= p->dense[r][c] * x[c][l];
-            most = fmax(most, fabs(left));
+            max = fmax(max, fabs(left));
         }
-    return most;
+    return max;
 }
 
 static void check(problem *p, uint32_t seed) {
@@ -102,11 +102,11 @@ static void it_solves_what_a_dense_matrix_says(void **state) {
     for (uint32_t seed = 1; seed < 8; seed++) {
         static problem p;
         memset(&p, 0, sizeof p);
-        p.count = MOST;
+        p.count = MAX;
         uint32_t next = seed;
-        for (int k = 0; k < 3 * MOST; k++) {
-            int32_t a = (int32_t)((any(&next) + 1) / 2 * MOST);
-            int32_t b = (int32_t)((any(&next) + 1) / 2 * MOST);
+        for (int k = 0; k < 3 * MAX; k++) {
+            int32_t a = (int32_t)((any(&next) + 1) / 2 * MAX);
+            int32_t b = (int32_t)((any(&next) + 1) / 2 * MAX);
             if (a != b) know(&p, a, b); /* some twice, some in both directions */
         }
         check(&p, seed);
@@ -118,11 +118,11 @@ static void a_star_and_a_chain_stay_as_sparse_as_they_are(void **state) {
     static problem p;
     for (int star = 0; star < 2; star++) {
         memset(&p, 0, sizeof p);
-        p.count = MOST;
+        p.count = MAX;
         /* In their own order the hub, first, would make all others know each other. */
-        for (int32_t i = 1; i < MOST; i++) know(&p, star ? 0 : i - 1, i);
+        for (int32_t i = 1; i < MAX; i++) know(&p, star ? 0 : i - 1, i);
         lay(&p);
-        assert_int_equal(p.factor.start[MOST], 2 * MOST - 1);
+        assert_int_equal(p.factor.start[MAX], 2 * MAX - 1);
         lar_factor_clear(&p.factor);
         check(&p, 3);
     }
@@ -148,22 +148,23 @@ static void pieces_and_single_ones_are_solved_each_for_itself(void **state) {
 /* A number that follows from another one has no stiffness of its own. */
 static void what_depends_on_others_is_left_out(void **state) {
     (void)state;
-    static lar_loads x[2 * LAR_BLOCK];
+    static lar_loads x[2 * LAR_FACTOR_BLOCK];
     static problem p;
     memset(&p, 0, sizeof p);
     p.count = 2;
     know(&p, 0, 1);
     lay(&p);
     for (int n = 0; n < 2; n++)
-        for (int i = 0; i < LAR_BLOCK - 1; i++) put(&p, n, n, i, i, 2);
+        for (int i = 0; i < LAR_FACTOR_BLOCK - 1; i++) put(&p, n, n, i, i, 2);
     put(&p, 1, 0, 2, 1, 2); /* 2 of column 1 is 1 of column 0 again */
     assert_int_equal(lar_factor_compute(&p.factor, &p.error), LAR_OK);
-    for (int r = 0; r < 2 * LAR_BLOCK; r++)
+    for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
         for (int l = 0; l < LAR_LOADS; l++) x[r][l] = 1;
     lar_factor_solve(&p.factor, x);
-    for (int r = 0; r < 2 * LAR_BLOCK; r++)
+    for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
         for (int l = 0; l < LAR_LOADS; l++) {
-            const bool left_out = r % LAR_BLOCK == LAR_BLOCK - 1 || r == LAR_BLOCK + 2;
+            const bool left_out =
+                r % LAR_FACTOR_BLOCK == LAR_FACTOR_BLOCK - 1 || r == LAR_FACTOR_BLOCK + 2;
             assert_true(fabs(x[r][l] - (left_out ? 0 : 0.5)) < 1e-12);
         }
     lar_factor_clear(&p.factor);

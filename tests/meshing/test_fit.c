@@ -14,7 +14,7 @@
 
 typedef struct fitted {
     lar_boundary boundary;
-    lar_draft_mesh draft;
+    lar_unfitted_mesh unfitted;
 } fitted;
 
 static void take_image(fitted *body, lar_image *image) {
@@ -46,24 +46,24 @@ static void begin_surface(fitted *body, lar_triangles *surface) {
         fail_msg("%s", error.message);
 }
 
-static void make_draft(fitted *body, double size) {
+static void make_unfitted(fitted *body, double size) {
     lar_error error = {0};
-    lar_lattice lattice = {0};
+    lar_voxel_grid voxel_grid = {0};
     lar_cleaning cleaning;
-    if (lar_lattice_fill(&body->boundary, size, &lattice, &error) ||
-        lar_lattice_clean(&lattice, &cleaning, &error) ||
-        lar_draft_create(&lattice, &body->boundary, &body->draft, &error))
+    if (lar_voxel_grid_fill(&body->boundary, size, &voxel_grid, &error) ||
+        lar_voxel_grid_clean(&voxel_grid, &cleaning, &error) ||
+        lar_unfitted_create(&voxel_grid, &body->boundary, &body->unfitted, &error))
         fail_msg("%s", error.message);
-    lar_lattice_clear(&lattice);
+    lar_voxel_grid_clear(&voxel_grid);
 }
 
 static void fit(fitted *body) {
     lar_error error = {0};
-    if (lar_fit(&body->boundary, &body->draft, NULL, &error)) fail_msg("%s", error.message);
+    if (lar_fit(&body->boundary, &body->unfitted, NULL, &error)) fail_msg("%s", error.message);
 }
 
 static void end(fitted *body) {
-    lar_draft_clear(&body->draft);
+    lar_unfitted_clear(&body->unfitted);
     lar_boundary_clear(&body->boundary);
 }
 
@@ -83,25 +83,25 @@ static double deviation_of(const fitted *body) {
     lar_deviation deviation;
     int32_t *face = NULL, count;
     if (lar_boundary_outer(&body->boundary, &outer, &error) ||
-        lar_mesh_boundary(&body->draft.mesh, &face, &count, &error) ||
-        lar_deviation_measure(&body->draft.mesh, face, count, &outer, &deviation, &error))
+        lar_mesh_boundary(&body->unfitted.mesh, &face, &count, &error) ||
+        lar_deviation_measure(&body->unfitted.mesh, face, count, &outer, &deviation, &error))
         fail_msg("%s", error.message);
     free(face);
     lar_triangles_clear(&outer);
-    return deviation.mean / body->draft.size;
+    return deviation.mean / body->unfitted.size;
 }
 
 /* Pairs of the mesh's outer faces that go through each other. */
 static int32_t crossings_of(const fitted *body) {
     lar_error error = {0};
     lar_mesh_quality quality = {0};
-    if (lar_quality_measure(&body->draft.mesh, NULL, &quality, &error))
+    if (lar_quality_measure(&body->unfitted.mesh, NULL, &quality, &error))
         fail_msg("%s", error.message);
     return quality.crossings;
 }
 
 static double shortest_edge(const fitted *body) {
-    const lar_mesh *mesh = &body->draft.mesh;
+    const lar_mesh *mesh = &body->unfitted.mesh;
     double shortest = INFINITY;
     for (int32_t e = 0; e < mesh->element_count; e++)
         for (int a = 0; a < 8; a++)
@@ -111,28 +111,28 @@ static double shortest_edge(const fitted *body) {
                           mesh->position[mesh->element[e][a]], edge);
                 shortest = fmin(shortest, lar_length(edge));
             }
-    return shortest / body->draft.size;
+    return shortest / body->unfitted.size;
 }
 
 static void assert_good_elements(const fitted *body) {
     lar_jacobians jacobians;
-    lar_jacobians_count(&body->draft.mesh, &jacobians);
-    assert_below(0.25, jacobians.least);
+    lar_jacobians_count(&body->unfitted.mesh, &jacobians);
+    assert_below(0.25, jacobians.min);
     assert_below(0.95, jacobians.above_05);
     assert_below(0.2, shortest_edge(body));
 }
 
-static void assert_region_volumes(const fitted *body, double most) {
+static void assert_region_volumes(const fitted *body, double max) {
     for (int r = 1; r <= body->boundary.region_count; r++) {
         double wanted = body->boundary.region[r].volume;
-        assert_below(fabs(region_volume(&body->draft.mesh, r) - wanted) / wanted, most);
+        assert_below(fabs(region_volume(&body->unfitted.mesh, r) - wanted) / wanted, max);
     }
 }
 
 /* ---- shapes --------------------------------------------------------------------------------- */
 
 static void fit_and_check(fitted *body, double size) {
-    make_draft(body, size);
+    make_unfitted(body, size);
     fit(body);
     assert_good_elements(body);
     assert_region_volumes(body, 0.002);
@@ -182,9 +182,9 @@ static void test_box_with_a_hole(void **state) {
     fit_and_check(&body, 3.7e-3);
 }
 
-static bool node_meets(const lar_draft_mesh *draft, int32_t node, int a, int b) {
-    for (int32_t i = draft->meet_start[node]; i < draft->meet_start[node + 1]; i++)
-        if (draft->meet[i][0] == a && draft->meet[i][1] == b) return true;
+static bool node_meets(const lar_unfitted_mesh *unfitted, int32_t node, int a, int b) {
+    for (int32_t i = unfitted->meet_start[node]; i < unfitted->meet_start[node + 1]; i++)
+        if (unfitted->meet[i][0] == a && unfitted->meet[i][1] == b) return true;
     return false;
 }
 
@@ -194,15 +194,15 @@ static void test_touching_balls(void **state) {
     (void)state;
     fitted body;
     begin_image(&body, &shape_balls);
-    make_draft(&body, 3.7e-3);
+    make_unfitted(&body, 3.7e-3);
     fit(&body);
     assert_good_elements(&body);
     assert_region_volumes(&body, 0.005);
     assert_below(deviation_of(&body), 0.08);
     int nodes = 0;
-    for (int32_t n = 0; n < body.draft.mesh.node_count; n++) {
-        if (!node_meets(&body.draft, n, 1, 2)) continue;
-        assert_below(fabs(body.draft.mesh.position[n][0]) / body.draft.size, 0.2);
+    for (int32_t n = 0; n < body.unfitted.mesh.node_count; n++) {
+        if (!node_meets(&body.unfitted, n, 1, 2)) continue;
+        assert_below(fabs(body.unfitted.mesh.position[n][0]) / body.unfitted.size, 0.2);
         nodes++;
     }
     assert_in_range(nodes, 40, 140);
@@ -232,19 +232,20 @@ static void test_flat_cut_stays_sharp(void **state) {
     const int cut = LAR_REGION_CUT + 5;
     const double plane = 0.004;
     assert_string_equal(body.boundary.cut[5].name, "top");
-    make_draft(&body, 2.7e-3);
+    make_unfitted(&body, 2.7e-3);
     fit(&body);
     assert_good_elements(&body);
     assert_region_volumes(&body, 0.005);
     int on_cut = 0, rim = 0;
-    for (int32_t n = 0; n < body.draft.mesh.node_count; n++) {
-        const double *x = body.draft.mesh.position[n];
-        if (!node_meets(&body.draft, n, 1, cut)) continue;
-        assert_below(fabs(x[2] - plane) / body.draft.size, 0.05);
+    for (int32_t n = 0; n < body.unfitted.mesh.node_count; n++) {
+        const double *x = body.unfitted.mesh.position[n];
+        if (!node_meets(&body.unfitted, n, 1, cut)) continue;
+        assert_below(fabs(x[2] - plane) / body.unfitted.size, 0.05);
         on_cut++;
-        if (!node_meets(&body.draft, n, 0, 1)) continue;
-        assert_below(
-            fabs(hypot(x[0], x[1]) - sqrt(0.020 * 0.020 - plane * plane)) / body.draft.size, 0.25);
+        if (!node_meets(&body.unfitted, n, 0, 1)) continue;
+        assert_below(fabs(hypot(x[0], x[1]) - sqrt(0.020 * 0.020 - plane * plane)) /
+                         body.unfitted.size,
+                     0.25);
         rim++;
     }
     assert_in_range(rim, 30, 70);
@@ -280,11 +281,11 @@ static void test_thin_region(void **state) {
     for (int s = 0; s < 2; s++) {
         fitted body;
         begin_label(&body, label[s], size, spacing);
-        make_draft(&body, 4e-3);
+        make_unfitted(&body, 4e-3);
         fit(&body);
         lar_jacobians jacobians;
-        lar_jacobians_count(&body.draft.mesh, &jacobians);
-        assert_below(0.25, jacobians.least);
+        lar_jacobians_count(&body.unfitted.mesh, &jacobians);
+        assert_below(0.25, jacobians.min);
         assert_below(0.9, jacobians.above_05);
         assert_region_volumes(&body, 0.005);
         assert_below(deviation_of(&body), 0.15);
@@ -307,11 +308,11 @@ static void check_block(int (*label)(const double x[3]), double edge) {
     const double spacing[3] = {1e-3, 1e-3, 1e-3};
     fitted body;
     begin_label(&body, label, size, spacing);
-    make_draft(&body, edge);
+    make_unfitted(&body, edge);
     fit(&body);
     lar_jacobians jacobians;
-    lar_jacobians_count(&body.draft.mesh, &jacobians);
-    assert_below(0.75, jacobians.least);
+    lar_jacobians_count(&body.unfitted.mesh, &jacobians);
+    assert_below(0.75, jacobians.min);
     assert_int_equal(crossings_of(&body), 0);
     end(&body);
 }
@@ -343,8 +344,8 @@ static void test_walls_of_a_slot_stay_apart(void **state) {
     for (int without = 0; without < 2; without++) {
         fitted body;
         begin_label(&body, slotted_block, size, spacing);
-        make_draft(&body, 4e-3);
-        if (without) body.draft.slot_count = 0;
+        make_unfitted(&body, 4e-3);
+        if (without) body.unfitted.slot_count = 0;
         fit(&body);
         assert_good_elements(&body);
         assert_region_volumes(&body, 0.005);
@@ -373,18 +374,18 @@ static void test_faces_of_real_organs_stay_apart(void **state) {
     for (size_t i = 0; i < sizeof organ / sizeof *organ; i += (size_t)test_every(3)) {
         fitted body = {0};
         lar_image image = {0};
-        lar_lattice lattice = {0};
+        lar_voxel_grid voxel_grid = {0};
         lar_cleaning cleaning;
         lar_error error = {0};
         if (lar_image_read(path, &image, &error)) fail_msg("%s", error.message);
         const lar_label_choice choice = {1, &organ[i], false};
         if (lar_boundary_from_image(&image, &choice, &body.boundary, &error) ||
-            lar_lattice_fill_count(&body.boundary, 1000, &lattice, &error) ||
-            lar_lattice_clean(&lattice, &cleaning, &error) ||
-            lar_draft_create(&lattice, &body.boundary, &body.draft, &error))
+            lar_voxel_grid_fill_count(&body.boundary, 1000, &voxel_grid, &error) ||
+            lar_voxel_grid_clean(&voxel_grid, &cleaning, &error) ||
+            lar_unfitted_create(&voxel_grid, &body.boundary, &body.unfitted, &error))
             fail_msg("%s", error.message);
         lar_image_clear(&image);
-        lar_lattice_clear(&lattice);
+        lar_voxel_grid_clear(&voxel_grid);
         fit(&body);
         assert_good_elements(&body);
         assert_region_volumes(&body, 0.003);
@@ -401,7 +402,7 @@ static void begin_small(fitted *body) {
     const double centre[3] = {0, 0, 0};
     shape_torus_surface(&surface, 0.022, 0.008, centre, 16);
     begin_surface(body, &surface);
-    make_draft(body, 4.5e-3);
+    make_unfitted(body, 4.5e-3);
 }
 
 static void test_same_bits_twice(void **state) {
@@ -411,9 +412,9 @@ static void test_same_bits_twice(void **state) {
     begin_small(&two);
     fit(&one);
     fit(&two);
-    assert_int_equal(one.draft.mesh.node_count, two.draft.mesh.node_count);
-    assert_memory_equal(one.draft.mesh.position, two.draft.mesh.position,
-                        (size_t)one.draft.mesh.node_count * sizeof *one.draft.mesh.position);
+    assert_int_equal(one.unfitted.mesh.node_count, two.unfitted.mesh.node_count);
+    assert_memory_equal(one.unfitted.mesh.position, two.unfitted.mesh.position,
+                        (size_t)one.unfitted.mesh.node_count * sizeof *one.unfitted.mesh.position);
     end(&one);
     end(&two);
 }
@@ -424,29 +425,29 @@ typedef struct witness {
     bool ordered;
 } witness;
 
-static bool witness_watch(void *context, double part) {
+static bool witness_progress(void *context, double part) {
     witness *seen = context;
     seen->ordered = seen->ordered && part >= seen->last && part <= 1;
     seen->last = part;
     return ++seen->calls != seen->stop_at;
 }
 
-static void test_watch_is_told_and_stops(void **state) {
+static void progress_is_told_and_stops(void **state) {
     (void)state;
     fitted body;
     lar_error error = {0};
     witness seen = {.ordered = true};
-    lar_fit_options options = {.watch = witness_watch, .context = &seen};
+    lar_fit_options options = {.progress = witness_progress, .context = &seen};
     begin_small(&body);
     double first[3];
-    memcpy(first, body.draft.mesh.position[0], sizeof first);
+    memcpy(first, body.unfitted.mesh.position[0], sizeof first);
     seen.stop_at = 3;
-    assert_int_equal(lar_fit(&body.boundary, &body.draft, &options, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_fit(&body.boundary, &body.unfitted, &options, &error), LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "stopped"));
     assert_int_equal(seen.calls, 3);
-    assert_memory_equal(first, body.draft.mesh.position[0], sizeof first); /* left as it was */
+    assert_memory_equal(first, body.unfitted.mesh.position[0], sizeof first); /* left as it was */
     seen = (witness){.ordered = true};
-    assert_int_equal(lar_fit(&body.boundary, &body.draft, &options, &error), LAR_OK);
+    assert_int_equal(lar_fit(&body.boundary, &body.unfitted, &options, &error), LAR_OK);
     assert_true(seen.ordered);
     assert_in_range(seen.calls, 5, 1000);
     end(&body);
@@ -463,10 +464,10 @@ static void test_floor_and_aim_are_kept(void **state) {
     for (int k = 0; k < 2; k++) {
         fitted strict;
         begin_small(&strict);
-        assert_int_equal(lar_fit(&strict.boundary, &strict.draft, &options[k], &error), LAR_OK);
+        assert_int_equal(lar_fit(&strict.boundary, &strict.unfitted, &options[k], &error), LAR_OK);
         lar_jacobians jacobians;
-        lar_jacobians_count(&strict.draft.mesh, &jacobians);
-        assert_below(0.7, jacobians.least);
+        lar_jacobians_count(&strict.unfitted.mesh, &jacobians);
+        assert_below(0.7, jacobians.min);
         assert_below(deviation_of(&usual), deviation_of(&strict));
         end(&strict);
     }
@@ -478,13 +479,13 @@ static void test_inverted_element_is_refused(void **state) {
     fitted body;
     lar_error error = {0};
     begin_small(&body);
-    int32_t *node = body.draft.mesh.element[5];
+    int32_t *node = body.unfitted.mesh.element[5];
     for (int a = 0; a < 4; a++) {
         int32_t lower = node[a];
         node[a] = node[a + 4];
         node[a + 4] = lower;
     }
-    assert_int_equal(lar_fit(&body.boundary, &body.draft, NULL, &error), LAR_ERROR_MODEL);
+    assert_int_equal(lar_fit(&body.boundary, &body.unfitted, NULL, &error), LAR_ERROR_MODEL);
     assert_non_null(strstr(error.message, "without volume"));
     end(&body);
 }
@@ -597,7 +598,7 @@ int main(void) {
         cmocka_unit_test(test_walls_of_a_slot_stay_apart),
         cmocka_unit_test(test_faces_of_real_organs_stay_apart),
         cmocka_unit_test(test_same_bits_twice),
-        cmocka_unit_test(test_watch_is_told_and_stops),
+        cmocka_unit_test(progress_is_told_and_stops),
         cmocka_unit_test(test_floor_and_aim_are_kept),
         cmocka_unit_test(test_inverted_element_is_refused),
         cmocka_unit_test(test_energy_and_its_derivatives),

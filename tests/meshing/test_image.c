@@ -45,7 +45,7 @@ static void by_extension(void **state) {
     lar_error error = {0};
     if (lar_image_read(FOLDER "/a.seg.NRRD", &image, &error)) fail_msg("%s", error.message);
     expect_labels(&image, U8);
-    static int64_t count[LAR_IMAGE_LABEL_MOST + 1];
+    static int64_t count[LAR_IMAGE_LABEL_MAX + 1];
     count[77] = 1;
     lar_image_count(&image, count);
     assert_int_equal(count[0], 4);
@@ -248,10 +248,10 @@ static void brain(void **state) {
     assert_int_equal(image.size[1], 217);
     assert_int_equal(image.size[2], 181);
     assert_below(fabs(lar_image_voxel_volume(&image) - 1e-9), 1e-17);
-    static int64_t count[LAR_IMAGE_LABEL_MOST + 1];
+    static int64_t count[LAR_IMAGE_LABEL_MAX + 1];
     lar_image_count(&image, count);
     int labels = 0;
-    for (int l = 1; l <= LAR_IMAGE_LABEL_MOST; l++) labels += count[l] > 0;
+    for (int l = 1; l <= LAR_IMAGE_LABEL_MAX; l++) labels += count[l] > 0;
     assert_int_equal(labels, 41);
     double motor[3], visual[3];
     centre_of(&image, 4, motor); /* Brodmann's areas 4 and 17: on top, and at the back */

@@ -74,8 +74,8 @@ static void check_quality(const lar_meshing_info *info, double true_volume) {
     assert_below(fabs(q->volume / q->true_volume - 1), 0.02);
     assert_below(q->deviation_mean, 0.15 * info->size);
     assert_true(q->deviation_mean > 0);
-    assert_true(q->deviation_mean <= q->deviation_most);
-    assert_true(q->deviation_95 <= q->deviation_most);
+    assert_true(q->deviation_mean <= q->deviation_max);
+    assert_true(q->deviation_95 <= q->deviation_max);
     assert_below(fabs(q->mean_edge / info->size - 1), 0.2);
 }
 
@@ -245,27 +245,27 @@ static void what_makes_no_sense_is_refused(void **state) {
 }
 
 typedef struct patience {
-    int told, most;
+    int told, max;
 } patience;
 
-static int watch(void *context, const char *what, double part) {
+static int progress(void *context, const char *what, double part) {
     patience *p = context;
     assert_true(*what && part >= 0 && part <= 1);
-    return p->told++ < p->most;
+    return p->told++ < p->max;
 }
 
 static void it_can_be_stopped(void **state) {
     (void)state;
     static const char *const image[] = {ELLIPSOID};
-    patience p = {.most = 1000000};
-    lar_meshing_options o = {.elements = 200, .watch = watch, .context = &p};
+    patience p = {.max = 1000000};
+    lar_meshing_options o = {.elements = 200, .progress = progress, .context = &p};
     lar_meshing_destroy(made(ELLIPSOID, &o));
     int all = p.told;
     assert_true(all >= 5);
-    for (int most = 0; most<all; most += all> 20 ? all / 10 : 1) {
-        p = (patience){.most = most};
+    for (int max = 0; max<all; max += all> 20 ? all / 10 : 1) {
+        p = (patience){.max = max};
         refused(image, 1, &o, LAR_ERROR_ARGUMENT, "stopped");
-        assert_int_equal(p.told, most + 1);
+        assert_int_equal(p.told, max + 1);
     }
 }
 

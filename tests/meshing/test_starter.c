@@ -204,8 +204,8 @@ static double way_of_handle(int32_t elements) {
     return way / length;
 }
 
-/* A pancreas has a thin end, whose elements have another cross-section on every mesh, and pads near
- * it; the way is the same. */
+/* A pancreas has a thin end, whose elements have another cross-section on every mesh, and extra
+ * supports near it; the way is the same. */
 static void a_pull_is_alike_on_every_mesh(void **state) {
     (void)state;
     static const int32_t elements[] = {500, 1000, 2500};
@@ -243,18 +243,18 @@ static void a_thin_body_is_at_rest_at_the_end(void **state) {
     lar_model_destroy(model);
 }
 
-/* What holds it without being told bears its weight, from wherever it comes: a thin ring gets pads
- * for it. */
+/* What holds it without being told bears its weight, from wherever it comes: a thin ring gets extra
+ * supports for it. */
 static void a_thin_body_bears_its_weight(void **state) {
     (void)state;
     lar_meshing_info info;
     double moved;
     lar_model *model = model_of(RING, (lar_meshing_options){0}, &info);
     assert_string_equal(info.fix, "back");
-    assert_in_range(info.pads, 1, 12);
-    const lar_set *pads = lar_mesh_find_set(&model->mesh, "pads", LAR_SET_NODES);
-    assert_non_null(pads);
-    assert_int_equal(set_size(model, "support") + pads->count, info.fixed_nodes);
+    assert_in_range(info.extra_supports, 1, 12);
+    const lar_set *extra_supports = lar_mesh_find_set(&model->mesh, "pads", LAR_SET_NODES);
+    assert_non_null(extra_supports);
+    assert_int_equal(set_size(model, "support") + extra_supports->count, info.fixed_nodes);
     assert_true(info.fixed_nodes < info.nodes / 4);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) model->gravity[k] = k == i ? -9.81 : 0;
@@ -263,7 +263,7 @@ static void a_thin_body_bears_its_weight(void **state) {
     }
     lar_model_destroy(model);
     model = model_of(RING, (lar_meshing_options){.fix = "back"}, &info);
-    assert_int_equal(info.pads, 0); /* somebody said what holds it */
+    assert_int_equal(info.extra_supports, 0); /* somebody said what holds it */
     assert_int_equal(set_size(model, "pads"), 0);
     lar_model_destroy(model);
 }

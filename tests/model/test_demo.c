@@ -271,7 +271,7 @@ static void test_scene_is_read_back_with_its_time_step(void **state) {
     assert_int_equal(model->fix_count, 2);
     assert_int_equal(model->load_count, 1);
     assert_int_equal(model->output.probe_count, 3);
-    double least[4] = {1.0, 1.0, 1.0, 1.0};
+    double min[4] = {1.0, 1.0, 1.0, 1.0};
     for (int32_t e = 0; e < mesh.element_count; e++) {
         const int part = model->element_material[e];
         const lar_material *material = &model->material[part];
@@ -280,11 +280,11 @@ static void test_scene_is_read_back_with_its_time_step(void **state) {
         assert_int_equal(part, mesh.element_tag[e] - 1);
         double corner[8][3];
         lar_mesh_corners(&mesh, e, corner);
-        least[part] = fmin(least[part], stable_step(corner, shear, bulk, material->density));
+        min[part] = fmin(min[part], stable_step(corner, shear, bulk, material->density));
     }
     print_message("stable step [us]: uterus %.1f, tubes %.1f, ovaries %.1f, ligaments %.1f\n",
-                  1e6 * least[0], 1e6 * least[1], 1e6 * least[2], 1e6 * least[3]);
-    for (int part = 0; part < 4; part++) assert_true(least[part] >= 115e-6);
+                  1e6 * min[0], 1e6 * min[1], 1e6 * min[2], 1e6 * min[3]);
+    for (int part = 0; part < 4; part++) assert_true(min[part] >= 115e-6);
     lar_model_destroy(model);
 }
 

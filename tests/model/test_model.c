@@ -174,7 +174,7 @@ static void test_tools(void **state) {
     add_tool(two, "jaws");
     refused_and_destroyed(two, "tool entry 2: tool entry 1 is called \"jaws\" too");
     lar_model *many = good_model();
-    for (int i = 0; i <= LAR_MODEL_TOOLS_MOST; i++) add_tool(many, (char[]){(char)('a' + i), 0});
+    for (int i = 0; i <= LAR_MODEL_TOOLS_MAX; i++) add_tool(many, (char[]){(char)('a' + i), 0});
     refused_and_destroyed(many, "test.yaml: 13 tools; there can be 12");
 }
 

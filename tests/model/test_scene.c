@@ -234,7 +234,7 @@ static void test_motion_and_loads(void **state) {
 /* A slanted plate in the brick, written in millimetres. */
 #define PLATE LAR_TEST_BUILD "/scene_plate.obj"
 
-static void rides(const char *scene_text, double scale) {
+static void has_embedded(const char *scene_text, double scale) {
     lar_model *model = scene(scene_text);
     lar_embedded_info info;
     double place[4][3];
@@ -260,9 +260,9 @@ static void write_plate(const char *text) {
 static void test_surface(void **state) {
     (void)state;
     write_plate("v 1 1 6\nv 18 2 8\nv 18 19 14\nv 1 18 10\nf 1 2 3 4\n");
-    rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 0.001}\n", 0.001);
-    rides(HEAD MATERIAL "surface: {file: " PLATE ", scale: 1.1e-3}\n", 0.0011);
-    rides(HEAD MATERIAL "scale: 1000\nsurface: {file: " PLATE ", scale: 1}\n", 1);
+    has_embedded(HEAD MATERIAL "surface: {file: " PLATE ", scale: 0.001}\n", 0.001);
+    has_embedded(HEAD MATERIAL "surface: {file: " PLATE ", scale: 1.1e-3}\n", 0.0011);
+    has_embedded(HEAD MATERIAL "scale: 1000\nsurface: {file: " PLATE ", scale: 1}\n", 1);
     const char *text = HEAD MATERIAL "surface: " PLATE "\n";
     lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
     lar_model *model = NULL;
@@ -275,8 +275,8 @@ static void test_surface(void **state) {
     /* Without a scale of its own it has the scene's. */
     write_plate(
         "v 1e-3 1e-3 6e-3\nv .018 2e-3 8e-3\nv .018 .019 .014\nv 1e-3 .018 .01\nf 1 2 3 4\n");
-    rides(HEAD MATERIAL "scale: 10\nsurface: " PLATE "\n", 0.01);
-    rides(HEAD MATERIAL "scale: 10\nsurface: {file: " PLATE "}\n", 0.01);
+    has_embedded(HEAD MATERIAL "scale: 10\nsurface: " PLATE "\n", 0.01);
+    has_embedded(HEAD MATERIAL "scale: 10\nsurface: {file: " PLATE "}\n", 0.01);
     model = scene(HEAD MATERIAL);
     assert_int_equal(lar_model_embedded(model, NULL), 0);
     lar_model_destroy(model);

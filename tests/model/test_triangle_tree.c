@@ -81,15 +81,15 @@ static void test_soup_against_all(void **state) {
     lar_triangle_tree *tree = tree_of(&soup, NULL, 0);
     uint64_t seed = 3;
     for (int n = 0; n < 60; n++) {
-        double p[3], least = INFINITY, far = n % 6 == 0 ? 1e6 : 2;
+        double p[3], min = INFINITY, far = n % 6 == 0 ? 1e6 : 2;
         for (int i = 0; i < 3; i++) p[i] = 0.5 + far * (shape_random(&seed) - 0.5);
         for (int32_t t = 0; t < soup.triangle_count; t++)
-            least = fmin(least, brute_distance(&soup, t, p));
+            min = fmin(min, brute_distance(&soup, t, p));
         lar_nearest found;
         assert_true(lar_triangle_tree_nearest(tree, p, INFINITY, &found));
         check_answer(&soup, p, &found);
-        assert_below(fabs(found.distance - least), 1e-7 * (least + 1e-3));
-        assert_below(fabs(brute_distance(&soup, found.triangle, p) - least), 1e-7 * (least + 1e-3));
+        assert_below(fabs(found.distance - min), 1e-7 * (min + 1e-3));
+        assert_below(fabs(brute_distance(&soup, found.triangle, p) - min), 1e-7 * (min + 1e-3));
         assert_false(lar_triangle_tree_nearest(tree, p, 0.999 * found.distance, &found));
         assert_true(lar_triangle_tree_nearest(tree, p, 1.001 * found.distance, &found));
         assert_false(lar_triangle_tree_is_near(tree, p, 0.999 * found.distance));
@@ -120,13 +120,13 @@ static void test_ties_go_to_the_smallest_index(void **state) {
             p[i] = n % 5 == 4 ? 0 : (1 + lift) * edge;
         }
         lar_nearest found, best = {.triangle = -1}, other;
-        double least = INFINITY; /* squared: two squares may have one root */
+        double min = INFINITY; /* squared: two squares may have one root */
         for (int32_t t = 0; t < ball.triangle_count; t++) {
             assert_true(lar_triangle_tree_nearest(one[t], p, INFINITY, &other));
             double away[3];
             lar_minus(p, other.point, away);
-            if (!(lar_dot(away, away) < least)) continue;
-            least = lar_dot(away, away);
+            if (!(lar_dot(away, away) < min)) continue;
+            min = lar_dot(away, away);
             best = other;
         }
         assert_true(lar_triangle_tree_nearest(tree, p, INFINITY, &found));

@@ -125,7 +125,7 @@ static void test_boxes_in_line(void **state) {
     }
 }
 
-/* Hundreds of triangles through one place: looking ends after LAR_CROSSINGS_MOST. */
+/* Hundreds of triangles through one place: looking ends after LAR_CROSSINGS_MAX. */
 static void test_many(void **state) {
     (void)state;
     enum { FAN = 300 };
@@ -140,7 +140,7 @@ static void test_many(void **state) {
         }
         shape_triangle(&fan, t, 3 * t, 3 * t + 1, 3 * t + 2);
     }
-    assert_int_equal(crossings_of(&fan).deep, LAR_CROSSINGS_MOST);
+    assert_int_equal(crossings_of(&fan).deep, LAR_CROSSINGS_MAX);
     assert_int_equal(lar_triangles_check_crossing(&fan, &error), LAR_ERROR_MODEL);
     assert_non_null(strstr(error.message, "more than 10000 pairs"));
     lar_triangles_clear(&fan);

@@ -122,7 +122,7 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     for (int n = 0; n < NODES; n++) w->push[n] = w->mass[n] > 0 ? DT / (w->mass[n] * SCALE) : 0;
 
     const lar_hex8_limits limits = {0.05, 1e300, 1e300};
-    const lar_motion motion = {
+    const lar_leapfrog leapfrog = {
         .keep = 0.9999, .dt = DT, .speed = 100, .drift = {0, 0, -9.81 * DT}, .push = 1};
     bool boxes = as->shape == LAR_SHAPE_BOX;
     const lar_block_run run = {.law = law,
@@ -140,10 +140,10 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     bool good = true;
     double damped = 0, fastest = 0;
     for (int step = 0; step < STEPS && good; step++) {
-        lar_hex8_watch watch = {.limit = limit, .lane = lane, .strain = strain};
+        lar_hex8_monitor monitor = {.limit = limit, .lane = lane, .strain = strain};
         good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits,
-                                step % 10 == 0 ? &watch : NULL) < 0 &&
-               kernels->update(&motion, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
+                                step % 10 == 0 ? &monitor : NULL) < 0 &&
+               kernels->update(&leapfrog, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
                                w->push, step % 10 ? NULL : w->mass, &damped, &fastest);
     }
     *hash = digest(0xcbf29ce484222325u, w->u, sizeof w->u);

@@ -16,7 +16,7 @@
 #include "engine/tools_test.h"
 
 enum {
-    CLIENT_MOST = 1 << 20,
+    CLIENT_MAX = 1 << 20,
     TEXT_FRAME = 1,
     BINARY_FRAME = 2,
     CLOSE_FRAME = 8,
@@ -94,7 +94,7 @@ TEST_UNUSED static void end_serving(served *s) {
 typedef struct client {
     int fd;
     int port;
-    unsigned char *data; /* CLIENT_MOST bytes: the payload of the last frame */
+    unsigned char *data; /* CLIENT_MAX bytes: the payload of the last frame */
     size_t length;
     int opcode;
     uint32_t seed; /* of masks */
@@ -178,7 +178,7 @@ TEST_UNUSED static int try_upgrade(int fd, int port, upgrade u) {
 TEST_UNUSED static client open_client_at(int port, const char *path) {
     client c = {.fd = connect_to(port), .port = port, .seed = 12345};
     assert_true(c.fd >= 0);
-    c.data = malloc(CLIENT_MOST);
+    c.data = malloc(CLIENT_MAX);
     assert_int_equal(try_upgrade(c.fd, port, (upgrade){.path = path}), 101);
     return c;
 }
@@ -242,7 +242,7 @@ TEST_UNUSED static bool next_frame(client *c) {
     if (more && !get(c->fd, head + 2, (size_t)more)) return false;
     if (more) length = 0;
     for (int i = 0; i < more; i++) length = length << 8 | head[2 + i];
-    assert_true(length < CLIENT_MOST);
+    assert_true(length < CLIENT_MAX);
     assert_int_equal(head[0] & 0x80, 0x80); /* never in pieces */
     assert_int_equal(head[1] & 0x80, 0);    /* never masked */
     c->opcode = head[0] & 0x0f;

@@ -7,8 +7,8 @@
 static const lar_advice organ = {
     .time_step = 1e-4, .elements = 13000, .busy = 1, .cores = 4, .priority = 0};
 
-static lar_session_status slow(const lar_advice *advice, double pace, double least, int parts) {
-    lar_session_status status = {.slow_motion = 1, .step_least = least, .step_parts = parts};
+static lar_session_status slow(const lar_advice *advice, double pace, double min, int parts) {
+    lar_session_status status = {.slow_motion = 1, .step_min = min, .step_parts = parts};
     lar_advise(advice, pace, &status);
     return status;
 }
@@ -73,7 +73,7 @@ static void without_slow_motion_or_knowledge_there_is_none(void **unused) {
     lar_session_status s = slow(&organ, 1, 0, 1);
     assert_int_equal(s.slow_cause, LAR_SLOW_NOT);
     assert_string_equal(s.slow_advice, "");
-    s = (lar_session_status){.step_least = 1, .slow_cause = LAR_SLOW_STEP, .slow_advice = "x"};
+    s = (lar_session_status){.step_min = 1, .slow_cause = LAR_SLOW_STEP, .slow_advice = "x"};
     lar_advise(&organ, 1, &s);
     assert_int_equal(s.slow_cause, LAR_SLOW_NOT);
     assert_string_equal(s.slow_advice, "");

@@ -74,8 +74,8 @@ static double any(void) {
     return (double)(seed >> 11) * 0x1p-53;
 }
 
-static double move(double at, double *velocity, double target, double acceleration, double most) {
-    double wanted = fmax(-most, fmin(most, 30 * (target - at)));
+static double move(double at, double *velocity, double target, double acceleration, double max) {
+    double wanted = fmax(-max, fmin(max, 30 * (target - at)));
     double change = wanted - *velocity, limit = acceleration * TICK;
     *velocity += fmax(-limit, fmin(limit, change));
     return at + *velocity * TICK;
@@ -92,20 +92,20 @@ static const double LEAK = 5e-6;
 /* Whatever a smooth hand does to a stiff wall: it never gets back more than it put in. */
 static void test_hand_never_gets_more_than_it_gave(void **state) {
     (void)state;
-    double least = 0;
+    double min = 0;
     for (int run = 0; run < 300; run++) {
         seed = (uint64_t)run + 1;
         world w = start(&PROBE, pow(10, 2 + 3 * any()), 0.01);
-        double vx = 0, vz = 0, tx = 0, tz = 0, most = pow(10, -2 + 2 * any());
+        double vx = 0, vz = 0, tx = 0, tz = 0, max = pow(10, -2 + 2 * any());
         for (int i = 0; i < 3000; i++) {
             if (any() < 0.02) tx = 0.04 * (any() - 0.5), tz = 0.04 * (any() - 0.6);
-            double x = move(w.hand.position[0], &vx, tx, 70, most);
-            tick(&w, x, move(w.hand.position[2], &vz, tz, 70, most));
-            least = fmin(least, w.hand_work);
+            double x = move(w.hand.position[0], &vx, tx, 70, max);
+            tick(&w, x, move(w.hand.position[2], &vz, tz, 70, max));
+            min = fmin(min, w.hand_work);
         }
     }
-    printf("least energy of the hand %.3g J\n", least);
-    assert_true(least >= -LEAK);
+    printf("least energy of the hand %.3g J\n", min);
+    assert_true(min >= -LEAK);
 }
 
 /* A hand that trembles as fast as it is looked at, against a wall or in the air: what a damper of
@@ -115,35 +115,35 @@ static void test_trembling_is_not_fed(void **state) {
     double credit = couple(&PROBE, 1, 5).credit;
     for (int run = 0; run < 4; run++) {
         world w = start(&PROBE, run & 1 ? 3000 : 0, 0.0);
-        double v = 0, z = run & 2 ? -0.004 : 0, least = 0;
+        double v = 0, z = run & 2 ? -0.004 : 0, min = 0;
         for (int i = 0; i < 200; i++) tick(&w, 0, z * fmin(1, i / 100.0));
         double given = w.hand_work;
         for (int i = 0; i < 2000; i++) {
             v += (i & 1 ? 90 : -90) * TICK * (i == 0 ? 0.5 : 1);
             z += v * TICK;
             tick(&w, 0, z);
-            least = fmin(least, w.hand_work);
+            min = fmin(min, w.hand_work);
         }
         printf("trembling: %.3g J given before, %.3g J after, least %.3g J\n", given, w.hand_work,
-               least);
-        assert_true(least >= -credit - REFILL * 2.2); /* what refills in 2.2 s */
+               min);
+        assert_true(min >= -credit - REFILL * 2.2); /* what refills in 2.2 s */
     }
 }
 
 static double tremble(world *w, int ticks) {
-    double v = 0, z = w->hand.position[2], before = w->hand_work, least = 0;
+    double v = 0, z = w->hand.position[2], before = w->hand_work, min = 0;
     for (int i = 0; i < ticks; i++) {
         v += (i & 1 ? 90 : -90) * TICK * (i == 0 ? 0.5 : 1);
         z += v * TICK;
         tick(w, 0, z);
-        least = fmin(least, w->hand_work - before);
+        min = fmin(min, w->hand_work - before);
     }
-    return least;
+    return min;
 }
 
 /* What was lost on the way is not credit for later; and an account that is empty fills again when
  * the hand works. */
-static void test_account_is_honest(void **state) {
+static void test_account_is_exact(void **state) {
     (void)state;
     world w = start(&PROBE, 3000, 0.01);
     for (int i = 0; i < 4000; i++) tick(&w, 0, 0.01 * cos(0.02 * i));
@@ -168,13 +168,13 @@ static void test_account_is_honest(void **state) {
 static void test_bunches_are_no_blow(void **state) {
     (void)state;
     world w = start(&PROBE, 0, 0);
-    double most = 0;
+    double max = 0;
     for (int i = 0; i < 500; i++) {
         if (i % 50 < 40 || i % 50 == 49) tick(&w, 3e-4 * i, 0);
-        most = fmax(most, fabs(w.felt.force[0]));
+        max = fmax(max, fabs(w.felt.force[0]));
     }
-    printf("bunches of 10 at 0.3 m/s: %.2f N at most\n", most);
-    assert_true(most < 3);
+    printf("bunches of 10 at 0.3 m/s: %.2f N at most\n", max);
+    assert_true(max < 3);
 }
 
 /* Positions that come early and late, as on a network, slowly and fast, into soft and hard walls:
@@ -235,11 +235,11 @@ static void test_device_rests_on_stiff_wall(void **state) {
 static void test_force_and_speed_are_bounded(void **state) {
     (void)state;
     world w = start(&PROBE, 1e5, 0.01);
-    double most = 0, x = 0, z = 0;
+    double max = 0, x = 0, z = 0;
     for (int i = 0; i < 4000; i++) { /* a hand out of its mind */
         if (i < 1000 || i % 100 == 0) x = 0.5 * (any() - 0.5), z = 0.5 * (any() - 0.5);
         tick(&w, x, z);
-        most = fmax(most, hypot(w.felt.force[0], w.felt.force[2]));
+        max = fmax(max, hypot(w.felt.force[0], w.felt.force[2]));
         assert_true(isfinite(w.felt.force[0]) && isfinite(w.tool.position[2]));
     }
     for (int i = 0; i < 20000; i++) { /* and one that jumps within what a hand might */
@@ -247,10 +247,10 @@ static void test_force_and_speed_are_bounded(void **state) {
         x += far * (any() - 0.5), z += far * (any() - 0.5);
         if (fabs(z) > 0.02) z = 0;
         tick(&w, x, z);
-        most = fmax(most, hypot(w.felt.force[0], w.felt.force[2]));
+        max = fmax(max, hypot(w.felt.force[0], w.felt.force[2]));
     }
-    printf("a wild hand: %.4f N at most, %.4f m/s\n", most, w.fastest);
-    assert_true(most <= 8.0001 && most > 1);
+    printf("a wild hand: %.4f N at most, %.4f m/s\n", max, w.fastest);
+    assert_true(max <= 8.0001 && max > 1);
     assert_true(w.fastest <= 1.0001 && w.fastest > 0.9);
 }
 
@@ -283,17 +283,17 @@ static void test_hand_pulls_no_harder(void **state) {
     for (int i = 0; i < 3; i++) {
         world w = start(&HAND, stiffness[i], 0);
         w.wall.held = true;
-        double z = 0, v = 0, most = 0, force = 0;
+        double z = 0, v = 0, max = 0, force = 0;
         for (int t = 0; t < 3000; t++) {
             double from = w.tool.position[2];
             z = move(z, &v, 0.3, 20, 1);
             tick(&w, 0, z);
             force = fabs(wall_force(&w.wall, from, w.tool.position[2]));
-            most = fmax(most, force);
+            max = fmax(max, force);
         }
-        printf("tissue %g N/m: pulled with %.3f N, at most %.3f N\n", stiffness[i], force, most);
+        printf("tissue %g N/m: pulled with %.3f N, at most %.3f N\n", stiffness[i], force, max);
         assert_true(fabs(force - 5) < 0.01);
-        assert_true(most < 5.5);
+        assert_true(max < 5.5);
         assert_true(fabs(w.felt.force[2]) <= 5.0001);
     }
 }
@@ -307,13 +307,13 @@ static void test_strong_hand_feels_no_more(void **state) {
     world w = start(&HAND, 5000, 0);
     w.wall.held = true;
     w.coupling = couple(&HAND, 1, 50);
-    double z = 0, v = 0, most = 0;
+    double z = 0, v = 0, max = 0;
     for (int t = 0; t < 1000; t++) {
         z = move(z, &v, 0.3, 20, 1);
         tick(&w, 0, z);
-        most = fmax(most, fabs(w.felt.force[2]));
+        max = fmax(max, fabs(w.felt.force[2]));
     }
-    assert_true(most > 7.9 && most <= 8.0001);
+    assert_true(max > 7.9 && max <= 8.0001);
     assert_true(fabs(w.coupling.tissue[2]) > 45);
 }
 
@@ -394,7 +394,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hand_never_gets_more_than_it_gave),
         cmocka_unit_test(test_trembling_is_not_fed),
-        cmocka_unit_test(test_account_is_honest),
+        cmocka_unit_test(test_account_is_exact),
         cmocka_unit_test(test_bunches_are_no_blow),
         cmocka_unit_test(test_unsteady_positions_are_felt),
         cmocka_unit_test(test_device_rests_on_stiff_wall),

@@ -228,13 +228,13 @@ static void test_trocar_limits(void **state) {
     lar_trocar_create(&trocar, (double[]){0, 0, 0.2}, &rest);
     lar_trocar_angles angles = {.alpha = 3, .beta = -3, .d = 7, .gamma = 3};
     lar_trocar_limit(&trocar, &angles);
-    assert_true(angles.alpha == trocar.tilt_most && angles.beta == -trocar.tilt_most);
-    assert_true(angles.d == trocar.depth_most && angles.gamma == 3);
+    assert_true(angles.alpha == trocar.tilt_max && angles.beta == -trocar.tilt_max);
+    assert_true(angles.d == trocar.depth_max && angles.gamma == 3);
     /* Pulled out: it stays in the point, tilted as it was. */
     angles = (lar_trocar_angles){.alpha = 0.3, .beta = 0.2, .d = 0.1};
     rest.position[2] = 0.25;
     assert_false(lar_trocar_find(&trocar, &rest, &angles));
-    assert_true(angles.alpha == 0.3 && angles.beta == 0.2 && angles.d == trocar.depth_least);
+    assert_true(angles.alpha == 0.3 && angles.beta == 0.2 && angles.d == trocar.depth_min);
     rest.position[2] = 0.2;
     assert_false(lar_trocar_find(&trocar, &rest, &angles));
     /* A tool that rests in the point: the trocar points along its shaft. */

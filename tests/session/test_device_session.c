@@ -28,10 +28,10 @@ static uint64_t hash_of(const bench *b) {
 static double greatest_force(const bench *b) {
     float force[2000][3];
     uint64_t last;
-    double most = 0;
+    double max = 0;
     int32_t count = lar_session_force_history(b->session, BALL, 0, 2000, force, &last);
-    for (int32_t i = 0; i < count; i++) most = fmax(most, hypot(force[i][0], force[i][2]));
-    return most;
+    for (int32_t i = 0; i < count; i++) max = fmax(max, hypot(force[i][0], force[i][2]));
+    return max;
 }
 
 static uint64_t play_script(const char *grid, double pace, bool reset) {
@@ -94,8 +94,8 @@ static void test_network_device_plays(void **state) {
     lar_device_client_report report = emulate(device.port, 0.02, 1.1);
     assert_true(report.answered > 0 && report.steps > 0);
     assert_true(report.touching > 0);
-    if (!(report.force_most > 1e-3 && report.force_most <= 8.001))
-        fail_msg("the largest force is %g N", report.force_most);
+    if (!(report.force_max > 1e-3 && report.force_max <= 8.001))
+        fail_msg("the largest force is %g N", report.force_max);
     assert_int_equal(report.strange, 0);
     /* What has a device does not listen. */
     lar_tool_pose away = {.position = {0.5, 0.5, 0.5}, .orientation = {1, 0, 0, 0}}, pose;
@@ -117,7 +117,7 @@ static void test_network_device_at_rest(void **state) {
     lar_device_client_report report = emulate(device_of(&b, BALL).port, 0.02, 0.2);
     assert_true(report.answered > 0);
     assert_int_equal(report.steps, 0);
-    assert_true(report.force_most == 0);
+    assert_true(report.force_max == 0);
     close_bench(&b);
 }
 
@@ -135,7 +135,7 @@ static void test_answer_times_are_told(void **state) {
     assert_true(device.answer_p50 > 0 && device.answer_p50 <= device.answer_p99);
     assert_true(device.answer_p99 <= device.answer_p999);
     assert_true(device.answer_p999 <= device.answer_max);
-    assert_true(report.trip_p50 >= 0.5 * device.answer_p50);
+    assert_true(report.round_trip_p50 >= 0.5 * device.answer_p50);
     close_bench(&b);
 }
 

@@ -255,8 +255,8 @@ static void test_reset_is_smooth(void **state) {
         send_position(s, i, 0.05, NULL);
         tick(&r);
         assert_true(receive(s, &answer));
-        double most = i > 411 ? 0.041 : 0.45;
-        if (fabs(answer.force[2] - before) > most)
+        double max = i > 411 ? 0.041 : 0.45;
+        if (fabs(answer.force[2] - before) > max)
             fail_msg("packet %u: from %g to %g N", i, before, answer.force[2]);
         before = answer.force[2];
     }

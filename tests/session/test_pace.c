@@ -17,7 +17,7 @@ static void begin_with(double wanted) {
 
 /* A tick of `seconds` whose steps take `engine` ns: begins when it is due, or at once. */
 static void tick(double seconds, int64_t engine) {
-    if (pace.pace > 0 && now < pace.beat.due) now = pace.beat.due;
+    if (pace.pace > 0 && now < pace.deadline.due) now = pace.deadline.due;
     lar_pace_begin(&pace, seconds, now);
     now += engine;
     lar_pace_computed(&pace, 10, engine, engine);
@@ -39,7 +39,7 @@ static void ticks_come_when_they_are_due(void **unused) {
     begin_with(0.5);
     lar_pace_start(&pace, now + 7); /* once is enough */
     for (int i = 0; i < 200; i++) {
-        assert_int_equal(pace.beat.due, (1000 + 4 * i) * MS);
+        assert_int_equal(pace.deadline.due, (1000 + 4 * i) * MS);
         tick(0.002, 200000);
     }
     lar_pace_stop(&pace, now);
@@ -62,11 +62,11 @@ static void ticks_come_when_they_are_due(void **unused) {
 static void waiting_ends_when_a_tick_is_due(void **unused) {
     (void)unused;
     begin_with(1);
-    pace.beat.due = lar_clock_ns() + 3 * MS;
+    pace.deadline.due = lar_clock_ns() + 3 * MS;
     lar_pace_wait(&pace);
-    assert_true(lar_clock_ns() >= pace.beat.due);
+    assert_true(lar_clock_ns() >= pace.deadline.due);
     pace.pace = 0;
-    pace.beat.due = lar_clock_ns() + (int64_t)3600000 * MS;
+    pace.deadline.due = lar_clock_ns() + (int64_t)3600000 * MS;
     lar_pace_wait(&pace);
 }
 
@@ -74,9 +74,9 @@ static void waiting_ends_when_a_tick_is_due(void **unused) {
 static void fractions_are_not_lost(void **unused) {
     (void)unused;
     begin_with(3);
-    int64_t first = pace.beat.due;
+    int64_t first = pace.deadline.due;
     for (int i = 0; i < 300000; i++) tick(1e-5, 1000);
-    assert_below(fabs((double)(pace.beat.due - first - 1000 * MS)), 2);
+    assert_below(fabs((double)(pace.deadline.due - first - 1000 * MS)), 2);
 }
 
 static void late_ticks_are_misses(void **unused) {
@@ -122,18 +122,18 @@ static void late_in_slow_motion_is_no_miss(void **unused) {
 static void the_least_step_of_the_last_second_is_known(void **unused) {
     (void)unused;
     begin_with(1);
-    assert_true(report().step_least == 0);
+    assert_true(report().step_min == 0);
     for (int i = 0; i < 30; i++) {
-        if (now < pace.beat.due) now = pace.beat.due;
+        if (now < pace.deadline.due) now = pace.deadline.due;
         lar_pace_begin(&pace, 0.1, now);
         lar_pace_computed(&pace, 10, 90 * MS, (i == 5 ? 1 : i == 25 ? 3 : 4) * MS);
         now += 90 * MS;
         lar_pace_answered(&pace, now);
         lar_pace_look(&pace, now);
     }
-    near(report().step_least, 3e-4, 1e-9);
-    lar_pace_forget_least(&pace);
-    assert_true(report().step_least == 0);
+    near(report().step_min, 3e-4, 1e-9);
+    lar_pace_forget_min(&pace);
+    assert_true(report().step_min == 0);
 }
 
 static void too_much_is_given_up(void **unused) {
@@ -191,7 +191,7 @@ static void without_pace_nothing_is_due(void **unused) {
     lar_pace_set(&pace, 1, now);
     lar_pace_start(&pace, now);
     tick(1, MS);
-    assert_int_equal(pace.beat.due, now - MS + 1000 * MS);
+    assert_int_equal(pace.deadline.due, now - MS + 1000 * MS);
 }
 
 /* A pace holds from now on, also in the middle of a tick that would have lasted longer; and no pace
@@ -200,15 +200,15 @@ static void another_pace_holds_at_once(void **unused) {
     (void)unused;
     begin_with(0.001);
     tick(0.001, MS);
-    assert_int_equal(pace.beat.due, 2000 * MS);
+    assert_int_equal(pace.deadline.due, 2000 * MS);
     lar_pace_set(&pace, 1, now);
-    assert_int_equal(pace.beat.due, now + 999000);
+    assert_int_equal(pace.deadline.due, now + 999000);
     lar_pace_set(&pace, 0.5, now);
-    assert_int_equal(pace.beat.due, now + 2 * 999000);
+    assert_int_equal(pace.deadline.due, now + 2 * 999000);
     lar_pace_set(&pace, 1e-300, now);
-    assert_true(pace.beat.due > now && pace.beat.due < INT64_MAX / 2);
+    assert_true(pace.deadline.due > now && pace.deadline.due < INT64_MAX / 2);
     tick(0.001, MS);
-    assert_true(pace.beat.due > now && pace.beat.due < INT64_MAX / 2);
+    assert_true(pace.deadline.due > now && pace.deadline.due < INT64_MAX / 2);
 }
 
 static void rates_are_of_the_last_second(void **unused) {

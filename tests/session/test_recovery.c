@@ -61,8 +61,8 @@ static int32_t held_by(const bench *b, int32_t tool) {
 
 /* The engine sleeps: its next tick finds that the run has broken off. */
 static void forge_break(const bench *b) {
-    b->simulation->trip =
-        (lar_trip){.kind = LAR_TRIP_LOAD, .step = lar_simulation_steps(b->simulation)};
+    b->simulation->fault =
+        (lar_fault){.kind = LAR_FAULT_LOAD, .step = lar_simulation_steps(b->simulation)};
 }
 
 /* Somebody moves a tool, far from the block, and the run breaks at `time`. Returns where it went.
@@ -156,7 +156,7 @@ static lar_session_status ram_down(const bench *b) {
 /* The tool is sent there in every tick. Returns how fast it goes at most [m/s]. */
 static double fastest(const bench *b, int32_t tool, double x, double y, double z, double opening,
                       double seconds) {
-    double tick = (double)b->session->tick_steps * b->session->time_step, most = 0;
+    double tick = (double)b->session->tick_steps * b->session->time_step, max = 0;
     for (double time = 0; time < seconds - tick / 2; time += tick) {
         const lar_tool_pose before = pose_of(b, tool);
         move(b, tool, x, y, z, opening);
@@ -164,9 +164,9 @@ static double fastest(const bench *b, int32_t tool, double x, double y, double z
         const lar_tool_pose now = pose_of(b, tool);
         double square = 0;
         for (int k = 0; k < 3; k++) square += pow(now.position[k] - before.position[k], 2);
-        most = fmax(most, sqrt(square) / tick);
+        max = fmax(max, sqrt(square) / tick);
     }
-    return most;
+    return max;
 }
 
 static uint64_t hash_of(const bench *b) {

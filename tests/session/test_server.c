@@ -124,15 +124,15 @@ static void compare_values(const client *c, const lar_simulation *plain,
     uint32_t field = word_at(c, 40);
     lar_simulation_displacements(plain, u);
     DONE(lar_simulation_field(plain, (lar_field)field, (const double(*)[3])u, value, &failure));
-    double least = INFINITY, most = -INFINITY;
+    double min = INFINITY, max = -INFINITY;
     assert_int_equal(word_at(c, 44), n);
     for (size_t i = 0; i < n; i++) {
         assert_true(shown[i] == value[surface->node[i]]);
-        least = fmin(least, shown[i]);
-        most = fmax(most, shown[i]);
+        min = fmin(min, shown[i]);
+        max = fmax(max, shown[i]);
     }
-    assert_true(double_at(c, 48) == least && double_at(c, 56) == most);
-    assert_true(field == LAR_FIELD_PROCESSOR || most > least);
+    assert_true(double_at(c, 48) == min && double_at(c, 56) == max);
+    assert_true(field == LAR_FIELD_PROCESSOR || max > min);
     free(value);
     free(u);
 }
@@ -475,7 +475,7 @@ static void saves_as_much_as_it_may(void **unused) {
     (void)unused;
     char folder[256];
     snprintf(folder, sizeof folder, "%s/server-quota-%d", LAR_TEST_BUILD, (int)getpid());
-    served s = serve_with(NULL, &(lar_server_options){.save_folder = folder, .save_most = 40000});
+    served s = serve_with(NULL, &(lar_server_options){.save_folder = folder, .save_max = 40000});
     client c = open_client(s.port);
     await_text(&c, "hello");
     say(&c, "{\"do\":\"record\",\"on\":true}");

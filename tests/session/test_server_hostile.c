@@ -176,7 +176,7 @@ static void junk(void **unused) {
             bytes[i] = (unsigned char)(seed >> 24);
         }
         client c = {.fd = connect_to(s.port), .port = s.port};
-        c.data = malloc(CLIENT_MOST);
+        c.data = malloc(CLIENT_MAX);
         if (round % 2 == 0) try_upgrade(c.fd, s.port, (upgrade){0});
         if (round % 4 == 1) put(c.fd, "GET / HTTP/1.1\r\n", 16);
         put(c.fd, bytes, sizeof bytes);

@@ -5,80 +5,82 @@
 
 enum { TOOLS = 5 };
 
-static lar_close read_text(const char *text, lar_wish *wish, char reason[LAR_REASON_BYTES]) {
-    return lar_wish_read(text, strlen(text), TOOLS, wish, reason);
+static lar_close read_text(const char *text, lar_command *command, char reason[LAR_REASON_BYTES]) {
+    return lar_command_read(text, strlen(text), TOOLS, command, reason);
 }
 
-static lar_wish good(const char *text) {
-    lar_wish wish = {0};
+static lar_command good(const char *text) {
+    lar_command command = {0};
     char reason[LAR_REASON_BYTES] = "";
-    if (read_text(text, &wish, reason) != LAR_CLOSE_NOT) fail_msg("%s: %s", text, reason);
-    return wish;
+    if (read_text(text, &command, reason) != LAR_CLOSE_NOT) fail_msg("%s: %s", text, reason);
+    return command;
 }
 
 static void examples_of_the_page_are_understood(void **unused) {
     (void)unused;
     assert_int_equal(good("{\"do\":\"frame\"}").field, 0);
-    lar_wish wish = good("{\"do\":\"frame\",\"field\":\"von_mises\"}");
-    assert_int_equal(wish.kind, LAR_WISH_FRAME);
-    assert_int_equal(wish.field, LAR_FIELD_VON_MISES);
-    wish = good(" { \"after\" : 51234 ,\t\"tool\":2,\r\n\"do\":\"forces\" } ");
-    assert_int_equal(wish.kind, LAR_WISH_FORCES);
-    assert_true(wish.after == 51234 && wish.tool == 2);
-    wish = good("{\"do\":\"grab\",\"hand\":3,\"point\":[0.01,-2e-2,1.5E+1]}");
-    assert_int_equal(wish.kind, LAR_WISH_GRAB);
-    assert_int_equal(wish.hand, 3);
-    assert_true(wish.point[0] == 0.01 && wish.point[1] == -0.02 && wish.point[2] == 15);
-    wish = good("{\"do\":\"pull\",\"hand\":0,\"to\":[1,2,3]}");
-    assert_int_equal(wish.kind, LAR_WISH_PULL);
-    assert_true(wish.point[2] == 3);
-    assert_int_equal(good("{\"do\":\"release\",\"hand\":0}").kind, LAR_WISH_RELEASE);
-    wish = good("{\"do\":\"tool\",\"tool\":4,\"position\":[0,0,0.12],\"orientation\":[0.6,0,0.8,0],"
-                "\"opening\":0.5}");
-    assert_int_equal(wish.kind, LAR_WISH_TOOL);
-    assert_true(wish.turns && wish.opens && wish.opening == 0.5 && wish.orientation[2] == 0.8);
-    wish = good("{\"do\":\"tool\",\"tool\":0,\"position\":[0,0,1]}");
-    assert_false(wish.turns || wish.opens);
-    assert_int_equal(good("{\"do\":\"play\"}").kind, LAR_WISH_PLAY);
-    assert_int_equal(good("{\"do\":\"pause\"}").kind, LAR_WISH_PAUSE);
+    lar_command command = good("{\"do\":\"frame\",\"field\":\"von_mises\"}");
+    assert_int_equal(command.kind, LAR_COMMAND_FRAME);
+    assert_int_equal(command.field, LAR_FIELD_VON_MISES);
+    command = good(" { \"after\" : 51234 ,\t\"tool\":2,\r\n\"do\":\"forces\" } ");
+    assert_int_equal(command.kind, LAR_COMMAND_FORCES);
+    assert_true(command.after == 51234 && command.tool == 2);
+    command = good("{\"do\":\"grab\",\"hand\":3,\"point\":[0.01,-2e-2,1.5E+1]}");
+    assert_int_equal(command.kind, LAR_COMMAND_GRAB);
+    assert_int_equal(command.hand, 3);
+    assert_true(command.point[0] == 0.01 && command.point[1] == -0.02 && command.point[2] == 15);
+    command = good("{\"do\":\"pull\",\"hand\":0,\"to\":[1,2,3]}");
+    assert_int_equal(command.kind, LAR_COMMAND_PULL);
+    assert_true(command.point[2] == 3);
+    assert_int_equal(good("{\"do\":\"release\",\"hand\":0}").kind, LAR_COMMAND_RELEASE);
+    command =
+        good("{\"do\":\"tool\",\"tool\":4,\"position\":[0,0,0.12],\"orientation\":[0.6,0,0.8,0],"
+             "\"opening\":0.5}");
+    assert_int_equal(command.kind, LAR_COMMAND_TOOL);
+    assert_true(command.turns && command.opens && command.opening == 0.5 &&
+                command.orientation[2] == 0.8);
+    command = good("{\"do\":\"tool\",\"tool\":0,\"position\":[0,0,1]}");
+    assert_false(command.turns || command.opens);
+    assert_int_equal(good("{\"do\":\"play\"}").kind, LAR_COMMAND_PLAY);
+    assert_int_equal(good("{\"do\":\"pause\"}").kind, LAR_COMMAND_PAUSE);
     assert_true(good("{\"do\":\"step\",\"steps\":10}").steps == 10);
-    assert_int_equal(good("{\"do\":\"reset\"}").kind, LAR_WISH_RESET);
+    assert_int_equal(good("{\"do\":\"reset\"}").kind, LAR_COMMAND_RESET);
     assert_true(good("{\"do\":\"pace\",\"value\":0.5}").pace == 0.5);
     assert_true(good("{\"do\":\"pace\",\"value\":0}").pace == 0);
     assert_true(good("{\"do\":\"record\",\"on\":true}").on);
     assert_false(good("{\"do\":\"record\",\"on\":false}").on);
-    assert_int_equal(good("{\"do\":\"save\"}").kind, LAR_WISH_SAVE);
+    assert_int_equal(good("{\"do\":\"save\"}").kind, LAR_COMMAND_SAVE);
     assert_string_equal(good("{\"do\":\"load\"}").name, "");
     assert_string_equal(good("{\"do\":\"replay\",\"name\":\"a.recording\"}").name, "a.recording");
     assert_true(good("{\"do\":\"seek\",\"time\":1.5}").time == 1.5);
-    wish = good("{\"do\":\"inspect\",\"node\":7,\"energy\":true}");
-    assert_true(wish.node == 7 && wish.face == -1 && wish.energy);
+    command = good("{\"do\":\"inspect\",\"node\":7,\"energy\":true}");
+    assert_true(command.node == 7 && command.face == -1 && command.energy);
     assert_int_equal(good("{\"do\":\"inspect\",\"face\":0}").face, 0);
-    wish = good("{\"do\":\"slice\",\"axis\":2,\"index\":40}");
-    assert_true(wish.axis == 2 && wish.index == 40);
+    command = good("{\"do\":\"slice\",\"axis\":2,\"index\":40}");
+    assert_true(command.axis == 2 && command.index == 40);
     assert_string_equal(good("{\"do\":\"load\",\"name\":\"uterus-1.checkpoint\"}").name,
                         "uterus-1.checkpoint");
-    wish = good("{\"do\":\"gravity\",\"to\":[0,0.5,-9.81]}");
-    assert_int_equal(wish.kind, LAR_WISH_GRAVITY);
-    assert_true(wish.valued && wish.point[1] == 0.5 && wish.point[2] == -9.81);
+    command = good("{\"do\":\"gravity\",\"to\":[0,0.5,-9.81]}");
+    assert_int_equal(command.kind, LAR_COMMAND_GRAVITY);
+    assert_true(command.valued && command.point[1] == 0.5 && command.point[2] == -9.81);
     assert_false(good("{\"do\":\"gravity\"}").valued);
-    wish = good("{\"do\":\"damping\",\"value\":250}");
-    assert_true(wish.kind == LAR_WISH_DAMPING && wish.valued && wish.value == 250);
+    command = good("{\"do\":\"damping\",\"value\":250}");
+    assert_true(command.kind == LAR_COMMAND_DAMPING && command.valued && command.value == 250);
     assert_false(good("{\"do\":\"damping\"}").valued);
-    wish = good("{\"do\":\"stiffness\",\"value\":0.5,\"material\":2}");
-    assert_true(wish.kind == LAR_WISH_STIFFNESS && wish.valued && wish.value == 0.5);
-    assert_int_equal(wish.material, 2);
-    wish = good("{\"do\":\"stiffness\"}");
-    assert_true(!wish.valued && wish.material == -1);
-    wish = good("{\"do\":\"add_tool\",\"shape\":\"grasper\",\"radius\":0.003,\"length\":0.02}");
-    assert_true(wish.kind == LAR_WISH_ADD_TOOL && wish.shape == LAR_TOOL_GRASPER);
-    assert_true(wish.radius == 0.003 && wish.length == 0.02);
-    wish = good("{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0.003}");
-    assert_true(wish.shape == LAR_TOOL_SPHERE && wish.length == 0);
-    wish = good("{\"do\":\"remove_tool\",\"tool\":4}");
-    assert_true(wish.kind == LAR_WISH_REMOVE_TOOL && wish.tool == 4);
+    command = good("{\"do\":\"stiffness\",\"value\":0.5,\"material\":2}");
+    assert_true(command.kind == LAR_COMMAND_STIFFNESS && command.valued && command.value == 0.5);
+    assert_int_equal(command.material, 2);
+    command = good("{\"do\":\"stiffness\"}");
+    assert_true(!command.valued && command.material == -1);
+    command = good("{\"do\":\"add_tool\",\"shape\":\"grasper\",\"radius\":0.003,\"length\":0.02}");
+    assert_true(command.kind == LAR_COMMAND_ADD_TOOL && command.shape == LAR_TOOL_GRASPER);
+    assert_true(command.radius == 0.003 && command.length == 0.02);
+    command = good("{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0.003}");
+    assert_true(command.shape == LAR_TOOL_SPHERE && command.length == 0);
+    command = good("{\"do\":\"remove_tool\",\"tool\":4}");
+    assert_true(command.kind == LAR_COMMAND_REMOVE_TOOL && command.tool == 4);
     /* Escapes are characters like others. */
-    assert_int_equal(good("{\"\\u0064o\":\"pl\\u0061y\"}").kind, LAR_WISH_PLAY);
+    assert_int_equal(good("{\"\\u0064o\":\"pl\\u0061y\"}").kind, LAR_COMMAND_PLAY);
 }
 
 static void everything_else_is_refused(void **unused) {
@@ -165,11 +167,11 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_TEXT, "{\"do\":\"\xe2\x82", "UTF-8"},            /* cut */
         {LAR_CLOSE_POLICY, "{\"do\":\"\xe2\x82\xac\"}", "none of ours"}};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        lar_wish wish = {.kind = LAR_WISH_LOAD, .steps = 77};
+        lar_command command = {.kind = LAR_COMMAND_LOAD, .steps = 77};
         char reason[LAR_REASON_BYTES] = "";
-        lar_close close = read_text(wrong[i].text, &wish, reason);
+        lar_close close = read_text(wrong[i].text, &command, reason);
         if (close != wrong[i].close) fail_msg("%s: %d, %s", wrong[i].text, close, reason);
-        assert_true(wish.steps == 77); /* untouched */
+        assert_true(command.steps == 77); /* untouched */
         bool found = false;
         char words[64];
         snprintf(words, sizeof words, "%s", wrong[i].reason);
@@ -181,20 +183,22 @@ static void everything_else_is_refused(void **unused) {
 
 static void long_words_are_none_of_ours(void **unused) {
     (void)unused;
-    char text[LAR_MESSAGE_MOST + 2], reason[LAR_REASON_BYTES];
-    lar_wish wish;
+    char text[LAR_MESSAGE_MAX + 2], reason[LAR_REASON_BYTES];
+    lar_command command;
     memset(text, ' ', sizeof text);
     memcpy(text, "{\"do\":\"play\"}", 13);
-    assert_int_equal(lar_wish_read(text, LAR_MESSAGE_MOST, TOOLS, &wish, reason), LAR_CLOSE_NOT);
-    assert_int_equal(lar_wish_read(text, LAR_MESSAGE_MOST + 1, TOOLS, &wish, reason),
+    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MAX, TOOLS, &command, reason),
+                     LAR_CLOSE_NOT);
+    assert_int_equal(lar_command_read(text, LAR_MESSAGE_MAX + 1, TOOLS, &command, reason),
                      LAR_CLOSE_SIZE);
     /* A name that begins like one of ours, and is longer than any. */
     for (int length = 1; length < 200; length++) {
         snprintf(text, sizeof text, "{\"do\":\"load\",\"name\":\"%0*d\"}", length, 0);
-        wish.name[0] = 'x';
-        assert_int_equal(read_text(text, &wish, reason), LAR_CLOSE_NOT);
-        assert_true(strlen(wish.name) == (size_t)(length < LAR_NAME_MOST ? length : LAR_NAME_MOST));
-        assert_true((wish.name[LAR_NAME_MOST - 1] == 0x7f) == (length > LAR_NAME_MOST));
+        command.name[0] = 'x';
+        assert_int_equal(read_text(text, &command, reason), LAR_CLOSE_NOT);
+        assert_true(strlen(command.name) ==
+                    (size_t)(length < LAR_NAME_MAX ? length : LAR_NAME_MAX));
+        assert_true((command.name[LAR_NAME_MAX - 1] == 0x7f) == (length > LAR_NAME_MAX));
     }
 }
 
@@ -205,10 +209,11 @@ static void beginnings_are_refused(void **unused) {
                                 "\"orientation\":[1,0,0,0],\"opening\":1}";
     for (size_t length = 0; length < strlen(whole); length++) {
         char *text = malloc(length + 1), reason[LAR_REASON_BYTES] = "";
-        lar_wish wish;
+        lar_command command;
         memcpy(text, whole, length);
         char *exact = length ? realloc(text, length) : text;
-        assert_int_equal(lar_wish_read(exact, length, TOOLS, &wish, reason), LAR_CLOSE_POLICY);
+        assert_int_equal(lar_command_read(exact, length, TOOLS, &command, reason),
+                         LAR_CLOSE_POLICY);
         assert_true(strlen(reason) > 0);
         free(exact);
     }

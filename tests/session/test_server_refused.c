@@ -75,12 +75,12 @@ static void tokens_are_asked_for(void **unused) {
     end_serving(&s);
 }
 
-static void say_and_expect_note(client *c, const char *wish) {
-    say(c, wish);
+static void say_and_expect_note(client *c, const char *command) {
+    say(c, command);
     assert_non_null(strstr(await_text(c, "note"), "may only watch"));
 }
 
-/* Everything that acts on the run, by the watch token and by one's own wish. */
+/* Everything that acts on the run, by the watch token and by one's own choice. */
 static void who_may_only_watch_does_nothing_else(void **unused) {
     (void)unused;
     static const char *const acts[] = {"{\"do\":\"pause\"}",
@@ -277,22 +277,22 @@ static void what_makes_no_sense_is_refused(void **unused) {
 
 static void there_are_sixty_four_viewers(void **unused) {
     (void)unused;
-    enum { MOST = 64 };
+    enum { MAX = 64 };
     served s = serve(NULL);
-    client c[MOST];
-    for (int i = 0; i < MOST; i++) {
+    client c[MAX];
+    for (int i = 0; i < MAX; i++) {
         c[i] = open_client(s.port);
         await_text(&c[i], "hello");
     }
-    assert_int_equal(lar_server_viewers(s.server), MOST);
+    assert_int_equal(lar_server_viewers(s.server), MAX);
     client more = open_client(s.port);
     assert_int_equal(await_close(&more), 4003);
     close_client(&more);
     close_client(&c[0]);
-    for (int i = 0; i < 1000 && lar_server_viewers(s.server) == MOST; i++) nap(0.005);
+    for (int i = 0; i < 1000 && lar_server_viewers(s.server) == MAX; i++) nap(0.005);
     c[0] = open_client(s.port);
     await_text(&c[0], "hello");
-    for (int i = 0; i < MOST; i++) close_client(&c[i]);
+    for (int i = 0; i < MAX; i++) close_client(&c[i]);
     end_serving(&s);
 }
 

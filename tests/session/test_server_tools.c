@@ -67,7 +67,7 @@ static void everybody_sees_them(void **unused) {
 static void what_cannot_be_is_said(void **unused) {
     (void)unused;
     static const struct {
-        const char *wish, *because;
+        const char *command, *because;
     } wrong[] = {
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0}", "more than zero"},
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":-1}", "more than zero"},
@@ -82,9 +82,9 @@ static void what_cannot_be_is_said(void **unused) {
     client c = open_client(s.port);
     await_text(&c, "hello");
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        say(&c, wrong[i].wish);
+        say(&c, wrong[i].command);
         if (!strstr(await_text(&c, "note"), wrong[i].because))
-            fail_msg("%s: %s", wrong[i].wish, (char *)c.data);
+            fail_msg("%s: %s", wrong[i].command, (char *)c.data);
     }
     say(&c, SPHERE);
     await_text(&c, "added");

@@ -247,8 +247,8 @@ static void they_stay_when_a_run_goes_back(void **unused) {
     assert_int_equal(add(&b, LAR_TOOL_SPHERE, 0.005, 0), FIRST + 2);
     DONE(lar_session_remove_tool(b.session, FIRST, &failure));
     play_for(&b, 0.1);
-    b.simulation->trip =
-        (lar_trip){.kind = LAR_TRIP_LOAD, .step = lar_simulation_steps(b.simulation)};
+    b.simulation->fault =
+        (lar_fault){.kind = LAR_FAULT_LOAD, .step = lar_simulation_steps(b.simulation)};
     play_for(&b, 1e-3);
     assert_true(status_of(&b).recoveries == 1 && status_of(&b).time < 1.2);
     assert_int_equal(info_of(&b, FIRST).shape, LAR_TOOL_NONE);

@@ -193,13 +193,13 @@ static void reports_are_bounded(void **unused) {
     char longer[2 * LAR_BENCH_TEXT];
     memset(longer, 'x', sizeof longer);
     longer[sizeof longer - 1] = '\0';
-    for (int i = 0; i < LAR_BENCH_SETTINGS_MOST + 3; i++)
+    for (int i = 0; i < LAR_BENCH_SETTINGS_MAX + 3; i++)
         lar_bench_set_text(&report, "title", longer);
-    for (int i = 0; i < LAR_BENCH_FIGURES_MOST + 3; i++)
+    for (int i = 0; i < LAR_BENCH_FIGURES_MAX + 3; i++)
         lar_bench_add(&report, "", i, true, "%s", longer)->more = true;
     lar_bench_add(&report, "", NAN, true, "no number");
-    assert_int_equal(report.settings, LAR_BENCH_SETTINGS_MOST);
-    assert_int_equal(report.figures, LAR_BENCH_FIGURES_MOST);
+    assert_int_equal(report.settings, LAR_BENCH_SETTINGS_MAX);
+    assert_int_equal(report.figures, LAR_BENCH_FIGURES_MAX);
     assert_int_equal(strlen(report.setting[0].text), LAR_BENCH_TEXT - 1);
     assert_int_equal(strlen(report.figure[0].name), LAR_BENCH_TEXT - 1);
 }

@@ -41,13 +41,13 @@ static void figures_are_possible(void **state) {
                              !info.missing && info.start != LAR_COMM_BY_LAUNCHER);
         }
         if (row->missing) continue;
-        assert_true(0 < row->latency.least && row->latency.least <= row->latency.median &&
-                    row->latency.median <= row->latency.most);
+        assert_true(0 < row->latency.min && row->latency.min <= row->latency.median &&
+                    row->latency.median <= row->latency.max);
         assert_int_equal(row->moves_packets, i > 0);
         if (!row->moves_packets) continue;
         assert_true(row->over_hand > 0);
         assert_true(row->half_bandwidth_bytes >= 8 &&
-                    row->half_bandwidth_bytes <= LAR_BENCH_COMM_BYTES_MOST);
+                    row->half_bandwidth_bytes <= LAR_BENCH_COMM_BYTES_MAX);
         for (int size = 0; size < r.sizes; size++) check_figures(&row->at[size], r.portion);
         assert_true(row->at[1].latency == row->latency.median);
     }

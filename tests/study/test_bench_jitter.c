@@ -1,4 +1,4 @@
-/* Ticks are counted and add up; how punctual they are is not tested. */
+/* Ticks are counted and add up; their jitter is not tested. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,11 +9,11 @@
 
 #include <cmocka.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "study/bench/jitter.h"
 
 static void check_percentiles(const lar_percentiles *p) {
-    assert_true(p->p50 >= 0 && p->p50 <= p->p99 && p->p99 <= p->p999 && p->p999 <= p->most);
+    assert_true(p->p50 >= 0 && p->p50 <= p->p99 && p->p99 <= p->p999 && p->p999 <= p->max);
 }
 
 /* Ticks that are given up are not among them. */
@@ -26,10 +26,10 @@ static void every_tick_is_counted(void **unused) {
     if (r.skipped == 0) assert_int_equal(r.ticks, 150);
     assert_true(r.misses <= r.ticks);
     assert_true(fabs(r.missed - (double)r.misses / (double)r.ticks) < 1e-12);
-    assert_true(r.missed_of.least <= r.missed && r.missed <= r.missed_of.most);
+    assert_true(r.missed_of.min <= r.missed && r.missed <= r.missed_of.max);
     check_percentiles(&r.late);
     check_percentiles(&r.done);
-    assert_true(r.done.most >= r.late.most);
+    assert_true(r.done.max >= r.late.max);
     assert_true(r.period == 1000 && r.repeat == 3);
 }
 
@@ -70,10 +70,10 @@ static void impossible_options_are_refused(void **unused) {
         {.seconds = NAN, .repeat = 1},
         {.seconds = 3601, .repeat = 1},
         {.seconds = 0.01, .repeat = 0},
-        {.seconds = 0.01, .repeat = LAR_BENCH_REPEAT_MOST + 1},
+        {.seconds = 0.01, .repeat = LAR_BENCH_REPEAT_MAX + 1},
         {.seconds = 0.01, .repeat = 1, .load = -1},
         {.seconds = 0.01, .repeat = 1, .load = NAN},
-        {.seconds = 0.01, .repeat = 1, .load = 2 * LAR_BENCH_JITTER_LOAD_MOST},
+        {.seconds = 0.01, .repeat = 1, .load = 2 * LAR_BENCH_JITTER_LOAD_MAX},
         {.seconds = 0.01, .repeat = 1, .priority = 100},
         {.seconds = 0.01, .repeat = 1, .priority = -1}};
     lar_bench_jitter_result r;
@@ -81,22 +81,24 @@ static void impossible_options_are_refused(void **unused) {
         assert_int_equal(lar_bench_jitter(&wrong[i], &r, NULL), LAR_ERROR_ARGUMENT);
 }
 
-/* The beat itself, played without a clock; tests/session/test_pace.c has it with pauses and pace.
+/* The deadline clock itself, played without a clock; tests/session/test_pace.c has it with pauses
+ * and pace.
  */
-static void a_beat_is_late_makes_up_and_gives_up(void **unused) {
+static void a_late_clock_makes_up_and_gives_up(void **unused) {
     (void)unused;
     enum { MS = 1000000 };
-    lar_beat beat = {.period = MS + 0.25};
-    lar_beat_restart(&beat, 5 * MS);
-    for (int i = 0; i < 4; i++) assert_false(lar_beat_next(&beat, beat.due + MS / 2));
-    assert_int_equal(beat.due, 9 * MS + 1); /* four quarters of a nanosecond */
-    assert_false(lar_beat_next(&beat, beat.due + MS));
-    assert_true(lar_beat_next(&beat, beat.due + MS + 1));
-    int64_t due = beat.due;
-    assert_int_equal(lar_beat_give_up(&beat, due + 100 * MS), 0);
-    assert_int_equal(beat.due, due);
-    assert_int_equal(lar_beat_give_up(&beat, due + 103 * MS), 3 * MS);
-    assert_int_equal(beat.due, due + 3 * MS);
+    lar_deadline_clock deadline = {.period = MS + 0.25};
+    lar_deadline_clock_restart(&deadline, 5 * MS);
+    for (int i = 0; i < 4; i++)
+        assert_false(lar_deadline_clock_next(&deadline, deadline.due + MS / 2));
+    assert_int_equal(deadline.due, 9 * MS + 1); /* four quarters of a nanosecond */
+    assert_false(lar_deadline_clock_next(&deadline, deadline.due + MS));
+    assert_true(lar_deadline_clock_next(&deadline, deadline.due + MS + 1));
+    int64_t due = deadline.due;
+    assert_int_equal(lar_deadline_clock_give_up(&deadline, due + 100 * MS), 0);
+    assert_int_equal(deadline.due, due);
+    assert_int_equal(lar_deadline_clock_give_up(&deadline, due + 103 * MS), 3 * MS);
+    assert_int_equal(deadline.due, due + 3 * MS);
 }
 
 int main(void) {
@@ -106,6 +108,6 @@ int main(void) {
         cmocka_unit_test(too_much_is_always_missed),
         cmocka_unit_test(a_priority_is_given_or_refused_with_a_sentence),
         cmocka_unit_test(impossible_options_are_refused),
-        cmocka_unit_test(a_beat_is_late_makes_up_and_gives_up)};
+        cmocka_unit_test(a_late_clock_makes_up_and_gives_up)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

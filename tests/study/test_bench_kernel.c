@@ -45,14 +45,14 @@ static double crookedness(const double corner[8][3]) {
     static const int pairs[9][4] = {{0, 1, 3, 2}, {0, 1, 4, 5}, {0, 1, 7, 6},
                                     {0, 3, 1, 2}, {0, 3, 4, 7}, {0, 3, 5, 6},
                                     {0, 4, 1, 5}, {0, 4, 2, 6}, {0, 4, 3, 7}};
-    double most = 0;
+    double max = 0;
     for (int k = 0; k < 9; k++)
         for (int i = 0; i < 3; i++) {
             double first = corner[pairs[k][1]][i] - corner[pairs[k][0]][i];
             double second = corner[pairs[k][3]][i] - corner[pairs[k][2]][i];
-            most = fmax(most, fabs(first - second));
+            max = fmax(max, fabs(first - second));
         }
-    return most;
+    return max;
 }
 
 static void general_blocks_have_no_parallelepiped(void **state) {
@@ -85,9 +85,9 @@ static void figures_fit_together(void **state) {
     assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_OK);
     assert_int_equal(r.elements, 216);
     assert_int_equal(r.nodes, 343);
-    assert_true(0 < r.nanoseconds.least && r.nanoseconds.least <= r.nanoseconds.median &&
-                r.nanoseconds.median <= r.nanoseconds.most);
-    assert_true(0 < r.peak_gflops.least && r.peak_gflops.least <= r.peak_gflops.most);
+    assert_true(0 < r.nanoseconds.min && r.nanoseconds.min <= r.nanoseconds.median &&
+                r.nanoseconds.median <= r.nanoseconds.max);
+    assert_true(0 < r.peak_gflops.min && r.peak_gflops.min <= r.peak_gflops.max);
     double share = 816 / r.nanoseconds.median / r.peak_gflops.median;
     assert_true(fabs(share - r.fraction_of_peak) < 1e-12);
     /* Eighteen gradients at least. */
@@ -101,7 +101,7 @@ static void nonsense_is_refused(void **state) {
     lar_error error;
     assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_ERROR_ARGUMENT);
     options.elements = 8;
-    options.repeat = LAR_BENCH_REPEAT_MOST + 1;
+    options.repeat = LAR_BENCH_REPEAT_MAX + 1;
     assert_int_equal(lar_bench_kernel(&options, &r, &error), LAR_ERROR_ARGUMENT);
 }
 

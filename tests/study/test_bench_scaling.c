@@ -51,7 +51,7 @@ static void check_row(const lar_bench_scaling_row *row, const char *grid, const 
     assert_int_equal(row->threads, threads);
     assert_null(row->missing);
     const lar_spread *time = &row->microseconds;
-    assert_true(0 < time->least && time->least <= time->median && time->median <= time->most);
+    assert_true(0 < time->min && time->min <= time->median && time->median <= time->max);
     assert_true(fabs(row->over_plain * row->speed_up - 1) < 1e-12);
     assert_true(fabs(row->efficiency * processors * threads - row->speed_up) < 1e-12);
 }
@@ -69,7 +69,7 @@ static void figures_fit_together(void **state) {
     assert_true(r.row[0].over_plain == 1);
     double ratio = r.row[2].microseconds.median / r.row[0].microseconds.median;
     assert_true(fabs(r.row[2].over_plain - ratio) < 1e-12);
-    assert_true(r.core_to_core.least > 0);
+    assert_true(r.core_to_core.min > 0);
     assert_int_equal(r.info.elements, 216);
     assert_true(r.steps > 0 && r.repeat == 2);
     assert_true(r.hash == plain_hash(r.warm_up + r.steps));

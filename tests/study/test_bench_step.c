@@ -23,8 +23,8 @@ static uint64_t hash_of_run(const lar_model *model, uint64_t steps) {
 static void check_shape(const lar_bench_step_result *r) {
     const lar_spread *s = &r->microseconds;
     assert_int_equal(r->timed, r->steps * (uint64_t)r->repeat);
-    assert_true(s->least > 0 && s->least <= s->p25 && s->p25 <= s->median);
-    assert_true(s->median <= s->p75 && s->p75 <= s->p95 && s->p95 <= s->most);
+    assert_true(s->min > 0 && s->min <= s->p25 && s->p25 <= s->median);
+    assert_true(s->median <= s->p75 && s->p75 <= s->p95 && s->p95 <= s->max);
     assert_true(r->p50 > 0 && r->p50 <= r->p99 && r->p99 <= r->p999 && r->p999 <= r->longest);
     assert_true(r->mean > 0 && r->mean <= r->longest);
 }
@@ -91,13 +91,13 @@ static void impossible_options_are_refused(void **unused) {
     assert_int_equal(lar_bench_scaling_block(1, &model, NULL), LAR_OK);
     lar_bench_step_options wanted = {.model = model, .steps = 1, .repeat = 0};
     assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_ERROR_ARGUMENT);
-    wanted.repeat = LAR_BENCH_REPEAT_MOST + 1;
+    wanted.repeat = LAR_BENCH_REPEAT_MAX + 1;
     assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_ERROR_ARGUMENT);
     wanted.repeat = 1;
-    wanted.steps = LAR_BENCH_STEP_STEPS_MOST + 1;
+    wanted.steps = LAR_BENCH_STEP_STEPS_MAX + 1;
     assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_ERROR_ARGUMENT);
     wanted.steps = 1;
-    wanted.warm_up = LAR_BENCH_STEP_STEPS_MOST + 1;
+    wanted.warm_up = LAR_BENCH_STEP_STEPS_MAX + 1;
     assert_int_equal(lar_bench_step(&wanted, &r, NULL), LAR_ERROR_ARGUMENT);
     lar_model_destroy(model);
 }

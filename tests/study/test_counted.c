@@ -115,7 +115,7 @@ static void moving_has_the_same_bits(void **state) {
     double push[MOVED] __attribute__((aligned(64))), damped = 0, fastest = 0;
     int64_t force[2][MOVED][4] __attribute__((aligned(64)));
     lar_operations counts = {0};
-    const lar_motion motion = {.keep = 0.999, .dt = 1e-4, .speed = INFINITY, .push = 1};
+    const lar_leapfrog motion = {.keep = 0.999, .dt = 1e-4, .speed = INFINITY, .push = 1};
     assert_int_equal(lar_kernels_find(LAR_ISA_C, &plain, NULL), LAR_OK);
     for (int n = 0; n < MOVED; n++) {
         push[n] = 1e-12 * (2 + next_random(&seed));

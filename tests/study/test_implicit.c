@@ -4,7 +4,7 @@
 
 #include "study/implicit/bench_implicit.h"
 
-enum { NODES_MOST = 200 };
+enum { NODES_MAX = 200 };
 
 static lar_linear_solver *open_solver(const char *method, const char *preconditioner) {
     lar_linear_options options = lar_linear_options_default();
@@ -64,13 +64,13 @@ static lar_implicit_tally implicitly(const lar_model *model, double until, doubl
 
 /* Largest difference against the largest displacement. */
 static double apart(int32_t nodes, const double (*a)[3], const double (*b)[3]) {
-    double most = 0, difference = 0;
+    double max = 0, difference = 0;
     for (int32_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++) {
-            most = fmax(most, fabs(b[n][i]));
+            max = fmax(max, fabs(b[n][i]));
             difference = fmax(difference, fabs(a[n][i] - b[n][i]));
         }
-    return difference / most;
+    return difference / max;
 }
 
 typedef const double (*rows)[3];
@@ -80,7 +80,7 @@ static void agrees_with_the_engine(void **state) {
     for (int law = 0; law < LAR_LAW_COUNT; law++) {
         lar_model *model = slow_model((lar_law)law);
         lar_linear_solver *solver = open_solver("own", NULL);
-        double u[NODES_MOST][3], w[NODES_MOST][3], still[NODES_MOST][3];
+        double u[NODES_MAX][3], w[NODES_MAX][3], still[NODES_MAX][3];
         int32_t nodes = model->mesh.node_count;
         explicitly(model, 0.3, u);
         lar_implicit_tally tally = implicitly(model, 0.3, 0.01, false, solver, w);
@@ -110,7 +110,7 @@ static void second_order_in_time(void **state) {
     load_nodes(model, single_node(brick_node(&b, 3, 2, 2)), 0, 0.005, 0.01, start);
     assert_int_equal(lar_model_check(model, NULL), LAR_OK);
     lar_linear_solver *solver = open_solver("own", NULL);
-    double fine[NODES_MOST][3], one[NODES_MOST][3], half[NODES_MOST][3];
+    double fine[NODES_MAX][3], one[NODES_MAX][3], half[NODES_MAX][3];
     int32_t nodes = model->mesh.node_count;
     implicitly(model, 0.04, 0.00025, false, solver, fine);
     implicitly(model, 0.04, 0.002, false, solver, one);
@@ -136,7 +136,7 @@ static void free_body(void **state) {
     lar_error error;
     options.quasi_static = true;
     options.solver = solver;
-    options.halvings_most = 3;
+    options.halvings_max = 3;
     assert_int_equal(lar_implicit_create(model, &options, &implicit, &error), LAR_OK);
     assert_int_equal(lar_implicit_advance(implicit, 0.1, &error), LAR_ERROR_UNSTABLE);
     print_message("%s\n", error.message);
@@ -145,7 +145,7 @@ static void free_body(void **state) {
     assert_true(lar_implicit_time(implicit) == 0);
     lar_implicit_destroy(implicit);
 
-    double u[NODES_MOST][3];
+    double u[NODES_MAX][3];
     implicitly(model, 0.1, 0.01, false, solver, u);
     for (int32_t n = 0; n < model->mesh.node_count; n++)
         assert_true(fabs(u[n][2] + 0.5 * 9.81 * 0.01) < 1e-9);
@@ -159,7 +159,7 @@ static void solvers_agree(void **state) {
     static const char *const method[][2] = {{"own", NULL},  {"cg", "jacobi"}, {"cg", "icc"},
                                             {"cg", "gamg"}, {"bcgs", "ilu"},  {"bcgs", "jacobi"}};
     lar_model *model = slow_model(LAR_LAW_neo_hookean);
-    double first[NODES_MOST][3], u[NODES_MOST][3];
+    double first[NODES_MAX][3], u[NODES_MAX][3];
     for (size_t k = 0; k < sizeof method / sizeof method[0]; k++) {
         lar_linear_solver *solver = open_solver(method[k][0], method[k][1]);
         if (!solver) {
@@ -182,7 +182,7 @@ static void indefinite_matrix_is_told(void **state) {
     lar_linear_result result;
     assert_int_equal(lar_sparse_create(&model->mesh, &A, NULL), LAR_OK);
     assert_int_equal(A.rows, 3 * model->mesh.node_count);
-    double x[3 * NODES_MOST], right[3 * NODES_MOST];
+    double x[3 * NODES_MAX], right[3 * NODES_MAX];
     for (int32_t r = 0; r < A.rows; r++) {
         *lar_sparse_at(&A, r, r) = 1;
         right[r] = 1;
@@ -222,7 +222,7 @@ static lar_bench_implicit_result bench(lar_implicit_case which, bool quasi_stati
     options.linear.tolerance = options.implicit.tolerance = 1e-4;
     options.implicit.time_step = 0.02;
     options.implicit.quasi_static = quasi_static;
-    options.implicit.halvings_most = 3;
+    options.implicit.halvings_max = 3;
     assert_int_equal(lar_implicit_case_create(which, &options.model, NULL), LAR_OK);
     lar_tool *tool = LAR_MODEL_APPEND(options.model, tool); /* left out, and there afterwards */
     tool->radius = 0.01;

@@ -257,7 +257,7 @@ static void large_blocks_are_efficient(void **state) {
                                           .machines = 1,
                                           .processors = 27,
                                           .threads = 1,
-                                          .edge_most = 8,
+                                          .edge_max = 8,
                                           .efficiency = 0.9};
     assert_int_equal(lar_predict_critical(&options, &critical, NULL), LAR_OK);
     for (int scheme = 0; scheme < LAR_PREDICT_SCHEMES; scheme++) {

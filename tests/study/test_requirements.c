@@ -196,12 +196,12 @@ static void schedules_send_the_examples(void **state) {
     lar_requirements r;
     lar_error error;
     assert_int_equal(lar_requirements_of(model, &options, &r, &error), LAR_OK);
-    assert_int_equal(r.elements_most, 125);
+    assert_int_equal(r.elements_max, 125);
     assert_true(r.quantities.n_p == 27);
     assert_string_equal(r.sent[0].scheme, "all");
-    assert_int_equal(r.sent[0].bytes_most, 296 * 24 + 26 * 16);
+    assert_int_equal(r.sent[0].bytes_max, 296 * 24 + 26 * 16);
     assert_string_equal(r.sent[1].scheme, "local");
-    assert_int_equal(r.sent[1].bytes_most, 216 * 24 + 6 * 16);
+    assert_int_equal(r.sent[1].bytes_max, 216 * 24 + 6 * 16);
     for (int s = 0; s < LAR_REQUIREMENTS_SCHEMES; s++)
         assert_int_equal(r.sent[s].bytes, 24 * r.sent[s].vectors + 16 * r.sent[s].packets);
     for (int s = 0; s < LAR_REQUIREMENTS_SCHEMES; s++) {
@@ -214,7 +214,7 @@ static void schedules_send_the_examples(void **state) {
             of_middle += packet->from == 13 ? packet->bytes : 0;
         }
         assert_int_equal(bytes, r.sent[s].bytes);
-        assert_int_equal(of_middle, r.sent[s].bytes_most);
+        assert_int_equal(of_middle, r.sent[s].bytes_max);
     }
     /* Eq. 4.8 is the scheme `one`: every processor but one sends a part and gets the sum. */
     double estimate = 8 * lar_formula_values(LAR_METHOD_HOURGLASS, &r.quantities);

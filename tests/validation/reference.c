@@ -163,12 +163,12 @@ lar_node_list nodes_at(const lar_model *model, int axis, double at) {
 
 int32_t node_near(const lar_model *model, double x, double y, double z) {
     int32_t nearest = 0;
-    double least = INFINITY;
+    double min = INFINITY;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
         const double *p = model->mesh.position[n];
         double d = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y) + (p[2] - z) * (p[2] - z);
-        if (d < least) {
-            least = d;
+        if (d < min) {
+            min = d;
             nearest = n;
         }
     }

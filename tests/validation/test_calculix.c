@@ -76,16 +76,16 @@ static lar_simulation *follow(lar_model *model, lar_element_kind kind) {
 /* Largest difference of a node's displacement from the reference's, over the largest of those. */
 static double worst(const lar_simulation *simulation, const lar_model *model, const char *field) {
     int32_t nodes = model->mesh.node_count;
-    double(*u)[3] = lar_calloc((size_t)nodes, sizeof *u), most = 0, largest = 0;
+    double(*u)[3] = lar_calloc((size_t)nodes, sizeof *u), max = 0, largest = 0;
     assert_non_null(u);
     reference_field(field, 1, nodes, u);
     for (int32_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++) {
-            most = fmax(most, fabs(displacement(simulation, n, i) - u[n][i]));
+            max = fmax(max, fabs(displacement(simulation, n, i) - u[n][i]));
             largest = fmax(largest, fabs(u[n][i]));
         }
     free(u);
-    return most / largest;
+    return max / largest;
 }
 
 /* ---- cases ----------------------------------------------------------------------------------- */

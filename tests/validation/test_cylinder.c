@@ -89,12 +89,12 @@ static double triangle_square(const point p, const point a, const point b, const
 }
 
 static double distance(const surface *s, const point p) {
-    double least = DBL_MAX;
+    double min = DBL_MAX;
     for (int t = 0; t < s->triangles; t++) {
         const int *n = s->triangle[t];
-        least = fmin(least, triangle_square(p, s->vertex[n[0]], s->vertex[n[1]], s->vertex[n[2]]));
+        min = fmin(min, triangle_square(p, s->vertex[n[0]], s->vertex[n[1]], s->vertex[n[2]]));
     }
-    return sqrt(least);
+    return sqrt(min);
 }
 
 /* Mean distance of the body's boundary nodes to the measured surface; `simulation` may be NULL: the

@@ -7,7 +7,7 @@
  * change they are nearly as soft as the body's first layer of elements (docs/theory.md, contact).
  */
 #include "engine/engine_test.h"
-#include "engine/touch_test.h"
+#include "engine/tool_contact_test.h"
 
 enum { FINE = 6, COARSE = 13 };
 

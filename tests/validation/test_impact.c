@@ -56,7 +56,7 @@ static double fly(lar_simulation *simulation, const char *what, double speed, do
     enum { EVERY = 4 };
     lar_energy energy;
     lar_simulation_energy(simulation, &energy);
-    double start = energy.kinetic, most = 1, balance = 0, deepest = 0;
+    double start = energy.kinetic, max = 1, balance = 0, deepest = 0;
     int32_t touching = 0;
     uint64_t steps = (uint64_t)(seconds / lar_simulation_time_step(simulation));
     while (lar_simulation_steps(simulation) < steps) {
@@ -65,16 +65,16 @@ static double fly(lar_simulation *simulation, const char *what, double speed, do
         lar_simulation_energy(simulation, &energy);
         lar_simulation_contact(simulation, &info);
         double bodies = energy.kinetic + energy.strain + energy.hourglass;
-        most = fmax(most, bodies / start);
+        max = fmax(max, bodies / start);
         balance = fmax(balance, fabs((bodies + energy.contact) / start - 1));
         deepest = fmax(deepest, info.deepest);
         touching = info.touching > touching ? info.touching : touching;
     }
-    print_message("%s | %g m/s | %d | %.6f | %.1e | %d | %.3f mm\n", what, speed, (int)steps, most,
+    print_message("%s | %g m/s | %d | %.6f | %.1e | %d | %.3f mm\n", what, speed, (int)steps, max,
                   balance, (int)touching, 1e3 * deepest);
     assert_true(touching > 0);
     assert_below(balance, 0.02); /* the time integration's own, as the square of the step */
-    return most;
+    return max;
 }
 
 /* A gel as soft as an organ (shear waves of 2 m/s), and a firmer one (6 m/s) for what would crush
@@ -90,8 +90,8 @@ static void each_speed(const char *what, const char *who, const char *contact, d
             double speed = cases[i].speed;
             lar_model *model = flying_blocks(speed, cases[i].shear, who, contact);
             lar_simulation *simulation = begin(model, part ? 0.999 : 0.5);
-            double most = fly(simulation, what, speed, gap / speed + 0.15);
-            assert_below(most, 1.001);
+            double max = fly(simulation, what, speed, gap / speed + 0.15);
+            assert_below(max, 1.001);
             lar_simulation_destroy(simulation);
             lar_model_destroy(model);
         }

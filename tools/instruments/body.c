@@ -128,7 +128,7 @@ static double determinant(const double F[3][3]) {
 }
 
 lar_shape lar_body_shape(const lar_body *body) {
-    lar_shape shape = {.least_volume = INFINITY, .least_corner = INFINITY};
+    lar_shape shape = {.min_volume = INFINITY, .min_corner = INFINITY};
     for (int32_t e = 0; e < body->elements; e++) {
         double corner[8][3], F[3][3] = {{0}}, worst = INFINITY;
         corners_of(body, (const double(*)[3])body->x, e, corner);
@@ -140,8 +140,8 @@ lar_shape lar_body_shape(const lar_body *body) {
             double ratio = corner_jacobian((const double(*)[3])corner, a) / body->corner[e][a];
             if (!(ratio >= worst)) worst = ratio;
         }
-        if (!(volume >= shape.least_volume)) shape.least_volume = volume;
-        if (!(worst >= shape.least_corner)) shape.least_corner = worst;
+        if (!(volume >= shape.min_volume)) shape.min_volume = volume;
+        if (!(worst >= shape.min_corner)) shape.min_corner = worst;
         shape.inverted += !(volume > 0);
         shape.negative += !(worst > 0);
     }
@@ -216,14 +216,14 @@ void lar_body_face(const lar_body *body, int32_t face, double middle[3], double 
 
 /* The square of the distance to the nearest held node. */
 static double from_held(const lar_body *body, int32_t face) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int32_t n = 0; n < body->nodes; n++) {
         double away[3];
         if (!body->fixed[n]) continue;
         lar_minus(body->middle[face], body->rest[n], away);
-        least = fmin(least, lar_dot(away, away));
+        min = fmin(min, lar_dot(away, away));
     }
-    return least;
+    return min;
 }
 
 int32_t lar_body_extreme(const lar_body *body, const double direction[3]) {

@@ -23,9 +23,9 @@ typedef struct lar_body {
 
 /* The simulation's element state at one moment. */
 typedef struct lar_shape {
-    double least_volume, least_corner; /* det F of the mean gradient; the worst corner's Jacobian as
+    double min_volume, min_corner; /* det F of the mean gradient; the worst corner's Jacobian as
                                           a part of that at rest */
-    int32_t inverted, negative;        /* elements with det F <= 0, with a corner <= 0 */
+    int32_t inverted, negative;    /* elements with det F <= 0, with a corner <= 0 */
 } lar_shape;
 
 /* Memory for a body at rest. The model must outlive it. */

@@ -56,7 +56,7 @@ typedef struct lar_leg {
 /* What came of it. Times in milliseconds. */
 typedef struct lar_outcome {
     int stops, resets, grips, inverted, negative;
-    double inside[2], inverted_ms, least_corner, energy, energy_part, seconds, peak;
+    double inside[2], inverted_ms, min_corner, energy, energy_part, seconds, peak;
     double first; /* time of the first stop in the session [s] */
     uint64_t steps, hash;
     char message[1016];
@@ -111,12 +111,12 @@ static void random_turn(lar_hands *h, const double from[4], double to[4]) {
 /* How long a leg takes: no part of the tool goes so far in a step that the engine refuses it. */
 static double duration_of(lar_hands *h, int tool, const lar_leg *leg) {
     const lar_tool_info *info = &h->guide[tool].info;
-    double most = 0.15 * info->radius / lar_simulation_time_step(h->simulation); /* of a half */
-    double speed = fmin(most, between(h, SLOWEST, FASTEST) / 1.5);
+    double max = 0.15 * info->radius / lar_simulation_time_step(h->simulation); /* of a half */
+    double speed = fmin(max, between(h, SLOWEST, FASTEST) / 1.5);
     double turn = lar_quaternion_angle(leg->from.orientation, leg->to.orientation) * info->length;
     double jaws = fabs(leg->from.opening - leg->to.opening) * 0.5 * info->length * info->spread;
     double way = lar_apart(leg->from.position, leg->to.position);
-    return 0.02 + fmax(way / speed, fmax(1.3 * turn, jaws) / fmin(most, FASTEST / 1.5));
+    return 0.02 + fmax(way / speed, fmax(1.3 * turn, jaws) / fmin(max, FASTEST / 1.5));
 }
 
 static void next_leg(lar_hands *h, int tool) {
@@ -241,7 +241,7 @@ static void look(lar_hands *h, double ms, bool energy) {
     if (shape.inverted > 0) h->out.inverted_ms += ms;
     if (shape.inverted > h->out.inverted) h->out.inverted = shape.inverted;
     if (shape.negative > h->out.negative) h->out.negative = shape.negative;
-    h->out.least_corner = fmin(h->out.least_corner, shape.least_corner);
+    h->out.min_corner = fmin(h->out.min_corner, shape.min_corner);
     if (energy) account(h); /* takes longer than all the rest */
 }
 
@@ -326,7 +326,7 @@ static void print_row(const lar_hands *h, uint64_t seed) {
            "| %.3g | %llu | %.0f | %016llx | ",
            h->options->name, h->body->elements, (unsigned long long)seed, o->stops, o->resets,
            o->grips, o->inside[PROBE], o->inside[GRASPER], o->inverted_ms, o->inverted, o->negative,
-           o->least_corner, o->energy_part, o->energy, o->peak, (unsigned long long)refused,
+           o->min_corner, o->energy_part, o->energy, o->peak, (unsigned long long)refused,
            (double)o->steps / o->seconds, (unsigned long long)o->hash);
     if (o->stops)
         printf("%.3f s: %s |\n", o->first, why ? why + 3 : o->message);
@@ -345,7 +345,7 @@ static lar_status session(const lar_hands_options *options, const lar_model *mod
     lar_options with = lar_options_default();
     with.grid = options->grid;
     with.hands = h.tools - HAND;
-    h.out.least_corner = INFINITY;
+    h.out.min_corner = INFINITY;
     lar_status status = lar_simulation_create(model, &with, &h.simulation, error);
     for (int t = 0; t < h.tools && !status; t++)
         status = lar_guide_create(h.simulation, t, options->coupled, &h.guide[t], error);

@@ -97,13 +97,13 @@ static bool read_side(const char *text, double direction[3]) {
 }
 
 static void choose_way(lar_push *p, const double side[3]) {
-    double normal[3], tangent[3], least[3] = {0}, slant = p->options->slant * acos(-1) / 180;
+    double normal[3], tangent[3], min[3] = {0}, slant = p->options->slant * acos(-1) / 180;
     int axis = 0;
     lar_body_face(p->body, lar_body_extreme(p->body, side), p->entry, normal);
     for (int i = 1; i < 3; i++)
         if (fabs(normal[i]) < fabs(normal[axis])) axis = i;
-    least[axis] = 1;
-    lar_cross(normal, least, tangent);
+    min[axis] = 1;
+    lar_cross(normal, min, tangent);
     double length = lar_length(tangent);
     for (int i = 0; i < 3; i++) {
         tangent[i] /= length;
@@ -188,8 +188,8 @@ static void look(lar_push *p, const double force[3], double ms, lar_outcome *out
     lar_shape shape = lar_body_shape(p->body);
     out->winding = fmax(out->winding, winding);
     if (winding > 0.5) out->inside += ms;
-    out->shape.least_volume = fmin(out->shape.least_volume, shape.least_volume);
-    out->shape.least_corner = fmin(out->shape.least_corner, shape.least_corner);
+    out->shape.min_volume = fmin(out->shape.min_volume, shape.min_volume);
+    out->shape.min_corner = fmin(out->shape.min_corner, shape.min_corner);
     if (shape.inverted > out->shape.inverted) out->shape.inverted = shape.inverted;
     if (shape.negative > out->shape.negative) out->shape.negative = shape.negative;
     if (!p->trace) return;
@@ -198,8 +198,8 @@ static void look(lar_push *p, const double force[3], double ms, lar_outcome *out
     lar_minus(p->pose.position, p->start.position, way[1]);
     fprintf(p->trace, "%.5f,%.6f,%.6f,%.5g,%.5g,%.5g,%.3f,%.5f,%.5f,%d,%d,%.6f\n",
             lar_simulation_time(p->simulation), lar_dot(way[0], p->inward),
-            lar_dot(way[1], p->inward), force[0], force[1], force[2], winding, shape.least_volume,
-            shape.least_corner, shape.inverted, shape.negative, lar_body_farthest(p->body, NULL));
+            lar_dot(way[1], p->inward), force[0], force[1], force[2], winding, shape.min_volume,
+            shape.min_corner, shape.inverted, shape.negative, lar_body_farthest(p->body, NULL));
 }
 
 static double now(void) {
@@ -261,8 +261,8 @@ static void print_row(const lar_push *p, const lar_outcome *out, const char *mes
         "| ",
         p->options->name, p->body->elements, p->kind->name, p->options->through ? " through" : "",
         p->options->grasp ? " grasps" : "", p->speed, p->side, out->winding, out->inside, out->peak,
-        1e3 * out->apart, out->after, out->shape.least_volume, out->shape.inverted,
-        out->shape.least_corner, out->shape.negative);
+        1e3 * out->apart, out->after, out->shape.min_volume, out->shape.inverted,
+        out->shape.min_corner, out->shape.negative);
     if (out->stopped)
         printf("- | %.0f | %.3f s: %s |", (double)out->steps / out->seconds,
                lar_simulation_time(p->simulation), why ? why + 3 : message);
@@ -275,7 +275,7 @@ static void print_row(const lar_push *p, const lar_outcome *out, const char *mes
 
 static lar_status run_case(lar_push *p, lar_error *error) {
     lar_outcome out = {.winding = -INFINITY,
-                       .shape = {.least_volume = INFINITY, .least_corner = INFINITY}};
+                       .shape = {.min_volume = INFINITY, .min_corner = INFINITY}};
     double side[3];
     if (!read_side(p->side, side) || !(p->speed > 0))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "a side is +x, -z, +x-y, ..., a speed above 0");

@@ -47,11 +47,11 @@ typedef struct lar_scripts {
     lar_simulation *simulation;
     lar_body body;
     lar_led led[DEVICES];
-    double tick;                 /* [s] */
-    double busy;                 /* processor time since the last tenth of a second began [s] */
-    double all, slowest;         /* processor time, and the most of a tenth of a second [s] */
-    double force, grasp, inside; /* the largest [N]; [s] */
-    double fastest, fastest_at;  /* [m/s] [s] */
+    double tick;         /* [s] */
+    double busy;         /* processor time since the last tenth of a second began [s] */
+    double all, slowest; /* processor time, and the most of a tenth of a second [s] */
+    double force, grasp_force, inside; /* the largest [N]; [s] */
+    double fastest, fastest_at;        /* [m/s] [s] */
     FILE *trace;
 } lar_scripts;
 
@@ -127,12 +127,12 @@ static lar_status tick(lar_scripts *s, double time, lar_error *error) {
 /* The fastest node, and the fastest within `reach` of a place. */
 static double fastest_node(const lar_scripts *s, const double place[3], double reach) {
     const double *v = s->simulation->state.v;
-    double most = 0;
+    double max = 0;
     for (int32_t n = 0; n < s->body.nodes; n++) {
         if (place && lar_apart(s->body.x[n], place) > reach) continue;
-        most = fmax(most, lar_length(v + 4 * s->simulation->domain.layout.local[n]));
+        max = fmax(max, lar_length(v + 4 * s->simulation->domain.layout.local[n]));
     }
-    return most;
+    return max;
 }
 
 static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *force, double winding) {
@@ -145,7 +145,7 @@ static void trace(lar_scripts *s, const lar_led *led, const lar_tool_force *forc
             "%.4f,%s,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%d,%d,%d,%.5f,%.6f,%d,%.2f,%.3f,%.4f,%.4f,%.3g,"
             "%.2f,%.1f\n",
             lar_simulation_time(s->simulation), led->guide.info.name, led->hand.opening,
-            pose.opening, force->force[0], force->force[1], force->force[2], force->grasp,
+            pose.opening, force->force[0], force->force[1], force->force[2], force->grasp_force,
             (int)force->held, (int)force->touching, (int)force->limited, force->apart, force->depth,
             (int)division->parts, division->hardness, division->lately, fastest_node(s, NULL, 0),
             fastest_node(s, pose.position, led->guide.info.length + 0.005), energy.kinetic, winding,
@@ -170,7 +170,7 @@ static void look(lar_scripts *s, double seconds) {
         }
         if (winding > 0.5) s->inside += seconds;
         s->force = fmax(s->force, lar_length(force.force));
-        s->grasp = fmax(s->grasp, force.grasp);
+        s->grasp_force = fmax(s->grasp_force, force.grasp_force);
         if (s->trace) trace(s, led, &force, winding);
     }
     s->all += s->busy;
@@ -191,14 +191,14 @@ static lar_status play(lar_scripts *s, lar_error *error) {
 /* ---- the program --------------------------------------------------------------------------- */
 
 static void print_row(lar_scripts *s, const char *why) {
-    int32_t most;
+    int32_t max;
     double time = lar_simulation_time(s->simulation);
-    uint64_t divided = lar_simulation_divided_steps(s->simulation, &most);
+    uint64_t divided = lar_simulation_divided_steps(s->simulation, &max);
     printf(
         "| %s | inside %.3f s | %.3g N | grasp %.3g N | %.3g m/s at %.3f s | %llu steps in up to "
         "%d | %.3g x, worst %.3g x | %016llx |\n",
-        *why ? why : "no stop", s->inside, s->force, s->grasp, s->fastest, s->fastest_at,
-        (unsigned long long)divided, (int)most, s->all / time, s->slowest,
+        *why ? why : "no stop", s->inside, s->force, s->grasp_force, s->fastest, s->fastest_at,
+        (unsigned long long)divided, (int)max, s->all / time, s->slowest,
         (unsigned long long)lar_simulation_hash(s->simulation));
 }
 

@@ -97,7 +97,7 @@ static double from_segment(const double end[2][3], const double place[3]) {
 
 double lar_line_gap(const lar_line *line, const lar_body *body) {
     enum { N = 8 };
-    double least = INFINITY;
+    double min = INFINITY;
     for (int32_t f = 0; f < body->surface.faces; f++)
         for (int k = 0; k < N * N; k++) {
             double p = (double)(k % N) / (N - 1), q = (double)(k / N) / (N - 1), place[3] = {0};
@@ -106,24 +106,24 @@ double lar_line_gap(const lar_line *line, const lar_body *body) {
                 for (int i = 0; i < 3; i++)
                     place[i] += weight[a] * body->x[body->surface.face[f][a]][i];
             for (int s = 0; s < line->count; s++)
-                least = fmin(least, from_segment((const double(*)[3])line->end[s], place));
+                min = fmin(min, from_segment((const double(*)[3])line->end[s], place));
         }
-    return least;
+    return min;
 }
 
 double lar_line_winding(const lar_line *line, const lar_body *body) {
     static const double SPACING = 0.006;
-    double most = -INFINITY;
+    double max = -INFINITY;
     for (int s = 0; s < line->count; s++) {
         const double *from = line->end[s][0], *to = line->end[s][1];
         int parts = (int)ceil(lar_apart(from, to) / SPACING);
         for (int k = s > 0; k <= parts; k++) {
             double place[3], t = parts ? (double)k / parts : 0;
             for (int i = 0; i < 3; i++) place[i] = (1 - t) * from[i] + t * to[i];
-            most = fmax(most, lar_body_winding(body, place));
+            max = fmax(max, lar_body_winding(body, place));
         }
     }
-    return most;
+    return max;
 }
 
 /* ---- leading a tool ------------------------------------------------------------------------ */

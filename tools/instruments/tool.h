@@ -6,7 +6,7 @@
 #include "session/coupling.h"
 
 /* Opens a scene of `lariat mesh` with other tools: its supports, materials and damping, but no
- * gravity, load, motion or fine surface. `tools` are the lines below the key; "" for none. With
+ * gravity, load, motion or embedded surface. `tools` are the lines below the key; "" for none. With
  * `contact` the surface touches itself. A file beside the scene is written for it, and removed. */
 lar_status lar_scene_with(const char *path, const char *tools, int contact, lar_model **model,
                           lar_error *error);

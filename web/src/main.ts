@@ -74,8 +74,8 @@ function start(): void {
             element('fine-row').hidden = true;
             hints.start(session.watches);
         },
-        riding(riding) {
-            view.setRiding(riding);
+        embedded(embedded) {
+            view.setEmbedded(embedded);
             element('fine-row').hidden = false;
         },
         frame(frame) {

@@ -16,7 +16,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get checksum() { return session.frame.checksum; },
         get frames() { return session.frames; },
         get torn() { return session.torn; },
-        get pictures() { return view.drawn; },
+        get pictures() { return view.pictures; },
         get field() { return session.frame.field; },
         get watches() { return session.watches; },
         get hand() { return hand.state; },

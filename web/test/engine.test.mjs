@@ -195,12 +195,12 @@ test('colour maps change the picture, the legend and its range', async () => {
         await v.page.getByRole('radio', { name }).evaluate((choice) => choice.click());
         await v.until((n) => window.lariat.field === n, number);
         await v.page.waitForTimeout(250);
-        const most = await v.page.locator('#legend-most').innerText();
-        assert.match(most, unit);
-        assert.notEqual(parseFloat(most), 0, `${name} up to ${most}`);
+        const max = await v.page.locator('#legend-most').innerText();
+        assert.match(max, unit);
+        assert.notEqual(parseFloat(max), 0, `${name} up to ${max}`);
         const [colour] = await colours(v.page, [MIDDLE]);
         assert.ok(difference(colour, tissue) > 25, `${name}: ${colour}, tissue: ${tissue}`);
-        seen.add(most);
+        seen.add(max);
         await v.shot(`3-${name.replaceAll(' ', '-')}`);
     }
     assert.equal(seen.size, 3);
@@ -500,7 +500,7 @@ test('ten reloads in a row, quickly; every frame was of one step', async () => {
     await v.close();
 });
 
-test('a fine surface rides on its mesh: drawn, pulled where it stands off, and switched off', async () => {
+test('an embedded surface follows its mesh: drawn, pulled where it stands off, and switched off', async () => {
     const riding = await view(rider(), '--port', '0');
     const r = await openPage(browser, riding.url);
     assert.equal(await r.get('surface'), 'fine');

@@ -68,7 +68,7 @@ test('the picture is cut open, by mouse and by keys, and what is cut away cannot
 });
 
 for (const riding of [false, true])
-    test(`organs are faded and hidden${riding ? ', also of a fine surface' : ''}, and let the pointer through`, async (t) => {
+    test(`organs are faded and hidden${riding ? ', also of an embedded surface' : ''}, and let the pointer through`, async (t) => {
         const own = await mock({ riding, organs: 'halves' });
         t.after(() => own.close());
         const v = await openPage(browser, own.url);
@@ -440,8 +440,8 @@ test('gravity, damping and stiffness are set by slider and by keyboard, and go b
     for (let i = 0; i <= 60; i += 20) await v.page.mouse.move(box.x + box.width * (0.5 + i / 150), box.y + box.height / 2, { steps: 20 });
     await v.page.mouse.up();
     await v.page.waitForTimeout(300);
-    const [sent, most] = [own.state.settings - before, (Date.now() - began) / 70 + 2];
-    assert.ok(sent > 0 && sent < most, `${sent} messages, ${most} may be`);
+    const [sent, max] = [own.state.settings - before, (Date.now() - began) / 70 + 2];
+    assert.ok(sent > 0 && sent < max, `${sent} messages, ${max} may be`);
     await v.until((shown) => Math.abs(window.lariat.body.damping - shown) < 1e-9, parseFloat(await text('damping-text')));
 
     await v.page.getByRole('button', { name: 'As the scene' }).click();

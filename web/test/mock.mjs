@@ -44,7 +44,7 @@ function pear(n = 14) {
     return { x, f, m: f.filter((_, i) => i % 4 === 0).map((_, i) => (i % 6 === 0 ? 1 : 0)) };
 }
 
-/* A fine surface that rides on a layer of elements under the mesh's surface: every quad is one's outer face,
+/* An embedded surface on a layer of elements under the mesh's surface: every quad is one's outer face,
  * its inner nodes lie halfway to the middle. Vertices stand off by `off` of the layer's depth. */
 function fineSurface(mesh, pieces = 4, off = 0.12) {
     const n = mesh.x.length / 3;
@@ -163,8 +163,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         const at = performance.now();
         if (state.state !== 'playing') return (due = at);
         const every = 1 / (state.pace || 3) / (state.slow ? 0.4 : 1);
-        let most = 60;
-        while (due < at && most-- > 0) {
+        let max = 60;
+        while (due < at && max-- > 0) {
             tick();
             due += every;
         }
@@ -222,7 +222,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     }
     const processorOf = (i) => (rest[3 * i] > 0 ? 1 : 0) + (rest[3 * i + 2] > (low + high) / 2 ? 2 : 0);
 
-    function ridingMessage() {
+    function embeddedMessage() {
         const [m, k] = [fine.vertices, fine.triangles.length / 3];
         const out = new ArrayBuffer(16 + 20 * n + 68 * m + 12 * k);
         let at = 16;
@@ -360,7 +360,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         const say = (message) => socket.send(JSON.stringify(message));
         say({ ...hello(), watches });
         socket.send(surfaceMessage());
-        if (fine) socket.send(ridingMessage());
+        if (fine) socket.send(embeddedMessage());
         say(status());
         const beat = setInterval(() => say(status()), 100);
         let messages = 0;

@@ -217,9 +217,9 @@ test('pressure has a map with zero in its middle; processors have colours of the
     await drag(v.page, 500, 250, 0, -70);
     await v.page.waitForTimeout(700);
     // Both of one picture: the range follows every frame.
-    const [least, most] = await v.page.evaluate(() =>
+    const [min, max] = await v.page.evaluate(() =>
         ['legend-least', 'legend-most'].map((id) => document.getElementById(id).innerText));
-    assert.equal(least, `−${most}`);
+    assert.equal(min, `−${max}`);
     await v.page.mouse.up();
     await v.page.getByRole('radio', { name: 'processor' }).click();
     assert.equal(await v.page.locator('#keys-of-colours li').count(), 4);
@@ -236,9 +236,9 @@ test('an organ at rest has one colour: the range has a floor', async (t) => {
     own.state.noise = true; // values of rounding, as a body at rest has them
     const v = await openPage(browser, own.url);
     const places = [[470, 300], [530, 300], [500, 250], [500, 380]];
-    for (const [name, most] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
+    for (const [name, max] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
         await v.page.getByRole('radio', { name }).click();
-        await v.until((text) => document.getElementById('legend-most').innerText === text, most);
+        await v.until((text) => document.getElementById('legend-most').innerText === text, max);
         await v.page.waitForTimeout(300);
         const seen = await colours(v.page, places);
         for (const colour of seen) assert.ok(difference(colour, seen[0]) < 45, `${name}: ${seen.join(' | ')}`);
@@ -247,7 +247,7 @@ test('an organ at rest has one colour: the range has a floor', async (t) => {
     await v.close();
 });
 
-test('a fine surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
+test('an embedded surface is drawn instead of the mesh, painted and pulled; one may look at either', async () => {
     const own = await mock({ riding: true });
     const v = await openPage(browser, own.url);
     assert.equal(await v.get('surface'), 'fine');
@@ -265,8 +265,8 @@ test('a fine surface is drawn instead of the mesh, painted and pulled; one may l
     assert.notEqual(await v.get('nodes'), nodes);
     await v.page.waitForTimeout(300);
     const coarse = await width();
-    assert.ok(fine >= coarse + 4, `${fine} places of the row are fine surface, ${coarse} mesh`);
-    await v.page.getByLabel('fine surface').check();
+    assert.ok(fine >= coarse + 4, `${fine} places of the row are embedded surface, ${coarse} mesh`);
+    await v.page.getByLabel('embedded surface').check();
     await v.until(() => window.lariat.surface === 'fine');
 
     // Pulled where it is drawn; the engine hears a point of the mesh.
@@ -439,10 +439,10 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
 test('where nothing rides there is no switch for it, and its key says so', async () => {
     const v = await openPage(browser, server.url);
     assert.equal(await v.get('surface'), 'mesh');
-    assert.equal(await v.page.getByLabel('fine surface').isVisible(), false);
+    assert.equal(await v.page.getByLabel('embedded surface').isVisible(), false);
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('m');
-    await v.page.getByText('has no fine surface').waitFor({ timeout: 3000 });
+    await v.page.getByText('has no embedded surface').waitFor({ timeout: 3000 });
     await v.close();
 });
 

@@ -82,7 +82,7 @@ function filtered(data, width, bytes) {
     for (let i = 0; i < pixels.length; i++) pixels[i] &= 0xfe;
     for (let y = 0; y < height; y++) {
         const from = y * (width + 1);
-        let least = Infinity;
+        let min = Infinity;
         for (let filter = 0; filter < 5; filter++) {
             const row = Buffer.alloc(width + 1, filter);
             let sum = 0;
@@ -90,7 +90,7 @@ function filtered(data, width, bytes) {
                 row[x + 1] = pixels[y * width + x] - guess(filter, y, x);
                 sum += Math.min(row[x + 1], 256 - row[x + 1]);
             }
-            if (sum < least) [least] = [sum, row.copy(out, from)];
+            if (sum < min) [min] = [sum, row.copy(out, from)];
         }
     }
     return out;

@@ -13,7 +13,7 @@ const parts = {};
 
 before(async () => {
     const files = [
-        'picture/surface', 'picture/riding', 'picture/palette', 'picture/grain', 'picture/camera', 'hands/pick',
+        'picture/surface', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'hands/pick',
         'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'cards/addtool', 'link/protocol', 'dom',
     ];
     await build({
@@ -154,35 +154,35 @@ function ballInCube(n, size) {
     };
 }
 
-test('a riding surface follows its nodes, also beyond them, and so do its normals and values', () => {
+test('an embedded surface follows its nodes, also beyond them, and so do its normals and values', () => {
     const { nodes, message } = ballInCube(12, 1.3);
-    const riding = new parts.riding.Riding(nodes, message);
-    assert.equal(riding.nodes, 12 * 24);
-    for (let i = 0; i < riding.nodes; i++) {
-        assert.ok(Math.abs(radius(riding.rest, i) - 1.3) < 1e-5);
-        const outward = [0, 1, 2].reduce((s, k) => s + riding.normals[3 * i + k] * riding.rest[3 * i + k], 0);
-        if (i >= 24 && i < riding.nodes - 24) assert.ok(outward > 1.25, `normal ${i}: ${outward}`);
+    const embedded = new parts.embedded.EmbeddedSurface(nodes, message);
+    assert.equal(embedded.nodes, 12 * 24);
+    for (let i = 0; i < embedded.nodes; i++) {
+        assert.ok(Math.abs(radius(embedded.rest, i) - 1.3) < 1e-5);
+        const outward = [0, 1, 2].reduce((s, k) => s + embedded.normals[3 * i + k] * embedded.rest[3 * i + k], 0);
+        if (i >= 24 && i < embedded.nodes - 24) assert.ok(outward > 1.25, `normal ${i}: ${outward}`);
     }
     const f = [[0.3, -1.1, 0.2], [0.9, 0.4, 0.3], [-0.1, 0.2, 1.4]];
     const turn = (x, i, k) => 0.7 * k + f[k].reduce((s, v, j) => s + v * x[3 * i + j], 0);
-    riding.place(nodes.map((_, i) => turn(nodes, Math.floor(i / 3), i % 3)));
-    for (let i = 0; i < riding.nodes * 3; i++)
-        assert.ok(Math.abs(riding.positions[i] - turn(riding.rest, Math.floor(i / 3), i % 3)) < 1e-5);
-    const values = new Float32Array(riding.nodes);
-    riding.paint(nodes.filter((_, i) => i % 3 === 1), values);
-    for (let i = 0; i < riding.nodes; i++) assert.ok(Math.abs(values[i] - riding.rest[3 * i + 1]) < 1e-5);
-    const high = riding.rest.indexOf(Math.max(...riding.rest.filter((_, i) => i % 3 === 2)));
-    assert.ok(riding.leader((high - 2) / 3) >= 4, 'the highest vertex listens to a node above');
+    embedded.place(nodes.map((_, i) => turn(nodes, Math.floor(i / 3), i % 3)));
+    for (let i = 0; i < embedded.nodes * 3; i++)
+        assert.ok(Math.abs(embedded.positions[i] - turn(embedded.rest, Math.floor(i / 3), i % 3)) < 1e-5);
+    const values = new Float32Array(embedded.nodes);
+    embedded.paint(nodes.filter((_, i) => i % 3 === 1), values);
+    for (let i = 0; i < embedded.nodes; i++) assert.ok(Math.abs(values[i] - embedded.rest[3 * i + 1]) < 1e-5);
+    const high = embedded.rest.indexOf(Math.max(...embedded.rest.filter((_, i) => i % 3 === 2)));
+    assert.ok(embedded.leader((high - 2) / 3) >= 4, 'the highest vertex listens to a node above');
 });
 
-test('a riding surface is picked, followed, and held at the mesh', () => {
+test('an embedded surface is picked, followed, and held at the mesh', () => {
     const { nodes, message } = ballInCube(24, 1.3);
-    const riding = new parts.riding.Riding(nodes, message);
-    const hit = parts.pick.pick(riding, { x: 0.1, y: -5, z: 0.2 }, { x: 0, y: 1, z: 0 });
+    const embedded = new parts.embedded.EmbeddedSurface(nodes, message);
+    const hit = parts.pick.pick(embedded, { x: 0.1, y: -5, z: 0.2 }, { x: 0, y: 1, z: 0 });
     assert.ok(Math.abs(hit.point[1] + Math.sqrt(1.69 - 0.05)) < 0.01, `${hit.point}`);
-    const near = parts.pick.nearestNode(riding, { x: 0.1, y: -1.3, z: 0.2 });
+    const near = parts.pick.nearestNode(embedded, { x: 0.1, y: -1.3, z: 0.2 });
     const now = {};
-    parts.pick.follow(riding, near, now);
+    parts.pick.follow(embedded, near, now);
     assert.ok(Math.hypot(now.x - 0.1, now.y + 1.3, now.z - 0.2) < 0.15);
     const { x, quads } = cube(3, false);
     const at = (p) => parts.pick.nearestPoint(x, quads, { x: p[0], y: p[1], z: p[2] }).point;
@@ -191,19 +191,19 @@ test('a riding surface is picked, followed, and held at the mesh', () => {
     assert.deepEqual(at([2, 0.125, -4]).map((v) => Math.round(v * 1e6) / 1e6), [1, 0.125, -1]);
 });
 
-test('17,000 riding vertices are moved and lit; how long that takes is printed', (t) => {
+test('17,000 embedded vertices are moved and lit; how long that takes is printed', (t) => {
     const { nodes, message } = ballInCube(92, 0.9);
-    const riding = new parts.riding.Riding(nodes, message);
-    const values = new Float32Array(riding.nodes);
+    const embedded = new parts.embedded.EmbeddedSurface(nodes, message);
+    const values = new Float32Array(embedded.nodes);
     let best = Infinity;
     for (let i = 0; i < 60; i++) {
         const start = performance.now();
-        riding.place(nodes);
-        riding.paint(nodes, values);
+        embedded.place(nodes);
+        embedded.paint(nodes, values);
         best = Math.min(best, performance.now() - start);
     }
-    t.diagnostic(`${riding.nodes} vertices: ${best.toFixed(2)} ms a picture`);
-    assert.ok(riding.positions.every(Number.isFinite));
+    t.diagnostic(`${embedded.nodes} vertices: ${best.toFixed(2)} ms a picture`);
+    assert.ok(embedded.positions.every(Number.isFinite));
 });
 
 test('the range of the force is a round number not below the peak', () => {
@@ -264,17 +264,17 @@ test('the range of a resting organ has a floor, so that rounding is not spread o
     const { follow, floorOf } = parts.range;
     assert.deepEqual([['m', 1e-4], ['Pa', 1], ['J/m³', 0.01]].map(([unit]) => floorOf(unit)), [1e-4, 1, 0.01]);
     assert.equal(floorOf(''), 0);
-    const still = { least: 0, most: 0 };
-    assert.deepEqual(follow(still, 3e-19, 4e-18, 'm', false), { least: 0, most: 1e-4 });
-    assert.deepEqual(follow(still, -2e-9, 1e-9, 'Pa', true), { least: -1, most: 1 });
-    assert.deepEqual(follow(still, 0, 250, 'Pa', false), { least: 0, most: 250 });
-    assert.deepEqual(follow(still, -250, 100, 'Pa', true), { least: -250, most: 250 });
+    const still = { min: 0, max: 0 };
+    assert.deepEqual(follow(still, 3e-19, 4e-18, 'm', false), { min: 0, max: 1e-4 });
+    assert.deepEqual(follow(still, -2e-9, 1e-9, 'Pa', true), { min: -1, max: 1 });
+    assert.deepEqual(follow(still, 0, 250, 'Pa', false), { min: 0, max: 250 });
+    assert.deepEqual(follow(still, -250, 100, 'Pa', true), { min: -250, max: 250 });
     // Downwards slowly, and never below the floor.
-    let range = { least: 0, most: 250 };
+    let range = { min: 0, max: 250 };
     range = follow(range, 0, 0, 'Pa', false);
-    assert.ok(range.most < 250 && range.most > 230);
+    assert.ok(range.max < 250 && range.max > 230);
     for (let i = 0; i < 500; i++) range = follow(range, 0, 0, 'Pa', false);
-    assert.ok(Math.abs(range.most - 1) < 1e-6, `${range.most}`);
+    assert.ok(Math.abs(range.max - 1) < 1e-6, `${range.max}`);
 });
 
 test('messages of a wrong length are refused', () => {
@@ -282,7 +282,7 @@ test('messages of a wrong length are refused', () => {
     new DataView(message).setUint32(4, 5, true);
     assert.throws(() => parts.protocol.readFrame(message, parts.protocol.emptyFrame()), /wrong length/);
     assert.throws(() => parts.protocol.readSurface(new ArrayBuffer(20)), /wrong length/);
-    assert.throws(() => parts.protocol.readRiding(new Uint32Array([4, 1, 1, 1, 0, 0]).buffer), /wrong length/);
+    assert.throws(() => parts.protocol.readEmbedded(new Uint32Array([4, 1, 1, 1, 0, 0]).buffer), /wrong length/);
 });
 
 test('times are written in milliseconds, and slow motion is never faster than asked for', () => {

@@ -37,11 +37,11 @@ static void print_table(const lar_bench_kernel_result *r, bool general) {
            (int)r->edge[0], (int)r->edge[1], (int)r->edge[2],
            general ? "general hexahedra" : "boxes", (int)r->nodes, r->isa);
     printf("%-17s%.2f ns (%.2f to %.2f), median of %d samples of %llu steps\n", "per element",
-           r->nanoseconds.median, r->nanoseconds.least, r->nanoseconds.most, r->repeat,
+           r->nanoseconds.median, r->nanoseconds.min, r->nanoseconds.max, r->repeat,
            (unsigned long long)r->steps);
     printf("%-17s%.2f us\n", "per step", 1e-3 * r->nanoseconds.median * r->elements);
     printf("%-17s%.1f Gflop/s (%.1f to %.1f), fused multiply-adds of this core in the same run\n",
-           "peak", r->peak_gflops.median, r->peak_gflops.least, r->peak_gflops.most);
+           "peak", r->peak_gflops.median, r->peak_gflops.min, r->peak_gflops.max);
     printf("%-17s%.1f %% (%d operations per element)\n", "of the peak", 100 * r->fraction_of_peak,
            LAR_BENCH_OPERATIONS);
     printf("%-17s%.0f bytes per element\n", "memory", r->bytes_per_element);
@@ -69,7 +69,7 @@ static int kernel_main(int argc, char **argv) {
         CLI_CHOICE("--precision", "NAME", "double, the only one there is", &precision, precisions),
         CLI_CHOICE("--isa", "NAME", "instruction set: auto (default), c, neon, avx2, avx512", &isa,
                    cli_isa_names),
-        CLI_COUNT("--repeat", "N", "samples (9)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
+        CLI_COUNT("--repeat", "N", "samples (9)", &repeat, 1, LAR_BENCH_REPEAT_MAX),
         BENCH_OPTIONS(frame),
         CLI_END};
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
@@ -156,7 +156,7 @@ const cli_command cli_bench = {
         "  step      time of whole steps of a scene, the demonstration organ's or yours\n"
         "  comm      latency and bandwidth between processors, for every backend\n"
         "  scaling   time of a step with several processors, against one\n"
-        "  jitter    how punctual this machine is, a thousand times a second\n"
+        "  jitter    timer jitter and scheduling latency, a thousand times a second\n"
         "  precision what single precision would lose and win\n"
         "  implicit  the same slow loading, implicitly and explicitly\n"
         "and has options of its own: lariat bench kernel --help",

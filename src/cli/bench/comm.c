@@ -83,7 +83,7 @@ static void print_summary(const lar_bench_comm_result *r) {
             continue;
         }
         printf("%-13s %6.3f (%.3f to %.3f)", row->name, 1e-3 * row->latency.median,
-               1e-3 * row->latency.least, 1e-3 * row->latency.most);
+               1e-3 * row->latency.min, 1e-3 * row->latency.max);
         if (row->moves_packets && row->over_hand > 0)
             printf(" %8.2f", row->over_hand);
         else if (row->moves_packets)
@@ -154,8 +154,8 @@ static int comm_main(int argc, char **argv) {
     bool quick = false;
     bench_frame frame = bench_frame_of(&cli_bench_comm, "comm");
     const cli_option options[] = {
-        CLI_COUNT("--bytes", "N", "of a packet (424)", &bytes, 1, LAR_BENCH_COMM_BYTES_MOST),
-        CLI_COUNT("--repeat", "N", "samples (15)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
+        CLI_COUNT("--bytes", "N", "of a packet (424)", &bytes, 1, LAR_BENCH_COMM_BYTES_MAX),
+        CLI_COUNT("--repeat", "N", "samples (15)", &repeat, 1, LAR_BENCH_REPEAT_MAX),
         CLI_TEXT("--backend", "NAMES", "only these, as in shm,tcp (all)", &backends),
         CLI_FLAG("--quick", "does it work? few sizes, short samples", &quick),
         BENCH_OPTIONS(frame),

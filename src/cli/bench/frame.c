@@ -112,12 +112,12 @@ void bench_close_json(const bench_frame *frame, json_writer *json) {
 
 void bench_write_spread(json_writer *json, const char *name, const lar_spread *spread) {
     json_open(json, name, '{');
-    json_number(json, "min", spread->least);
+    json_number(json, "min", spread->min);
     json_number(json, "p25", spread->p25);
     json_number(json, "median", spread->median);
     json_number(json, "p75", spread->p75);
     json_number(json, "p95", spread->p95);
-    json_number(json, "max", spread->most);
+    json_number(json, "max", spread->max);
     json_close(json);
 }
 
@@ -158,13 +158,13 @@ static int complain_of_worst(const bench_frame *frame, const lar_bench_figure *w
 static int judge(const bench_frame *frame) {
     const lar_bench_report *report = &frame->report;
     const lar_bench_figure *worst = NULL;
-    double most = 0;
+    double max = 0;
     int failed = 0;
     for (int i = 0; i < report->figures; i++) {
         lar_comparison c =
             lar_baseline_compare(frame->baseline, &report->figure[i], frame->tolerance);
         if (!c.failed) continue;
-        if (!worst || c.worse > most) worst = &report->figure[i], most = c.worse;
+        if (!worst || c.worse > max) worst = &report->figure[i], max = c.worse;
         failed++;
     }
     if (worst) return complain_of_worst(frame, worst, failed);

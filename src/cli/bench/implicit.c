@@ -59,7 +59,7 @@ static void write_json(const implicit_settings *s, const lar_bench_implicit_resu
     json_number(&json, "simulated", r->until);
     json_number(&json, "largest", r->largest);
     json_number(&json, "apart", r->apart);
-    json_number(&json, "kinetic_most", r->kinetic_most);
+    json_number(&json, "kinetic_most", r->kinetic_max);
     json_open(&json, "explicit", '{');
     json_number(&json, "time_step", r->explicit_step);
     json_integer(&json, "steps", (int64_t)r->explicit_steps);
@@ -130,7 +130,7 @@ static int measure(implicit_settings *s) {
     s->options.linear.method = solver_names[s->solver];
     s->options.linear.preconditioner = preconditioner_names[s->preconditioner];
     s->options.implicit.tolerance = 1e-4;
-    s->options.implicit.halvings_most = (int)s->halvings;
+    s->options.implicit.halvings_max = (int)s->halvings;
     int failure = begin(s);
     if (failure) return failure;
     lar_status status = lar_bench_implicit(&s->options, &result, &error);

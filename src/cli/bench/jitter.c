@@ -1,4 +1,4 @@
-/* lariat bench jitter: how punctual this machine is. */
+/* lariat bench jitter: timer jitter and scheduling latency of this machine. */
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -11,7 +11,7 @@ static void write_percentiles(json_writer *json, const char *name, const lar_per
     json_number(json, "p50", p->p50);
     json_number(json, "p99", p->p99);
     json_number(json, "p999", p->p999);
-    json_number(json, "max", p->most);
+    json_number(json, "max", p->max);
     json_close(json);
 }
 
@@ -37,7 +37,7 @@ static void write_json(const bench_frame *frame, const lar_bench_jitter_options 
 
 static void print_percentiles(const char *name, const lar_percentiles *p) {
     printf("%-17shalf below %.2f us, 99 %% below %.2f, 99.9 %% below %.2f, the most %.1f\n", name,
-           p->p50, p->p99, p->p999, p->most);
+           p->p50, p->p99, p->p999, p->max);
 }
 
 static void print_table(const lar_bench_jitter_options *o, const lar_bench_jitter_result *r) {
@@ -50,7 +50,7 @@ static void print_table(const lar_bench_jitter_options *o, const lar_bench_jitte
     print_percentiles("due to awake", &r->late);
     if (o->load > 0) print_percentiles("due to done", &r->done);
     printf("%-17s%" PRIu64 ", %.3g %% (%.3g to %.3g %% of a turn)\n", "misses", r->misses,
-           100 * r->missed, 100 * r->missed_of.least, 100 * r->missed_of.most);
+           100 * r->missed, 100 * r->missed_of.min, 100 * r->missed_of.max);
     if (r->skipped > 0) printf("%-17s%.3g s\n", "given up", r->skipped);
 }
 
@@ -60,7 +60,7 @@ static int report(bench_frame *frame, const lar_bench_jitter_options *o,
     lar_bench_add(report, "us", r->late.p50, false, "late_us.p50");
     lar_bench_add(report, "us", r->late.p99, true, "late_us.p99");
     lar_bench_add(report, "us", r->late.p999, false, "late_us.p999");
-    lar_bench_add(report, "us", r->late.most, false, "late_us.max");
+    lar_bench_add(report, "us", r->late.max, false, "late_us.max");
     lar_bench_add(report, "us", r->done.p50, o->load > 0, "done_us.p50");
     lar_bench_add(report, "us", r->done.p99, false, "done_us.p99");
     lar_bench_add(report, "", r->missed, false, "missed");
@@ -88,9 +88,9 @@ static int jitter_main(int argc, char **argv) {
     bench_frame frame = bench_frame_of(&cli_bench_jitter, "jitter");
     const cli_option options[] = {
         CLI_REAL("--seconds", "S", "of a turn (2)", &wanted.seconds, 0.01, 3600),
-        CLI_COUNT("--repeat", "N", "turns (5)", &repeat, 1, LAR_BENCH_REPEAT_MOST),
+        CLI_COUNT("--repeat", "N", "turns (5)", &repeat, 1, LAR_BENCH_REPEAT_MAX),
         CLI_REAL("--load", "US", "microseconds of computation in every tick (0)", &wanted.load, 0,
-                 LAR_BENCH_JITTER_LOAD_MOST),
+                 LAR_BENCH_JITTER_LOAD_MAX),
         CLI_COUNT("--priority", "N",
                   "before all ordinary threads of the machine (SCHED_FIFO);\nneeds the right to "
                   "(ulimit -r, root)",
@@ -106,7 +106,7 @@ static int jitter_main(int argc, char **argv) {
 
 const cli_command cli_bench_jitter = {
     .name = "bench jitter",
-    .summary = "how punctual this machine is, a thousand times a second",
+    .summary = "timer jitter and scheduling latency, a thousand times a second",
     .arguments = "",
     .description =
         "A thread wakes every millisecond as a session's does, and computes nothing, or for as\n"

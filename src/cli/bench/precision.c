@@ -22,7 +22,7 @@ typedef struct outcome {
     double stable[LAR_PRECISION_COUNT];
 } outcome;
 
-enum { STABLE_STEPS_MOST = 20000 };
+enum { STABLE_STEPS_MAX = 20000 };
 
 /* The nodes of `single` are moved by plain C: its time would say nothing. */
 static bool timed(const lar_precision_way *way, int which) {
@@ -34,7 +34,7 @@ static void write_way(json_writer *json, const lar_precision_way *way, int which
     json_boolean(json, "went", way->went);
     if (way->went) {
         json_number(json, "difference", way->difference);
-        json_number(json, "difference_most", way->difference_most);
+        json_number(json, "difference_most", way->difference_max);
         json_number(json, "left", way->left);
         json_number(json, "speed", way->speed);
         json_number(json, "strain_energy", way->strain);
@@ -84,7 +84,7 @@ static void print_case(const char *name, const lar_precision_result *r) {
         const lar_precision_way *way = &r->way[w];
         if (way->went)
             printf("%-8s%12.2e%12.2e%12.5f%12.2e%12.7f%12.2e", lar_precision_names[w],
-                   way->difference, way->difference_most, way->left, way->speed, way->strain,
+                   way->difference, way->difference_max, way->left, way->speed, way->strain,
                    way->drift);
         else
             printf("%-8sstopped", lar_precision_names[w]);
@@ -122,7 +122,7 @@ static lar_status measure(const settings *s, const lar_model *model, outcome *o,
         status = lar_precision_compare(&options, &o->result[o->count++], error);
     }
     if (status || model) return status;
-    if (options.steps > STABLE_STEPS_MOST) options.steps = STABLE_STEPS_MOST;
+    if (options.steps > STABLE_STEPS_MAX) options.steps = STABLE_STEPS_MAX;
     options.what = LAR_CASE_VIBRATION;
     o->stable_known = true;
     return lar_precision_stable(&options, o->stable, error);

@@ -83,8 +83,8 @@ static void print_row(const lar_bench_scaling_row *row, bool plain) {
         printf("%-20s missing: %s\n", name, row->missing);
         return;
     }
-    printf("%-20s %9.2f (%.2f to %.2f)", name, row->microseconds.median, row->microseconds.least,
-           row->microseconds.most);
+    printf("%-20s %9.2f (%.2f to %.2f)", name, row->microseconds.median, row->microseconds.min,
+           row->microseconds.max);
     if (!plain)
         printf("%8.1f %% %8.2f %8.0f %%", 100 * row->over_plain, row->speed_up,
                100 * row->efficiency);
@@ -100,7 +100,7 @@ static void print_table(const scaling_settings *s, const lar_bench_scaling_resul
            r->repeat, r->steps, r->warm_up, r->hash);
     if (r->core_to_core.median > 0)
         printf("core to core %.3f us (%.3f to %.3f)", 1e-3 * r->core_to_core.median,
-               1e-3 * r->core_to_core.least, 1e-3 * r->core_to_core.most);
+               1e-3 * r->core_to_core.min, 1e-3 * r->core_to_core.max);
     printf("%s%d cores%s\n\n", r->core_to_core.median > 0 ? ", " : "", (int)r->cores,
            r->pinned ? ", every thread bound to one where there are enough" : "");
     printf("%-20s %27s %11s %8s %10s\n", "", "step [us] (least to most)", "of plain", "speed-up",
@@ -242,12 +242,12 @@ static int scaling_main(int argc, char **argv) {
                  "genetic, metis, random",
                  &s.wanted.distribution),
         CLI_FLAG("--no-pin", "leave it to the system which thread runs where", &s.no_pin),
-        CLI_COUNT("--repeat", "N", "samples (9)", &s.repeat, 1, LAR_BENCH_REPEAT_MOST),
+        CLI_COUNT("--repeat", "N", "samples (9)", &s.repeat, 1, LAR_BENCH_REPEAT_MAX),
         CLI_FLAG("--quick", "does it work? few steps", &s.wanted.quick),
         BENCH_OPTIONS(s.frame),
         CLI_COUNT("--processor", "K",
                   "given, with --master, to the processes that the\nbenchmark starts itself",
-                  &s.processor, 0, LAR_GRID_MOST - 1),
+                  &s.processor, 0, LAR_GRID_MAX - 1),
         CLI_TEXT("--master", "HOST:PORT", "where processor 0 listens", &s.master),
         CLI_END};
     int status = cli_parse(&cli_bench_scaling, options, argc, argv, &s.scene, 1);

@@ -52,7 +52,7 @@ static void print_table(const step_settings *s, const lar_bench_step_result *r) 
            (int)r->info.elements, (int)r->info.nodes, r->isa);
     printf("%-17s%.2f us (%.2f to %.2f), median of %d samples of %" PRIu64 " steps after %" PRIu64
            "\n",
-           "a step", time->median, time->least, time->most, r->repeat, r->steps, r->warm_up);
+           "a step", time->median, time->min, time->max, r->repeat, r->steps, r->warm_up);
     printf("%-17shalf below %.2f us, 99 %% below %.2f, 99.9 %% below %.2f, the longest %.2f, "
            "mean %.2f\n",
            "single steps", r->p50, r->p99, r->p999, r->longest, r->mean);
@@ -82,7 +82,7 @@ static int report(step_settings *s, const lar_bench_step_result *r) {
 static void take_over(const bench_frame *frame, int64_t *value, const char *key) {
     const char *text = frame->baseline ? lar_baseline_text(frame->baseline, key) : NULL;
     long long earlier = text ? strtoll(text, NULL, 10) : -1;
-    if (earlier >= 0 && earlier <= LAR_BENCH_STEP_STEPS_MOST) *value = earlier;
+    if (earlier >= 0 && earlier <= LAR_BENCH_STEP_STEPS_MAX) *value = earlier;
 }
 
 static void set_count(lar_bench_report *report, const char *name, bool given, int64_t count) {
@@ -147,12 +147,12 @@ static int step_main(int argc, char **argv) {
         CLI_COUNT("--steps", "N",
                   "of a sample (1, 2 or 5 times a power of ten that last\nsome tenths of a second; "
                   "with --against as many as then)",
-                  &s.steps, 1, LAR_BENCH_STEP_STEPS_MOST),
+                  &s.steps, 1, LAR_BENCH_STEP_STEPS_MAX),
         CLI_COUNT("--warm-up", "N", "steps before them that do not count (a fifth as many)",
-                  &s.warm_up, 0, LAR_BENCH_STEP_STEPS_MOST),
+                  &s.warm_up, 0, LAR_BENCH_STEP_STEPS_MAX),
         CLI_CHOICE("--isa", "NAME", "instruction set: auto (default), c, neon, avx2, avx512",
                    &s.isa, cli_isa_names),
-        CLI_COUNT("--repeat", "N", "samples (9)", &s.repeat, 1, LAR_BENCH_REPEAT_MOST),
+        CLI_COUNT("--repeat", "N", "samples (9)", &s.repeat, 1, LAR_BENCH_REPEAT_MAX),
         BENCH_OPTIONS(s.frame),
         CLI_END};
     lar_model *model = NULL;

@@ -65,7 +65,7 @@ int bench_sweep(bench_frame *frame, int32_t elements, int repeat, const char *sv
     int status = bench_begin(frame);
     if (status) return status;
     cli_catch_stop();
-    const lar_sweep_options options = {.elements = elements, .repeat = repeat, .watch = tell};
+    const lar_sweep_options options = {.elements = elements, .repeat = repeat, .callback = tell};
     lar_status failed = lar_bench_sweep(&options, &result, &error);
     if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
     if (!failed && svg) failed = lar_sweep_write_svg(svg, &result, frame->machine.cpu, &error);

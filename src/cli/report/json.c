@@ -20,9 +20,9 @@ static int utf8_length(const unsigned char *text) {
         if ((text[i] & 0xc0) != 0x80) return 0;
         code = code << 6 | (text[i] & 0x3f);
     }
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
     bool surrogate = code >= 0xd800 && code <= 0xdfff;
-    return code < least[length] || code > 0x10ffff || surrogate ? 0 : length;
+    return code < min[length] || code > 0x10ffff || surrogate ? 0 : length;
 }
 
 static void print_string(FILE *out, const char *text) {

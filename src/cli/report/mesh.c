@@ -46,7 +46,7 @@ void mesh_report_json(const mesh_report *report) {
     json_close(&json);
     json_integer(&json, "cuts", info->cuts);
     json_text(&json, "fix", info->fix);
-    json_integer(&json, "pads", info->pads);
+    json_integer(&json, "pads", info->extra_supports);
     json_integer(&json, "fixed_nodes", info->fixed_nodes);
     json_open(&json, "scaled_jacobian", '{');
     json_number(&json, "min", report->model.scaled_jacobian_min);
@@ -141,9 +141,9 @@ static void print_support(const mesh_report *report) {
     else if (!nowhere)
         printf("at the %s", info->fix);
     if (bones > 0) printf("%s", nowhere ? "at its bones" : ", and at its bones");
-    if (info->pads > 0)
-        printf(", and on %d pad%s that bear%s its weight", (int)info->pads,
-               info->pads == 1 ? "" : "s", info->pads == 1 ? "s" : "");
+    if (info->extra_supports > 0)
+        printf(", and on %d extra support%s that bear%s its weight", (int)info->extra_supports,
+               info->extra_supports == 1 ? "" : "s", info->extra_supports == 1 ? "s" : "");
     if (nowhere && bones == 0)
         printf("nowhere\n");
     else

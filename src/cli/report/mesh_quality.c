@@ -19,14 +19,14 @@ void cli_print_jacobians(const lar_mesh_quality *quality) {
     enum { BINS = 10, WIDTH = 40 };
     static const char bar[WIDTH + 1] = "########################################";
     int first = 0;
-    int32_t most = 1;
+    int32_t max = 1;
     char above_02[16], above_05[16];
     while (first < BINS - 1 && quality->jacobian_bin[first] == 0) first++;
     for (int b = 0; b < BINS; b++)
-        if (quality->jacobian_bin[b] > most) most = quality->jacobian_bin[b];
+        if (quality->jacobian_bin[b] > max) max = quality->jacobian_bin[b];
     for (int b = first; b < BINS; b++) {
         int32_t count = quality->jacobian_bin[b];
-        int length = (int)ceil((double)WIDTH * count / most);
+        int length = (int)ceil((double)WIDTH * count / max);
         printf("%-17s%.1f .. %.1f %8d%s%.*s\n", "", 0.1 * b, 0.1 * (b + 1), (int)count,
                length ? " " : "", length, bar);
     }
@@ -74,13 +74,13 @@ void cli_print_deviation(const lar_mesh_quality *quality) {
         printf("%-17s%s, the true surface holds %s (%+.2f %%)\n", "volume",
                cli_volume(quality->volume).text, cli_volume(quality->true_volume).text,
                100 * (quality->volume / quality->true_volume - 1));
-    if (!(quality->deviation_most > 0)) return;
+    if (!(quality->deviation_max > 0)) return;
     printf("%-17smean ", "deviation");
     print_distance(quality, quality->deviation_mean);
     printf(",\n%-17s95 %% of the surface below ", "");
     print_distance(quality, quality->deviation_95);
     printf(",\n%-17slargest (Hausdorff) ", "");
-    print_distance(quality, quality->deviation_most);
+    print_distance(quality, quality->deviation_max);
     putchar('\n');
 }
 
@@ -108,7 +108,7 @@ void cli_write_quality(json_writer *json, const lar_mesh_quality *quality) {
     json_number(json, "true_volume", quality->true_volume);
     json_number(json, "deviation_mean", quality->deviation_mean);
     json_number(json, "deviation_95", quality->deviation_95);
-    json_number(json, "deviation_max", quality->deviation_most);
+    json_number(json, "deviation_max", quality->deviation_max);
     json_integer(json, "crossings", quality->crossings);
     json_number(json, "crossing_depth", quality->crossing_depth);
     json_close(json);

@@ -73,8 +73,8 @@ static void write_check(json_writer *json, const lar_predict_check *c) {
         json_text(json, "grid", c->grid[i]);
         json_text(json, "comm", c->comm);
         json_number(json, "predicted_us", 1e6 * c->predicted[i]);
-        json_number(json, "measured_us", 1e6 * c->measured[i].least);
-        json_number(json, "predicted_over_measured", c->predicted[i] / c->measured[i].least);
+        json_number(json, "measured_us", 1e6 * c->measured[i].min);
+        json_number(json, "predicted_over_measured", c->predicted[i] / c->measured[i].min);
         json_close(json);
     }
     json_close(json);
@@ -143,8 +143,8 @@ static void print_check(const lar_predict_check *c) {
            "quotient");
     for (int i = 0; i < LAR_PREDICT_CHECKS; i++)
         printf("%-6s by %-10s%15.2f%15.2f (%7.2f, %6.2f)%11.3f\n", c->grid[i], c->comm,
-               1e6 * c->predicted[i], 1e6 * c->measured[i].least, 1e6 * c->measured[i].median,
-               1e6 * c->measured[i].most, c->predicted[i] / c->measured[i].least);
+               1e6 * c->predicted[i], 1e6 * c->measured[i].min, 1e6 * c->measured[i].median,
+               1e6 * c->measured[i].max, c->predicted[i] / c->measured[i].min);
 }
 
 void predict_report_print(const predict_report *report) {
@@ -189,8 +189,8 @@ void predict_scaling_json(const predict_scaling *s) {
         json_number(&json, "alone_us", 1e6 * b->alone);
         json_number(&json, "efficiency", b->efficiency);
         json_number(&json, "occupation", b->occupation);
-        json_integer(&json, "packets_max", b->packets_most);
-        json_integer(&json, "bytes_max", b->bytes_most);
+        json_integer(&json, "packets_max", b->packets_max);
+        json_integer(&json, "bytes_max", b->bytes_max);
         json_close(&json);
     }
     json_end(&json);
@@ -211,7 +211,7 @@ void predict_scaling_print(const predict_scaling *s) {
         printf("%-18s%11d%14s%12.2f%10.1f %%%10.1f %%%9" PRId64 "%11" PRId64 "\n",
                lar_predict_scheme_name[s->schemes[i % s->scheme_count]],
                (int)s->processors[i / s->scheme_count], grid, 1e6 * b->step, 100 * b->efficiency,
-               100 * b->occupation, b->packets_most, b->bytes_most);
+               100 * b->occupation, b->packets_max, b->bytes_max);
     }
 }
 
@@ -222,7 +222,7 @@ void predict_critical_json(const lar_critical_options *o, const lar_critical *cr
     json_integer(&json, "processors", o->processors);
     json_integer(&json, "threads", o->threads);
     json_number(&json, "efficiency", o->efficiency);
-    json_integer(&json, "elements_most", (int64_t)o->edge_most * o->edge_most * o->edge_most);
+    json_integer(&json, "elements_most", (int64_t)o->edge_max * o->edge_max * o->edge_max);
     json_open(&json, "critical", '[');
     for (int32_t m = 0; m < o->machines; m++)
         for (int s = 0; s < LAR_PREDICT_SCHEMES; s++) {

@@ -178,7 +178,7 @@ static void print_sent(const requirements_report *p) {
         const lar_requirements_sent *s = &p->r->sent[i];
         printf("  %-10s%12" PRId64 "%12" PRId64 "%14" PRId64 "%14s%20" PRId64 "\n", s->scheme,
                s->vectors, s->packets, s->bytes, scale((double)s->bytes / q->step_ex, 4).text,
-               s->bytes_most);
+               s->bytes_max);
     }
     printf("  Eq. 4.8 estimates %.0f bytes, %s/s, without the 16 bytes at the ends of each packet.",
            estimate, scale(estimate / q->step_ex, 4).text);

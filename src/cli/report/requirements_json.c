@@ -157,7 +157,7 @@ static void write_model(json_writer *json, const lar_requirements *r) {
         json_integer(json, "packets", s->packets);
         json_integer(json, "empty_packets", s->empty);
         json_integer(json, "bytes", s->bytes);
-        json_integer(json, "bytes_max", s->bytes_most);
+        json_integer(json, "bytes_max", s->bytes_max);
         json_number(json, "bytes_per_second", (double)s->bytes / step);
         write_packets(json, s);
         json_close(json);
@@ -197,7 +197,7 @@ void requirements_write_json(const requirements_report *p) {
         json_open(&json, "grid", '[');
         for (int i = 0; i < 3; i++) json_integer(&json, NULL, p->r->grid[i]);
         json_close(&json);
-        json_integer(&json, "elements_max", p->r->elements_most);
+        json_integer(&json, "elements_max", p->r->elements_max);
     }
     write_quantities(&json, "quantities", &p->r->quantities);
     if (p->thesis && p->title) {

@@ -75,7 +75,7 @@ static void write_tools(json_writer *json, const lar_simulation *simulation) {
         json_open(json, NULL, '{');
         json_text(json, "tool", info.name);
         json_vector(json, "force", force.force);
-        json_number(json, "grasp", force.grasp);
+        json_number(json, "grasp", force.grasp_force);
         json_integer(json, "touching", force.touching);
         json_integer(json, "held", force.held);
         json_close(json);
@@ -102,8 +102,8 @@ static void write_rest(json_writer *json, const run_report *report) {
 
 void run_report_json(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
-    int32_t most_parts;
-    uint64_t divided = lar_simulation_divided_steps(simulation, &most_parts);
+    int32_t max_parts;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &max_parts);
     char hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
     json_writer json = json_begin(out);
@@ -133,7 +133,7 @@ void run_report_json(const run_report *report, FILE *out) {
     write_tools(&json, simulation);
     write_rest(&json, report);
     json_integer(&json, "divided_steps", (int64_t)divided);
-    json_integer(&json, "most_parts", most_parts);
+    json_integer(&json, "most_parts", max_parts);
     json_text(&json, "state_hash", hash);
     json_boolean(&json, "verify", report->verify);
     json_integer(&json, "frames", report->frames);
@@ -158,17 +158,17 @@ static void print_contact(const lar_simulation *simulation, FILE *out) {
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
     if (info.tested == 0) return;
-    static const double LEAST = 0.001; /* what is worth its digits [%] */
+    static const double MIN = 0.001; /* what is worth its digits [%] */
     double tested = 100 * (double)info.tested / (double)info.possible;
     fprintf(out,
             "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
             " searches, %s%.*f %% of all pairs tested\n",
             "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
-            tested < LEAST ? "less than " : "",
+            tested < MIN ? "less than " : "",
             tested < 1    ? 3
             : tested < 10 ? 1
                           : 0,
-            fmax(tested, LEAST));
+            fmax(tested, MIN));
 }
 
 /* Nothing of tools that neither touch nor hold. */
@@ -181,7 +181,7 @@ static void print_tools(const lar_simulation *simulation, FILE *out) {
         const double *f = force.force;
         fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
                 sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
-        if (force.grasp > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp);
+        if (force.grasp_force > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp_force);
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
         fputc('\n', out);
     }
@@ -189,11 +189,11 @@ static void print_tools(const lar_simulation *simulation, FILE *out) {
 
 /* Nothing where steps stayed whole. */
 static void print_parts(const lar_simulation *simulation, FILE *out) {
-    int32_t most;
-    uint64_t divided = lar_simulation_divided_steps(simulation, &most);
+    int32_t max;
+    uint64_t divided = lar_simulation_divided_steps(simulation, &max);
     if (divided > 0)
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", divided,
-                (int)most);
+                (int)max);
 }
 
 static void print_rest(const run_report *report, FILE *out) {

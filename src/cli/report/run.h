@@ -23,7 +23,7 @@ typedef struct run_report {
     double elapsed; /* wall time from the first step to the last, frames included [s] */
 } run_report;
 
-/* Keys: DESIGN section 11 and docs/cli.md. */
+/* Keys: docs/cli.md. */
 void run_report_json(const run_report *report, FILE *out);
 void run_report_table(const run_report *report, FILE *out);
 

@@ -19,10 +19,10 @@ static void write_times(json_writer *json, const char *name, double p50, double 
     json_close(json);
 }
 
-static int32_t most_parts(const view_report *report) {
-    int32_t most;
-    lar_simulation_divided_steps(report->simulation, &most);
-    return most;
+static int32_t max_parts(const view_report *report) {
+    int32_t max;
+    lar_simulation_divided_steps(report->simulation, &max);
+    return max;
 }
 
 static void write_tools(json_writer *json, const view_report *report) {
@@ -34,7 +34,7 @@ static void write_tools(json_writer *json, const view_report *report) {
         json_number(json, "largest_force", load->force);
         json_number(json, "limit", load->limit);
         json_boolean(json, "limit_reached", load->reached != 0);
-        json_number(json, "largest_grasp", load->grasp);
+        json_number(json, "largest_grasp", load->grasp_force);
         json_close(json);
     }
     json_close(json);
@@ -45,7 +45,8 @@ static void print_tools(const view_report *report, FILE *out) {
         const lar_tool_load *load = &report->tool[i].load;
         fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s", "tool", report->tool[i].name,
                 load->force, load->limit, load->reached ? "; the limit was reached" : "");
-        if (load->grasp > 0) fprintf(out, "; jaws grasped with up to %.3g N", load->grasp);
+        if (load->grasp_force > 0)
+            fprintf(out, "; jaws grasped with up to %.3g N", load->grasp_force);
         fputc('\n', out);
     }
 }
@@ -125,8 +126,8 @@ void view_report_json(const view_report *report, FILE *out) {
     json_integer(&json, "recoveries", (int64_t)s->recoveries);
     json_text(&json, "recovery", s->recovery);
     json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
-    json_integer(&json, "most_parts", most_parts(report));
-    json_integer(&json, "viewers", report->viewers_most);
+    json_integer(&json, "most_parts", max_parts(report));
+    json_integer(&json, "viewers", report->viewers_max);
     write_tools(&json, report);
     write_devices(&json, report);
     json_text(&json, "state_hash", hash);
@@ -179,9 +180,9 @@ void view_report_table(const view_report *report, FILE *out) {
                 s->recovery);
     if (s->divided_steps > 0)
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", s->divided_steps,
-                (int)most_parts(report));
+                (int)max_parts(report));
     print_tools(report, out);
     print_devices(report, out);
-    fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_most);
+    fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_max);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
 }

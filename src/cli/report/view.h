@@ -32,7 +32,7 @@ typedef struct view_report {
     double pace, elapsed;             /* asked for at the start; [s] */
     int64_t slow_times;               /* that slow motion began */
     lar_slow_cause slow_cause;        /* of the last time */
-    int32_t viewers_most;             /* at once */
+    int32_t viewers_max;              /* at once */
     int32_t tools;
     view_tool tool[VIEW_TOOLS];
     int32_t devices;

@@ -79,8 +79,8 @@ static lar_status compare_contents(const lar_proof *proof, const lar_proof_packe
                                 i, k, l);
     }
     if (send->whole != receive->whole) {
-        int32_t most = send->whole > receive->whole ? send->whole : receive->whole;
-        int32_t k = from->vector[send->vectors.first + send->vectors.count - most];
+        int32_t max = send->whole > receive->whole ? send->whole : receive->whole;
+        int32_t k = from->vector[send->vectors.first + send->vectors.count - max];
         return LAR_DISPROVE(error,
                             "%s, but with %d whole forces instead of %d: node %d is whole on one "
                             "side and a part on the other",

@@ -212,7 +212,7 @@ static lar_status check_whole(const processor *p, int32_t node, const use *use_o
 static lar_status check_threads(const processor *p, int32_t node, const use *use_of, int32_t count,
                                 lar_error *error) {
     /* before[r][t]: the last batch of thread t in which the node has a rank below r. */
-    int32_t threads = p->s->threads, before[RANKS + 1][LAR_THREADS_MOST];
+    int32_t threads = p->s->threads, before[RANKS + 1][LAR_THREADS_MAX];
     memset(before, 0xff, sizeof before);
     for (int32_t i = 0; i < count; i++)
         before[use_of[i].rank + 1][use_of[i].thread] = use_of[i].batch;

@@ -78,11 +78,11 @@ static lar_status measure_spread(const lar_schedule_set *set, int32_t *spread, l
 /* ---- the proof --------------------------------------------------------------------------- */
 
 static void count_all(const lar_schedule_set *set, const lar_mesh *mesh, lar_schedule_proof *out) {
-    int64_t most = (mesh->element_count + (int64_t)set->count - 1) / set->count; /* eq. 6.7 */
+    int64_t max = (mesh->element_count + (int64_t)set->count - 1) / set->count; /* eq. 6.7 */
     out->balanced = true;
     for (int32_t p = 0; p < set->count; p++) {
         const lar_schedule *s = &set->of[p];
-        out->balanced &= s->element_count <= most;
+        out->balanced &= s->element_count <= max;
         out->batches += s->batch_count;
         for (int32_t b = 0; b < s->batch_count; b++) {
             const lar_batch *batch = &s->batch[b];

@@ -30,9 +30,9 @@ static lar_status check_head(const lar_schedule_set *set, int32_t p, uint64_t me
                             "processor %d: the schedule belongs to another division, or to other "
                             "options, than that of processor 0",
                             p);
-    if (s->threads < 1 || s->threads > LAR_THREADS_MOST)
+    if (s->threads < 1 || s->threads > LAR_THREADS_MAX)
         return LAR_DISPROVE(error, "processor %d: %d threads; 1 to %d are possible", p, s->threads,
-                            LAR_THREADS_MOST);
+                            LAR_THREADS_MAX);
     bool good = s->batch_count >= 0 && s->thread_first[0] == 0 &&
                 s->thread_first[s->threads] == s->batch_count;
     for (int32_t t = 0; t < s->threads; t++) good &= s->thread_first[t] <= s->thread_first[t + 1];

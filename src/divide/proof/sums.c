@@ -25,7 +25,7 @@ typedef struct play {
     const lar_proof *proof;
     int64_t *first; /* [nodes + 2] of a node's vectors */
     vector *vector; /* of all packets, by node */
-    int32_t *set;   /* [incidence->most] processors of a node */
+    int32_t *set;   /* [incidence->max] processors of a node */
     int32_t *place; /* [processors] place of a processor in the set */
     int32_t *have;  /* [|P_k|][|P_k|], and before the stage */
 } play;
@@ -110,12 +110,12 @@ static lar_status play_node(const play *p, int32_t k, int32_t count, lar_error *
 lar_status lar_proof_sums(lar_proof *proof, int64_t *sums, lar_error *error) {
     const lar_incidence *in = proof->incidence;
     size_t nodes = (size_t)proof->mesh->node_count, processors = (size_t)proof->set->count;
-    size_t most = (size_t)in->most < processors ? (size_t)in->most : processors;
+    size_t max = (size_t)in->max < processors ? (size_t)in->max : processors;
     play p = {.proof = proof,
               .first = lar_calloc(nodes + 2, sizeof *p.first),
-              .set = lar_calloc((size_t)in->most + 1, sizeof *p.set),
+              .set = lar_calloc((size_t)in->max + 1, sizeof *p.set),
               .place = lar_calloc(processors, sizeof *p.place),
-              .have = lar_calloc(2 * most * most, sizeof *p.have)};
+              .have = lar_calloc(2 * max * max, sizeof *p.have)};
     lar_status status = p.first && p.set && p.place && p.have
                             ? list_vectors(&p, error)
                             : lar_fail_memory(error, 8 * nodes, "sums of nodes");

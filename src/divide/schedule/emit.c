@@ -185,12 +185,12 @@ static void put_transfers(emission *em) {
 
 static bool make_room(emission *em) {
     lar_schedule *s = em->to;
-    size_t most = (size_t)em->plan->batch_count + LAR_THREADS_MOST + 1;
-    em->number = lar_calloc(most, sizeof *em->number);
-    em->rank = lar_calloc(most, sizeof *em->rank);
-    em->receives = lar_calloc(most, sizeof *em->receives);
-    em->sends = lar_calloc(most, sizeof *em->sends);
-    s->batch = lar_calloc(most, sizeof *s->batch);
+    size_t max = (size_t)em->plan->batch_count + LAR_THREADS_MAX + 1;
+    em->number = lar_calloc(max, sizeof *em->number);
+    em->rank = lar_calloc(max, sizeof *em->rank);
+    em->receives = lar_calloc(max, sizeof *em->receives);
+    em->sends = lar_calloc(max, sizeof *em->sends);
+    s->batch = lar_calloc(max, sizeof *s->batch);
     s->element = lar_calloc((size_t)s->element_count, sizeof *s->element);
     s->node = lar_calloc((size_t)s->node_count, sizeof *s->node);
     return em->number && em->rank && em->receives && em->sends && s->batch && s->element && s->node;

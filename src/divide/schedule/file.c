@@ -15,7 +15,7 @@ enum {
     MINIMUM_NUMBER = 2 /* "0\n" */
 };
 /* No buffer is larger: sums of offsets and sizes stay far from overflow. */
-static const int64_t offset_most = INT64_C(1) << 40;
+static const int64_t offset_max = INT64_C(1) << 40;
 
 /* A packet's place in a buffer: in ours, or in that of the peer. */
 typedef struct place {
@@ -64,23 +64,23 @@ static lar_status expect(reader *r, const char *word) {
 }
 
 /* The next word as a number; it stays the next word, so that refusals name its line. */
-static lar_status number(const reader *r, const char *what, int64_t least, int64_t most,
+static lar_status number(const reader *r, const char *what, int64_t min, int64_t max,
                          int64_t *value) {
     if (!lar_text_file_int64(&r->file, value))
         return REFUSE(r, "here must stand a number, %s, not '%.*s'; see docs/formats.md", what,
                       SHOWN(r));
-    if (*value < least || *value > most)
+    if (*value < min || *value > max)
         return REFUSE(r, "%s is %" PRId64 " here, but must lie between %" PRId64 " and %" PRId64,
-                      what, *value, least, most);
+                      what, *value, min, max);
     return LAR_OK;
 }
 
 /* ---- head -------------------------------------------------------------------------------- */
 
-static lar_status head_number(reader *r, const char *key, int64_t least, int64_t most,
+static lar_status head_number(reader *r, const char *key, int64_t min, int64_t max,
                               int64_t *value) {
     lar_status status = lar_text_file_key(&r->file, key);
-    return status ? status : number(r, key, least, most, value);
+    return status ? status : number(r, key, min, max, value);
 }
 
 static lar_status head_name(reader *r, const char *key, const char *const *names, int count,
@@ -114,14 +114,14 @@ static lar_status read_head(reader *r) {
     lar_status status = lar_text_file_version(&r->file, VERSION);
     if (!status) status = lar_text_file_grid(&r->file, &s->grid);
     if (!status) status = head_number(r, "processor", 0, s->grid.count - 1, &processor);
-    if (!status) status = head_number(r, "threads", 1, LAR_THREADS_MOST, &threads);
+    if (!status) status = head_number(r, "threads", 1, LAR_THREADS_MAX, &threads);
     if (!status) status = head_name(r, "scheme", lar_scheme_name, LAR_SCHEMES, &scheme);
     if (!status)
         status = head_name(r, "channels", lar_channel_use_name, LAR_CHANNEL_USES, &channels);
     if (!status) status = head_bits(r, "mesh", &s->mesh);
     if (!status) status = lar_text_file_mesh(&r->file, s->mesh, r->mesh);
     if (!status) status = head_bits(r, "division", &s->division);
-    if (!status) status = head_number(r, "receive-bytes", 0, offset_most, &s->receive_bytes);
+    if (!status) status = head_number(r, "receive-bytes", 0, offset_max, &s->receive_bytes);
     r->room_line = r->file.number;
     if (!status && s->receive_bytes % LAR_PACKET_ALIGN != 0)
         status = REFUSE(r, "receive-bytes is %" PRId64 ", but must be a multiple of %d",
@@ -275,7 +275,7 @@ static lar_status read_address(reader *r, lar_transfer *t) {
     if (!status) status = number(r, "a stage", 0, LAR_STAGES - 1, &stage);
     if (!status) status = advance(r);
     if (!status) status = expect(r, "offset");
-    if (!status) status = number(r, "an offset", 0, offset_most, &t->offset);
+    if (!status) status = number(r, "an offset", 0, offset_max, &t->offset);
     if (!status && t->offset % LAR_PACKET_ALIGN != 0)
         status = REFUSE(r, "the offset %" PRId64 " is no multiple of %d; packets begin at those",
                         t->offset, LAR_PACKET_ALIGN);

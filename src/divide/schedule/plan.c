@@ -84,7 +84,7 @@ static void mark_nodes(lar_plan *plan, const lar_plan_packet *packet, int32_t ma
 /* A new gap with a batch for each thread, the one that receives (if only one does) at the end: it
  * waits for the others. */
 static lar_plan_gap *add_gap(lar_plan *plan, int32_t receiver, lar_error *error) {
-    assert(plan->gap_count < LAR_GAPS_MOST);
+    assert(plan->gap_count < LAR_GAPS_MAX);
     lar_plan_gap *gap = &plan->gap[plan->gap_count];
     *gap = (lar_plan_gap){.relay = LAR_NOWHERE, .first = plan->pooled, .before = plan->since};
     for (int32_t i = 1; i <= plan->threads; i++) {
@@ -198,7 +198,7 @@ static lar_status add_stage(lar_plan *plan, int32_t stage, lar_plan_packet **scr
                             lar_error *error) {
     lar_packets *all = &plan->site->packets;
     int32_t units = 0, end = all->sent_first[plan->processor + 1];
-    int32_t relays = end - all->sent_first[plan->processor], most = relays;
+    int32_t relays = end - all->sent_first[plan->processor], max = relays;
     for (int32_t i = all->sent_first[plan->processor]; i < end; i++) {
         lar_plan_packet *packet = &all->packet[i];
         if (packet->stage != stage) continue;
@@ -210,7 +210,7 @@ static lar_status add_stage(lar_plan *plan, int32_t stage, lar_plan_packet **scr
             scratch[units++] = packet;
     }
     lar_status status = add_units(plan, scratch, units, error);
-    if (status == LAR_OK) status = add_relays(plan, scratch + relays, most - relays, error);
+    if (status == LAR_OK) status = add_relays(plan, scratch + relays, max - relays, error);
     if (stage == 0) plan->since = 0; /* until now nothing was on its way */
     return status;
 }
@@ -232,7 +232,7 @@ static void find_owners(lar_plan *plan) {
 /* The thread for a packet: it moves most of the nodes, but all should have as much to receive. */
 static int32_t receiver_of(const lar_plan *plan, const lar_plan_packet *packet,
                            const int64_t *given) {
-    int32_t own[LAR_THREADS_MOST] = {0}, best = 0;
+    int32_t own[LAR_THREADS_MAX] = {0}, best = 0;
     const int32_t *node = nodes_of(plan, packet);
     for (int32_t j = 0; j < packet->count; j++) own[plan->owner[plan->site->place[node[j]]]]++;
     for (int32_t t = 1; t < plan->threads; t++)
@@ -243,7 +243,7 @@ static int32_t receiver_of(const lar_plan *plan, const lar_plan_packet *packet,
 static void receive_rest(lar_plan *plan) {
     const lar_packets *all = &plan->site->packets;
     const lar_plan_gap *gap = &plan->gap[plan->gap_count - 1];
-    int64_t given[LAR_THREADS_MOST] = {0};
+    int64_t given[LAR_THREADS_MAX] = {0};
     for (int32_t i = all->received_first[plan->processor];
          i < all->received_first[plan->processor + 1]; i++) {
         lar_plan_packet *packet = &all->packet[all->received[i]];

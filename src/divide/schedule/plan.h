@@ -81,7 +81,7 @@ typedef struct lar_plan_batch {
  * before what is too much for one thread is sent. In one of the batches, the relay, packets may be
  * received and sent on. */
 typedef struct lar_plan_gap {
-    int32_t batch[LAR_THREADS_MOST];
+    int32_t batch[LAR_THREADS_MAX];
     int32_t relay;  /* LAR_NOWHERE: none */
     int32_t first;  /* of the elements in plan->pool that must be recovered here */
     int32_t needed; /* how many */
@@ -89,7 +89,7 @@ typedef struct lar_plan_gap {
     bool receives;  /* something, so that there is latency to hide */
 } lar_plan_gap;
 
-enum { LAR_GAPS_MOST = 64 };
+enum { LAR_GAPS_MAX = 64 };
 
 typedef struct lar_plan {
     lar_plan_site *site;
@@ -99,14 +99,14 @@ typedef struct lar_plan {
     int32_t element_count, node_count;
     size_t batch_capacity;
     int32_t batch_count;
-    lar_plan_batch *batch;           /* in the order of rank */
-    int32_t first_unit;              /* batches up to the last gap */
-    int32_t since;                   /* elements recovered since packets of others may come */
-    int64_t clock[LAR_THREADS_MOST]; /* when each thread is through with its units since then */
-    int64_t tried;                   /* assignments of units */
-    int32_t gap_count;               /* the last gap is before the last receives */
-    lar_plan_gap gap[LAR_GAPS_MOST];
-    int32_t last[LAR_THREADS_MOST]; /* the batch that moves nodes; a gate follows */
+    lar_plan_batch *batch;          /* in the order of rank */
+    int32_t first_unit;             /* batches up to the last gap */
+    int32_t since;                  /* elements recovered since packets of others may come */
+    int64_t clock[LAR_THREADS_MAX]; /* when each thread is through with its units since then */
+    int64_t tried;                  /* assignments of units */
+    int32_t gap_count;              /* the last gap is before the last receives */
+    lar_plan_gap gap[LAR_GAPS_MAX];
+    int32_t last[LAR_THREADS_MAX]; /* the batch that moves nodes; a gate follows */
     int32_t pooled;
     int32_t *pool;    /* [element_count] elements of gaps; those that no send needs come last */
     int32_t *arrival; /* [node_count] first stage that brings something, LAR_STAGES: none */
@@ -120,7 +120,7 @@ void lar_plan_clear(lar_plan *plan);
 enum {
     LAR_POOLED = -2, /* of an element: in the pool, not yet in a batch */
     /* A unit with fewer elements than the widest vector has lanes takes the next one in. */
-    LAR_UNIT_LEAST = 8,
+    LAR_UNIT_MIN = 8,
 };
 
 /* Batch number of a new, empty batch; LAR_NOWHERE without memory. */

@@ -92,10 +92,10 @@ static lar_status check_options(const lar_schedule_options *o, const lar_mesh *m
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "there is no communication scheme %d with use %d of channels",
                         (int)o->scheme, (int)o->channels);
-    if (o->threads < 1 || o->threads > LAR_THREADS_MOST)
+    if (o->threads < 1 || o->threads > LAR_THREADS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d threads for each processor are not possible; give 1 to %d",
-                        (int)o->threads, LAR_THREADS_MOST);
+                        (int)o->threads, LAR_THREADS_MAX);
     if (o->search < 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a search of %" PRId64 " assignments is not possible; give 0 or more",

@@ -40,7 +40,7 @@
 #include "divide/traffic.h"
 
 enum {
-    LAR_THREADS_MOST = 16, /* of a processor */
+    LAR_THREADS_MAX = 16,  /* of a processor */
     LAR_SIGNAL_BYTES = 8,  /* before the vectors of a packet */
     LAR_TAIL_BYTES = 8,    /* behind them */
     LAR_PACKET_ALIGN = 64, /* of offsets: no two packets share a cache line */
@@ -49,7 +49,7 @@ enum {
 typedef struct lar_schedule_options {
     lar_scheme scheme;
     lar_channel_use channels;
-    int32_t threads; /* of every processor, 1..LAR_THREADS_MOST */
+    int32_t threads; /* of every processor, 1..LAR_THREADS_MAX */
     int64_t search;  /* assignments of batches to threads that are tried at most, per processor */
 } lar_schedule_options;
 
@@ -91,8 +91,8 @@ typedef struct lar_schedule {
     int64_t receive_bytes; /* of one half of the buffer, a multiple of LAR_PACKET_ALIGN */
 
     int32_t batch_count;
-    lar_batch *batch;                           /* thread after thread */
-    int32_t thread_first[LAR_THREADS_MOST + 1]; /* [threads + 1] first batch of a thread */
+    lar_batch *batch;                          /* thread after thread */
+    int32_t thread_first[LAR_THREADS_MAX + 1]; /* [threads + 1] first batch of a thread */
     int32_t element_count, wait_count, transfer_count, node_count, vector_count;
     int32_t *element;       /* [element_count] every element of the processor once */
     int32_t *wait;          /* [wait_count] batches of other threads */

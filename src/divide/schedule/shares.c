@@ -44,8 +44,8 @@ static void pour(int32_t count, const int64_t *have, const bool *use, int64_t am
 
 typedef struct shares {
     int32_t gaps, threads;
-    int64_t needed[LAR_GAPS_MOST][LAR_THREADS_MOST]; /* of those the relay needs */
-    int64_t fill[LAR_GAPS_MOST][LAR_THREADS_MOST];   /* of the others */
+    int64_t needed[LAR_GAPS_MAX][LAR_THREADS_MAX]; /* of those the relay needs */
+    int64_t fill[LAR_GAPS_MAX][LAR_THREADS_MAX];   /* of the others */
 } shares;
 
 static int64_t all_needed(const lar_plan *plan) {
@@ -54,8 +54,8 @@ static int64_t all_needed(const lar_plan *plan) {
 }
 
 static void fill_gaps(const lar_plan *plan, int64_t *fill) {
-    int64_t have[LAR_GAPS_MOST];
-    bool use[LAR_GAPS_MOST], any = false;
+    int64_t have[LAR_GAPS_MAX];
+    bool use[LAR_GAPS_MAX], any = false;
     for (int32_t g = 0; g < plan->gap_count; g++) {
         have[g] = (int64_t)plan->gap[g].needed + plan->gap[g].before;
         any |= use[g] = plan->gap[g].receives;
@@ -66,8 +66,8 @@ static void fill_gaps(const lar_plan *plan, int64_t *fill) {
 
 /* In each gap, threads come level; of what the relay needs each takes in proportion. */
 static void count_shares(const lar_plan *plan, shares *s) {
-    int64_t fill[LAR_GAPS_MOST], load[LAR_THREADS_MOST] = {0}, give[LAR_THREADS_MOST];
-    bool use[LAR_THREADS_MOST];
+    int64_t fill[LAR_GAPS_MAX], load[LAR_THREADS_MAX] = {0}, give[LAR_THREADS_MAX];
+    bool use[LAR_THREADS_MAX];
     for (int32_t b = 0; b < plan->batch_count; b++)
         load[plan->batch[b].thread] += plan->batch[b].elements;
     for (int32_t t = 0; t < plan->threads; t++) use[t] = true;
@@ -112,7 +112,7 @@ typedef struct weight {
 typedef struct cutter {
     lar_plan *plan;
     item *item; /* scratch */
-    weight weight[LAR_THREADS_MOST];
+    weight weight[LAR_THREADS_MAX];
 } cutter;
 
 /* Axes of the bounding box, the longest first. */
@@ -149,7 +149,7 @@ static int sort_along(cutter *c, int32_t *element, int64_t count) {
  * middle of what is cut now. */
 static void order_threads(const cutter *c, int axis, double middle, int32_t *thread,
                           int32_t threads) {
-    double at[LAR_THREADS_MOST];
+    double at[LAR_THREADS_MAX];
     for (int32_t i = 0; i < threads; i++) {
         const weight *w = &c->weight[thread[i]];
         double here = w->count > 0 ? w->sum[axis] / (double)w->count : middle;
@@ -204,7 +204,7 @@ static void weigh_units(cutter *c) {
 }
 
 static void cut_needed(cutter *c, const shares *s) {
-    int32_t thread[LAR_THREADS_MOST], *piece[LAR_THREADS_MOST];
+    int32_t thread[LAR_THREADS_MAX], *piece[LAR_THREADS_MAX];
     for (int32_t g = 0; g < c->plan->gap_count; g++) {
         const lar_plan_gap *gap = &c->plan->gap[g];
         for (int32_t t = 0; t < c->plan->threads; t++) thread[t] = t;
@@ -216,8 +216,8 @@ static void cut_needed(cutter *c, const shares *s) {
 }
 
 static void cut_rest(cutter *c, const shares *s) {
-    int32_t thread[LAR_THREADS_MOST], *piece[LAR_THREADS_MOST];
-    int64_t share[LAR_THREADS_MOST] = {0}, first = all_needed(c->plan);
+    int32_t thread[LAR_THREADS_MAX], *piece[LAR_THREADS_MAX];
+    int64_t share[LAR_THREADS_MAX] = {0}, first = all_needed(c->plan);
     for (int32_t t = 0; t < c->plan->threads; t++) {
         thread[t] = t;
         for (int32_t g = 0; g < c->plan->gap_count; g++) share[t] += s->fill[g][t];

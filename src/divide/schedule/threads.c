@@ -20,12 +20,12 @@
 #include "base/memory.h"
 #include "divide/schedule/plan.h"
 
-enum { UNITS_MOST = 24, SLACK = 8 };
+enum { UNITS_MAX = 24, SLACK = 8 };
 
 typedef struct unit {
     lar_plan_packet **packet;
     int32_t packets;
-    int64_t ready[LAR_THREADS_MOST]; /* when the batches so far of a thread have what it sends */
+    int64_t ready[LAR_THREADS_MAX]; /* when the batches so far of a thread have what it sends */
 } unit;
 
 typedef struct move {
@@ -41,13 +41,13 @@ typedef struct search {
     int64_t *elements; /* [kinds] */
     move *moves;       /* [units][units * threads] scratch of each depth */
     uint64_t placed;
-    int64_t clock[LAR_THREADS_MOST];
-    uint64_t needs[UNITS_MOST]; /* units that have elements of this one */
-    move path[UNITS_MOST];      /* by unit: where and when */
-    int32_t order[UNITS_MOST], best_order[UNITS_MOST];
-    move best[UNITS_MOST];
+    int64_t clock[LAR_THREADS_MAX];
+    uint64_t needs[UNITS_MAX]; /* units that have elements of this one */
+    move path[UNITS_MAX];      /* by unit: where and when */
+    int32_t order[UNITS_MAX], best_order[UNITS_MAX];
+    move best[UNITS_MAX];
     int64_t best_wait, best_end, enough;
-    int64_t tried, most;
+    int64_t tried, max;
     bool found, done;
 } search;
 
@@ -146,7 +146,7 @@ static void keep_best(search *s, int64_t wait) {
 }
 
 static void explore(search *s, int32_t depth, int64_t wait) {
-    int64_t gain[UNITS_MOST];
+    int64_t gain[UNITS_MAX];
     int64_t left = find_gains(s, gain);
     if (hopeless(s, wait, left)) {
         s->tried++;
@@ -164,7 +164,7 @@ static void explore(search *s, int32_t depth, int64_t wait) {
         place(s, &moves[i]);
         explore(s, depth + 1, wait + moves[i].wait);
         take_back(s, &moves[i], clock);
-        s->done |= s->found && s->tried >= s->most;
+        s->done |= s->found && s->tried >= s->max;
     }
 }
 
@@ -195,13 +195,13 @@ static void look_around(lar_plan *plan, unit *own, int32_t u) {
 
 /* Collects the different kinds among the processor's elements. */
 static lar_status find_kinds(lar_plan *plan, search *s, lar_error *error) {
-    size_t most = (size_t)plan->element_count, count = 0;
-    uint64_t *kind = lar_calloc(most, sizeof *kind);
-    int64_t *elements = lar_calloc(most, sizeof *elements);
+    size_t max = (size_t)plan->element_count, count = 0;
+    uint64_t *kind = lar_calloc(max, sizeof *kind);
+    int64_t *elements = lar_calloc(max, sizeof *elements);
     s->kind = kind;
     s->elements = elements;
-    if (!kind || !elements) return lar_fail_memory(error, most * sizeof *kind, "kinds of elements");
-    for (size_t i = 0; i < most; i++) {
+    if (!kind || !elements) return lar_fail_memory(error, max * sizeof *kind, "kinds of elements");
+    for (size_t i = 0; i < max; i++) {
         uint64_t *of = &plan->site->kind[plan->element[i]];
         if (*of) kind[count++] = *of;
         *of = 0;
@@ -223,11 +223,11 @@ static lar_status run_search(lar_plan *plan, unit *units, int32_t count, search 
     s->moves = lar_calloc(moves, sizeof *s->moves);
     if (!s->moves) status = lar_fail_memory(error, moves * sizeof *s->moves, "a search");
     if (status == LAR_OK) {
-        int64_t gain[UNITS_MOST];
+        int64_t gain[UNITS_MAX];
         memcpy(s->clock, plan->clock, sizeof s->clock);
         s->enough = earliest_end(s, find_gains(s, gain));
         /* Half of what is left: the groups that follow want to search, too. */
-        s->most = (plan->site->options->search - plan->tried + 1) / 2;
+        s->max = (plan->site->options->search - plan->tried + 1) / 2;
         explore(s, 0, 0);
         plan->tried += s->tried;
     }
@@ -240,9 +240,9 @@ static lar_status run_search(lar_plan *plan, unit *units, int32_t count, search 
 /* ---- units ------------------------------------------------------------------------------ */
 
 /* Elements that a vector or, of a small group, each thread should have at least. */
-static int32_t least_elements(const lar_plan *plan, int32_t elements) {
+static int32_t min_elements(const lar_plan *plan, int32_t elements) {
     int32_t share = (elements + plan->threads - 1) / plan->threads;
-    return share < LAR_UNIT_LEAST ? share : LAR_UNIT_LEAST;
+    return share < LAR_UNIT_MIN ? share : LAR_UNIT_MIN;
 }
 
 /* Packets that follow each other form a unit until it has enough elements. Returns the units. */
@@ -252,9 +252,9 @@ static int32_t make_units(lar_plan *plan, lar_plan_packet **packet, int32_t coun
     for (int32_t i = 0; i < count; i++)
         total += fresh[i] = lar_plan_claim(plan, packet[i], LAR_POOLED, list + total);
     for (int32_t i = 0; i < total; i++) plan->site->batch[list[i]] = LAR_NOWHERE;
-    int32_t least = least_elements(plan, total);
+    int32_t min = min_elements(plan, total);
     for (int32_t i = 0; i < count; i++) {
-        if (i == 0 || have >= least) {
+        if (i == 0 || have >= min) {
             units[made++] = (unit){.packet = packet + i};
             have = 0;
         }
@@ -268,7 +268,7 @@ static int32_t make_units(lar_plan *plan, lar_plan_packet **packet, int32_t coun
 static int32_t batch_for(lar_plan *plan, int32_t thread) {
     int32_t last = plan->batch_count - 1;
     if (last >= plan->first_unit && plan->batch[last].thread == thread &&
-        plan->batch[last].elements < LAR_UNIT_LEAST / plan->threads)
+        plan->batch[last].elements < LAR_UNIT_MIN / plan->threads)
         return last;
     return lar_plan_add_batch(plan, thread);
 }
@@ -290,7 +290,7 @@ static lar_status settle(lar_plan *plan, const unit *own, const move *m, lar_err
 /* Whether a thread would have more than its share of all elements, so that nothing could make the
  * threads even again. */
 static bool overloads(const lar_plan *plan, const search *s) {
-    int64_t load[LAR_THREADS_MOST] = {0};
+    int64_t load[LAR_THREADS_MAX] = {0};
     for (int32_t b = 0; b < plan->batch_count; b++)
         load[plan->batch[b].thread] += plan->batch[b].elements;
     for (int32_t u = 0; u < s->units; u++) load[s->best[u].thread] += s->best[u].gain;
@@ -302,7 +302,7 @@ static bool overloads(const lar_plan *plan, const search *s) {
 static lar_status settle_searched(lar_plan *plan, unit *units, int32_t count, lar_error *error) {
     search s;
     lar_status status = run_search(plan, units, count, &s, error);
-    if (status == LAR_OK && plan->gap_count < LAR_GAPS_MOST / 2 && overloads(plan, &s)) {
+    if (status == LAR_OK && plan->gap_count < LAR_GAPS_MAX / 2 && overloads(plan, &s)) {
         int32_t packets = 0;
         for (int32_t u = 0; u < count; u++) packets += units[u].packets;
         return lar_plan_split(plan, units->packet, packets, error);
@@ -320,9 +320,9 @@ static lar_status settle_all(lar_plan *plan, unit *units, int32_t count, lar_err
         for (int32_t i = 0; i < count && status == LAR_OK; i++)
             status = settle(plan, &units[i], &(move){.unit = i}, error);
     else
-        for (int32_t i = 0; i < count && status == LAR_OK; i += UNITS_MOST)
-            status = settle_searched(plan, units + i,
-                                     count - i < UNITS_MOST ? count - i : UNITS_MOST, error);
+        for (int32_t i = 0; i < count && status == LAR_OK; i += UNITS_MAX)
+            status = settle_searched(plan, units + i, count - i < UNITS_MAX ? count - i : UNITS_MAX,
+                                     error);
     return status;
 }
 

@@ -115,7 +115,7 @@ static void close_gates(book *b) {
 static int32_t write_waits(const book *b, lar_schedule *s, bool put) {
     int32_t count = 0;
     for (int32_t t = 0; t < s->threads; t++) {
-        int32_t passed[LAR_THREADS_MOST];
+        int32_t passed[LAR_THREADS_MAX];
         for (int32_t other = 0; other < s->threads; other++) passed[other] = -1;
         for (int32_t i = s->thread_first[t]; i < s->thread_first[t + 1]; i++) {
             int32_t first = count;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 #include "model/triangles/tree.h"
 
 void lar_boundary_clear(lar_boundary *boundary) {
@@ -106,20 +106,20 @@ static lar_status find_volumes(const lar_triangles *surfaces, int32_t count, lar
     for (int32_t a = 0; a < count && !meet; a++)
         for (int32_t b = 0; b < a && !meet; b++) meet = boxes_meet(&surfaces[a], &surfaces[b]);
     if (!meet) return LAR_OK;
-    double low[3], high[3], volume[LAR_REGIONS_MOST + 1] = {0};
+    double low[3], high[3], volume[LAR_REGIONS_MAX + 1] = {0};
     find_box(&boundary->triangles, low, high);
     double widest = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
-    lar_status status = lar_lattice_measure(boundary, widest / CELLS_ACROSS, volume, error);
+    lar_status status = lar_voxel_grid_measure(boundary, widest / CELLS_ACROSS, volume, error);
     for (int32_t r = 1; r <= count && !status; r++) boundary->region[r].volume = volume[r];
     return status;
 }
 
 static lar_status join_surfaces(lar_triangles *surfaces, const char *const *names, int32_t count,
                                 lar_boundary *boundary, lar_error *error) {
-    if (count < 1 || count > LAR_REGIONS_MOST)
+    if (count < 1 || count > LAR_REGIONS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d surfaces cannot be meshed together; name 1 to %d", (int)count,
-                        (int)LAR_REGIONS_MOST);
+                        (int)LAR_REGIONS_MAX);
     lar_status status = LAR_OK;
     for (int32_t s = 0; s < count && !status; s++) status = check_surface(&surfaces[s], error);
     if (!status) status = allocate(surfaces, count, boundary, error);
@@ -266,13 +266,13 @@ static bool held_by_another(const lar_triangle_tree *tree, line_test *test, cons
 static bool is_seen(const lar_triangle_tree *tree, const lar_boundary *boundary,
                     const double low[3], const double high[3], int32_t t) {
     /* Of the triangle and of all: farther than rounding of what lies on it. */
-    const double NEAR = 1e-3, LEAST = 1e-6;
+    const double NEAR = 1e-3, MIN = 1e-6;
     const int32_t *corner = boundary->triangles.corner[t], own = boundary->side[t][1];
     double normal[3], diagonal[3], middle[3] = {0};
     lar_triangles_normal(&boundary->triangles, t, normal);
     lar_minus(high, low, diagonal);
     const double length = lar_length(normal);
-    const double step = NEAR * sqrt(length) + LEAST * lar_length(diagonal);
+    const double step = NEAR * sqrt(length) + MIN * lar_length(diagonal);
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++) middle[a] += boundary->triangles.vertex[corner[c]][a] / 3;
     for (int behind = 0; behind < 2; behind++) {

@@ -1,7 +1,7 @@
 /* The true boundary of what is to be meshed: triangles that know what lies on both sides.
  *
  *     label image --image.c---------.
- *     closed surfaces --boundary.c--+--> lar_boundary --> grid, fit, deviation, fine surface
+ *     closed surfaces --boundary.c--+--> lar_boundary --> grid, fit, deviation, embedded surface
  *     mesh of solids --mesh.c-------'
  *
  * Regions are numbered from 1, in the order they were asked for; 0 is outside. Where the image ends
@@ -22,7 +22,7 @@
 #include "model/triangles/triangles.h"
 
 enum {
-    LAR_REGIONS_MOST = 255,
+    LAR_REGIONS_MAX = 255,
     LAR_REGION_CUT = 256, /* .. LAR_REGION_CUT + 5: low i, high i, low j, high j, low k, high k */
     LAR_CUTS = 6
 };
@@ -48,7 +48,7 @@ typedef struct lar_boundary {
     bool nested;        /* surfaces, that may lie in each other: where several hold a place the last
                            one has it. A surface's triangles have side {0, its region} whatever is
                            around. False for images: every place has one region. */
-    uint8_t *region_of_label; /* [LAR_IMAGE_LABEL_MOST + 1] of an image, 0: not asked for; NULL for
+    uint8_t *region_of_label; /* [LAR_IMAGE_LABEL_MAX + 1] of an image, 0: not asked for; NULL for
                                  surfaces */
     int32_t cut_count; /* flat cuts that exist; cut[] is indexed by side 0..5, name "" where none */
     lar_cut cut[LAR_CUTS];
@@ -72,7 +72,7 @@ typedef struct lar_label_choice {
 } lar_label_choice;
 
 /* LAR_ERROR_MODEL when a label that is asked for is unknown, has no voxel or less than eight, when
- * none is left, or there are more than LAR_REGIONS_MOST. Labels of a few voxels among all stay:
+ * none is left, or there are more than LAR_REGIONS_MAX. Labels of a few voxels among all stay:
  * they get the elements that they fill, which may be none. */
 lar_status lar_boundary_from_image(const lar_image *image, const lar_label_choice *choice,
                                    lar_boundary *boundary, lar_error *error);
@@ -92,7 +92,7 @@ lar_status lar_boundary_from_mesh(const char *path, double scale, bool fuse, con
 lar_status lar_boundary_principal_axes(lar_boundary *boundary, lar_error *error);
 
 /* What is seen from outside: triangles whose front is outside or a cut, tag = tag of the region
- * behind; for the fine surface that rides on the mesh. Of nested surfaces those that no other one
+ * behind; for the embedded surface. Of nested surfaces those that no other one
  * holds. */
 lar_status lar_boundary_outer(const lar_boundary *boundary, lar_triangles *outer, lar_error *error);
 

@@ -7,14 +7,14 @@
 #include "base/vector.h"
 #include "meshing/boundary/nets.h"
 
-enum { VOXELS_LEAST = 8, LABELS = LAR_IMAGE_LABEL_MOST + 1 };
+enum { VOXELS_MIN = 8, LABELS = LAR_IMAGE_LABEL_MAX + 1 };
 
 typedef struct maker {
     const lar_image *image;
     const lar_label_choice *choice;
     lar_boundary *boundary;
     int64_t *count; /* [LABELS] voxels in the image */
-    double *voxels; /* [LAR_REGIONS_MOST + 1] of each region */
+    double *voxels; /* [LAR_REGIONS_MAX + 1] of each region */
 } maker;
 
 /* ---- which labels --------------------------------------------------------------------------- */
@@ -85,10 +85,10 @@ static lar_status add_label(maker *m, int32_t label, lar_error *error) {
     uint8_t *region_of = &boundary->region_of_label[label];
     if (*region_of) return LAR_OK; /* named twice */
     if (!fuse || boundary->region_count == 0) {
-        if (boundary->region_count == LAR_REGIONS_MOST)
+        if (boundary->region_count == LAR_REGIONS_MAX)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: more than %d labels; choose some, or fuse them", m->image->source,
-                            (int)LAR_REGIONS_MOST);
+                            (int)LAR_REGIONS_MAX);
         int32_t region = ++boundary->region_count;
         lar_status status = name_region(&boundary->region[region],
                                         lar_image_label_name(m->image, label), label, error);
@@ -116,15 +116,15 @@ static lar_status check_regions(const maker *m, lar_error *error) {
     int32_t largest = 1;
     for (int32_t r = 1; r <= boundary->region_count; r++) {
         if (m->voxels[r] > m->voxels[largest]) largest = r;
-        if (named && m->voxels[r] < VOXELS_LEAST) largest = r, r = boundary->region_count;
+        if (named && m->voxels[r] < VOXELS_MIN) largest = r, r = boundary->region_count;
     }
-    if (m->voxels[largest] >= VOXELS_LEAST) return LAR_OK;
+    if (m->voxels[largest] >= VOXELS_MIN) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: label %d (%s) has %.0f voxel%s only, too few for a body (%d at least); "
                     "choose another label",
                     m->image->source, (int)boundary->region[largest].tag,
                     boundary->region[largest].name, m->voxels[largest],
-                    m->voxels[largest] == 1 ? "" : "s", (int)VOXELS_LEAST);
+                    m->voxels[largest] == 1 ? "" : "s", (int)VOXELS_MIN);
 }
 
 static lar_status choose_labels(maker *m, lar_error *error) {
@@ -258,9 +258,9 @@ static lar_status take_nets(const lar_image *image, const lar_nets *nets, lar_bo
 static lar_status make(maker *m, lar_error *error) {
     lar_boundary *boundary = m->boundary;
     m->count = lar_calloc(LABELS, sizeof *m->count);
-    m->voxels = lar_calloc(LAR_REGIONS_MOST + 1, sizeof *m->voxels);
+    m->voxels = lar_calloc(LAR_REGIONS_MAX + 1, sizeof *m->voxels);
     boundary->region_of_label = lar_calloc(LABELS, 1);
-    boundary->region = lar_calloc(LAR_REGIONS_MOST + 1, sizeof *boundary->region);
+    boundary->region = lar_calloc(LAR_REGIONS_MAX + 1, sizeof *boundary->region);
     if (!m->count || !m->voxels || !boundary->region_of_label || !boundary->region)
         return lar_fail_memory(error, 9 * LABELS, "the image's labels");
     lar_status status = choose_labels(m, error);

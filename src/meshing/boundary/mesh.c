@@ -25,7 +25,7 @@ typedef struct solids {
     const char *path;
     lar_mesh mesh;
     int32_t region_count;
-    int32_t tag[LAR_REGIONS_MOST];
+    int32_t tag[LAR_REGIONS_MAX];
     uint8_t *region; /* [element_count] from 0 */
     size_t face_count;
     solid_face *face;
@@ -70,15 +70,15 @@ static lar_status find_regions(solids *s, bool fuse, lar_error *error) {
     size_t regions = 0;
     for (size_t e = 0; e < count; e++) {
         if (e > 0 && tag[e] == tag[e - 1]) continue;
-        if (regions < LAR_REGIONS_MOST) s->tag[regions] = tag[e];
+        if (regions < LAR_REGIONS_MAX) s->tag[regions] = tag[e];
         regions++;
     }
     free(tag);
-    if (regions > LAR_REGIONS_MOST)
+    if (regions > LAR_REGIONS_MAX)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: its elements have %zu tags, but there can be %d regions; --fuse makes "
                         "one of all",
-                        s->path, regions, LAR_REGIONS_MOST);
+                        s->path, regions, LAR_REGIONS_MAX);
     s->region_count = (int32_t)regions;
     for (size_t e = 0; e < count && !fuse; e++) {
         const int32_t *at =
@@ -164,9 +164,9 @@ static void turn_outwards(const lar_mesh *mesh, solid_face *face) {
 
 static lar_status collect_faces(solids *s, lar_error *error) {
     const lar_mesh *mesh = &s->mesh;
-    const size_t most = 6 * (size_t)mesh->element_count;
-    s->face = lar_calloc(most, sizeof *s->face);
-    if (!s->face) return lar_fail_memory(error, most * sizeof *s->face, s->path);
+    const size_t max = 6 * (size_t)mesh->element_count;
+    s->face = lar_calloc(max, sizeof *s->face);
+    if (!s->face) return lar_fail_memory(error, max * sizeof *s->face, s->path);
     for (int32_t e = 0; e < mesh->element_count; e++)
         for (int f = 0; f < 6; f++)
             if (take_face(mesh, e, f, &s->face[s->face_count])) s->face_count++;
@@ -233,8 +233,8 @@ static lar_status make_surface(solids *s, int32_t region, lar_triangles *surface
 
 static lar_status make_boundary(solids *s, const char *title, lar_boundary *boundary,
                                 lar_error *error) {
-    lar_triangles surface[LAR_REGIONS_MOST] = {0};
-    char *name[LAR_REGIONS_MOST] = {NULL};
+    lar_triangles surface[LAR_REGIONS_MAX] = {0};
+    char *name[LAR_REGIONS_MAX] = {NULL};
     lar_status status = LAR_OK;
     for (int32_t r = 0; r < s->region_count && !status; r++) {
         name[r] = name_of_region(s, r, title);

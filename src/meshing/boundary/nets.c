@@ -159,7 +159,7 @@ static bool scan_image(scan *s) {
         memset(layer, 0xff, corners * sizeof *layer);
         load_slice(s, k + 1);
         for (int32_t j = 0; j <= s->image->size[1]; j++) scan_row(s, j, k);
-        if (s->quads > LAR_NETS_QUADS_MOST) return false;
+        if (s->quads > LAR_NETS_QUADS_MAX) return false;
     }
     return true;
 }
@@ -198,7 +198,7 @@ static lar_status build(scan *s, lar_error *error) {
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: its labels have more than %d faces of voxels between them, as noise "
                         "has and no body; choose labels, or look whether it is a label map",
-                        s->image->source, (int)LAR_NETS_QUADS_MOST);
+                        s->image->source, (int)LAR_NETS_QUADS_MAX);
     lar_status status = allocate(s, error);
     if (status) return status;
     s->write = true;

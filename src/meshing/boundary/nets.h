@@ -15,7 +15,7 @@
 #include "meshing/boundary/boundary.h"
 
 /* Quadrilaterals of a segmentation are some millions at most; noise has hundreds. */
-enum { LAR_NETS_QUADS_MOST = 1 << 24 };
+enum { LAR_NETS_QUADS_MAX = 1 << 24 };
 
 typedef struct lar_nets {
     int32_t size[3];   /* corners of voxels along the axes: voxels + 1 */

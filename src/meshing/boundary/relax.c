@@ -165,7 +165,7 @@ static void solve_offsets(relaxation *r) {
 static void move_surfaces(relaxation *r) {
     lar_nets *nets = r->nets;
     size_t vertices = (size_t)nets->vertex_count;
-    double least = fmin(nets->spacing[0], fmin(nets->spacing[1], nets->spacing[2]));
+    double min = fmin(nets->spacing[0], fmin(nets->spacing[1], nets->spacing[2]));
     memset(r->next, 0, vertices * sizeof *r->next);
     memset(r->weight, 0, vertices * sizeof *r->weight);
     for (int32_t q = 0; q < nets->quad_count; q++) {
@@ -177,7 +177,7 @@ static void move_surfaces(relaxation *r) {
             v[c] = nets->corner[q][(c + nets->diagonal[q]) % 4];
             place_of(nets, v[c], x[c]);
         }
-        way = limited(way, 0.2 * least);
+        way = limited(way, 0.2 * min);
         for (int t = 0; t < 2; t++) {
             const int c[3] = {0, 1 + t, 2 + t};
             double normal[3];

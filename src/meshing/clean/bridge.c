@@ -1,4 +1,4 @@
-/* A thin part of a body, between half a cell and nothing, falls out of a lattice, and what hung on
+/* A thin part of a body, between half a cell and nothing, falls out of a grid, and what hung on
  * it becomes an island. Where cells that hold some of the body lead from the island to the rest,
  * the cheapest row of them is taken in (Dijkstra 1959, with a list of cells for each cost: Dial
  * 1969). */
@@ -7,7 +7,7 @@
 #include "meshing/clean/clean.h"
 
 /* A cell costs what it lacks, and something for being one more; longer ways are not looked for. */
-enum { CELL = 255, ONE_MORE = 32, COST_MOST = 6 * (CELL + ONE_MORE) };
+enum { CELL = 255, ONE_MORE = 32, COST_MAX = 6 * (CELL + ONE_MORE) };
 
 /* A cell that can be reached. */
 typedef struct reached {
@@ -19,30 +19,30 @@ typedef struct reached {
 typedef struct search {
     reached *all;
     size_t count, capacity;
-    int32_t first[COST_MOST + 1]; /* of each cost */
+    int32_t first[COST_MAX + 1]; /* of each cost */
 } search;
 
 static bool reach(search *way, size_t cell, int32_t from, int32_t cost) {
-    if (cost > COST_MOST) return true;
+    if (cost > COST_MAX) return true;
     if (way->count >= INT32_MAX || !LAR_GROW(way->all, way->capacity, way->count)) return false;
     way->all[way->count] = (reached){cell, from, way->first[cost]};
     way->first[cost] = (int32_t)way->count++;
     return true;
 }
 
-static bool may_take(const lar_lattice *lattice, size_t cell, uint8_t region) {
-    if (lattice->region[cell] != 0 || lattice->inner[cell] != region) return false;
+static bool may_take(const lar_voxel_grid *voxel_grid, size_t cell, uint8_t region) {
+    if (voxel_grid->region[cell] != 0 || voxel_grid->inner[cell] != region) return false;
     int at[3];
-    lar_clean_position(lattice, cell, at);
-    return lar_clean_may_fill(lattice, at);
+    lar_clean_position(voxel_grid, cell, at);
+    return lar_clean_may_fill(voxel_grid, at);
 }
 
-static void take_way(lar_lattice *lattice, const search *way, int32_t end, uint8_t region) {
+static void take_way(lar_voxel_grid *voxel_grid, const search *way, int32_t end, uint8_t region) {
     for (; end >= 0; end = way->all[end].from) {
         const size_t cell = way->all[end].cell;
-        if (lattice->region[cell] != 0) continue;
-        lattice->region[cell] = region;
-        lattice->share[cell] = CELL;
+        if (voxel_grid->region[cell] != 0) continue;
+        voxel_grid->region[cell] = region;
+        voxel_grid->share[cell] = CELL;
     }
 }
 
@@ -52,19 +52,19 @@ enum { DONE = 4 };
 /* Goes on from one cell; *end: the last one of a way that has come to another piece. */
 static bool go_on(lar_cleaner *cleaner, search *way, int32_t index, int32_t cost, uint8_t own,
                   int32_t *end) {
-    const lar_lattice *lattice = cleaner->lattice;
-    const uint8_t region = lattice->region[way->all[0].cell];
+    const lar_voxel_grid *voxel_grid = cleaner->voxel_grid;
+    const uint8_t region = voxel_grid->region[way->all[0].cell];
     size_t next[6];
-    const int count = lar_clean_neighbours(lattice, way->all[index].cell, next);
+    const int count = lar_clean_neighbours(voxel_grid, way->all[index].cell, next);
     for (int n = 0; n < count; n++) {
         const uint8_t mark = cleaner->mark[next[n]];
         if (mark == DONE) continue;
-        if (lattice->region[next[n]] == region && mark != own) {
+        if (voxel_grid->region[next[n]] == region && mark != own) {
             *end = index;
             return true;
         }
-        if (mark != own && !may_take(lattice, next[n], region)) continue;
-        const int32_t more = mark == own ? 0 : CELL - lattice->share[next[n]] + ONE_MORE;
+        if (mark != own && !may_take(voxel_grid, next[n], region)) continue;
+        const int32_t more = mark == own ? 0 : CELL - voxel_grid->share[next[n]] + ONE_MORE;
         if (!reach(way, next[n], index, cost + more)) return false;
     }
     return true;
@@ -72,7 +72,7 @@ static bool go_on(lar_cleaner *cleaner, search *way, int32_t index, int32_t cost
 
 /* Takes the cells in the order of their cost. */
 static bool run_search(lar_cleaner *cleaner, search *way, uint8_t own, int32_t *end) {
-    for (int32_t cost = 0; cost <= COST_MOST && *end < 0; cost++)
+    for (int32_t cost = 0; cost <= COST_MAX && *end < 0; cost++)
         while (way->first[cost] >= 0 && *end < 0) {
             const int32_t index = way->first[cost];
             const reached *one = &way->all[index];
@@ -90,17 +90,17 @@ lar_status lar_clean_bridge(lar_cleaner *cleaner, size_t start, uint8_t own, uin
     int32_t end = -1;
     *joined = false;
     if (!way) return lar_fail_memory(cleaner->error, sizeof *way, "the islands of the grid");
-    for (int cost = 0; cost <= COST_MOST; cost++) way->first[cost] = -1;
+    for (int cost = 0; cost <= COST_MAX; cost++) way->first[cost] = -1;
     lar_status status = LAR_OK;
     if (!reach(way, start, -1, 0) || !run_search(cleaner, way, own, &end))
         status = lar_fail_memory(cleaner->error, 2 * way->capacity * sizeof *way->all,
                                  "the islands of the grid");
     for (size_t r = 0; r < way->count; r++) {
         const size_t cell = way->all[r].cell;
-        cleaner->mark[cell] = cleaner->lattice->region[cell] != 0 ? own : other;
+        cleaner->mark[cell] = cleaner->voxel_grid->region[cell] != 0 ? own : other;
     }
     if (!status && end >= 0) {
-        take_way(cleaner->lattice, way, end, cleaner->lattice->region[start]);
+        take_way(cleaner->voxel_grid, way, end, cleaner->voxel_grid->region[start]);
         *joined = true;
     }
     free(way->all);

@@ -15,15 +15,15 @@ static const uint8_t *cells_of(const lar_clean_window *window) {
     return &window->label[0][0][0];
 }
 
-void lar_clean_look(const lar_lattice *lattice, const int at[3], lar_clean_window *window) {
+void lar_clean_look(const lar_voxel_grid *voxel_grid, const int at[3], lar_clean_window *window) {
     for (int k = 0; k < SIDE; k++)
         for (int j = 0; j < SIDE; j++)
             for (int i = 0; i < SIDE; i++) {
                 const int x = at[0] + i - MIDDLE, y = at[1] + j - MIDDLE, z = at[2] + k - MIDDLE;
-                const bool there = x >= 0 && x < lattice->cells[0] && y >= 0 &&
-                                   y < lattice->cells[1] && z >= 0 && z < lattice->cells[2];
+                const bool there = x >= 0 && x < voxel_grid->cells[0] && y >= 0 &&
+                                   y < voxel_grid->cells[1] && z >= 0 && z < voxel_grid->cells[2];
                 window->label[k][j][i] =
-                    there ? lattice->region[lar_lattice_cell(lattice, x, y, z)] : 0;
+                    there ? voxel_grid->region[lar_voxel_grid_cell(voxel_grid, x, y, z)] : 0;
             }
 }
 
@@ -43,7 +43,7 @@ bool lar_clean_block(unsigned inside) {
     return hangs_together(inside & 0xff) && hangs_together(~inside & 0xff);
 }
 
-/* A point of the lattice: the block of cells whose lowest one is `low`. */
+/* A point of the grid: the block of cells whose lowest one is `low`. */
 static int32_t point_cost(const uint8_t *low, int *unclean) {
     uint8_t label[8];
     unsigned inside = 0;
@@ -137,13 +137,13 @@ static int coordinate(int cell, int axis) {
 }
 
 static int distance(int a, int b, bool largest) {
-    int sum = 0, most = 0;
+    int sum = 0, max = 0;
     for (int axis = 0; axis < 3; axis++) {
         const int d = coordinate(a, axis) - coordinate(b, axis), size = d < 0 ? -d : d;
         sum += size;
-        most = size > most ? size : most;
+        max = size > max ? size : max;
     }
-    return largest ? most : sum;
+    return largest ? max : sum;
 }
 
 /* Pieces of a set of cells that have a cell next to the middle one, where cells are next to each

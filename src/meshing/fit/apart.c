@@ -7,11 +7,11 @@
 #include "meshing/fit/face_boxes.h"
 #include "meshing/fit/work.h"
 
-/* Outer faces shall not go through each other. The draft's do not. After each round all pairs are
- * looked at: where some cross, the round is gone back on and done again, and from then on nodes of
- * these faces and of those near them are watched: they move only as far as their faces stay clear
- * of all others. When some cross once more all nodes are watched, and none can. Most bodies have
- * none to watch, and nothing of the work. */
+/* Outer faces shall not go through each other. the unfitted mesh's do not. After each round all
+ * pairs are looked at: where some cross, the round is gone back on and done again, and from then on
+ * nodes of these faces and of those near them are watched: they move only as far as their faces
+ * stay clear of all others. When some cross once more all nodes are watched, and none can. Most
+ * bodies have none to watch, and nothing of the work. */
 
 /* Faces that share no node keep so far apart, so that no rounding in a file makes them cross; a
  * watched node moves no farther in a round, for which the faces near it are listed [cells]. */
@@ -27,7 +27,7 @@ static const double FEW = 1e-3;
 static const double ALIKE = 0.8;
 
 void lar_fit_apart_clear(lar_fit_apart *apart) {
-    void *const owned[] = {apart->face,    apart->start,      apart->around, apart->watched,
+    void *const owned[] = {apart->face,    apart->start,      apart->around, apart->checked,
                            apart->from,    apart->near_start, apart->near,   apart->awake,
                            apart->crosses, apart->extent,     apart->strict, apart->ring};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
@@ -46,11 +46,11 @@ lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
     apart->ring = lar_calloc(nodes, sizeof *apart->ring);
     apart->extent = lar_calloc((size_t)apart->count, sizeof *apart->extent);
     apart->near_start = lar_calloc((size_t)apart->count + 1, sizeof *apart->near_start);
-    apart->watched = lar_calloc(nodes, sizeof *apart->watched);
+    apart->checked = lar_calloc(nodes, sizeof *apart->checked);
     apart->awake = lar_calloc(nodes, sizeof *apart->awake);
     apart->from = lar_calloc(nodes, sizeof *apart->from);
     bool ready = apart->face && apart->crosses && apart->strict && apart->ring && apart->extent &&
-                 apart->near_start && apart->watched && apart->awake && apart->from;
+                 apart->near_start && apart->checked && apart->awake && apart->from;
     for (int32_t f = 0; ready && f < apart->count; f++)
         for (int a = 0; a < 4; a++)
             apart->face[f][a] = work->mesh->element[outer[f] / 6][lar_face_node[outer[f] % 6][a]];
@@ -139,7 +139,7 @@ static lar_status list_near(lar_fit_work *work, lar_error *error) {
         apart->extent[f].way = 0;
         bound_face(work, f);
         list.face = f;
-        if (is_among(apart->watched, apart->face[f]))
+        if (is_among(apart->checked, apart->face[f]))
             lar_face_boxes_near(&boxes, f, 2 * LEASH + GAP, add_near, &list);
         apart->near_start[f + 1] = (int32_t)list.used;
         if (list.failed)
@@ -212,15 +212,15 @@ static void place(lar_fit_work *work, int32_t n, const double x[3]) {
 
 bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]) {
     const lar_fit_apart *apart = &work->apart;
-    const bool watched = apart->any && apart->watched[n];
+    const bool checked = apart->any && apart->checked[n];
     double away[3], before[3];
-    if (watched) {
+    if (checked) {
         lar_minus(x, apart->from[n], away);
         if (!(lar_length(away) < LEASH)) return false;
     }
     memcpy(before, work->x[n], sizeof before);
     place(work, n, x);
-    if (!watched || is_clear(work, n)) return true;
+    if (!checked || is_clear(work, n)) return true;
     place(work, n, before);
     return false;
 }
@@ -233,13 +233,13 @@ static void note_strict(lar_fit_apart *apart, int32_t *crossing) {
     for (int32_t f = 0; f < apart->count; f++) {
         bool all = apart->crosses[f];
         *crossing += all;
-        for (int a = 0; all && a < 4; a++) all = apart->watched[apart->face[f][a]];
+        for (int a = 0; all && a < 4; a++) all = apart->checked[apart->face[f][a]];
         apart->strict[f] = apart->strict[f] || all;
     }
 }
 
 /* Watches the nodes of faces that cross, and rings of faces around them. */
-static void watch_around(lar_fit_apart *apart, size_t nodes) {
+static void check_around(lar_fit_apart *apart, size_t nodes) {
     memset(apart->ring, 0, nodes * sizeof *apart->ring);
     for (int ring = 0; ring <= RINGS; ring++) {
         for (int32_t f = 0; f < apart->count; f++)
@@ -247,7 +247,7 @@ static void watch_around(lar_fit_apart *apart, size_t nodes) {
         for (int32_t f = 0; f < apart->count; f++)
             apart->crosses[f] = apart->crosses[f] || is_among(apart->ring, apart->face[f]);
     }
-    for (size_t n = 0; n < nodes; n++) apart->watched[n] = apart->watched[n] || apart->ring[n];
+    for (size_t n = 0; n < nodes; n++) apart->checked[n] = apart->checked[n] || apart->ring[n];
 }
 
 static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *error) {
@@ -263,7 +263,7 @@ static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *err
 /* What is watched from now on. Where a body has but few places to cross, more of them are watched
  * each time; another one's are watched everywhere at once: a round that is done again costs more.
  */
-static lar_status watch_more(lar_fit_work *work, lar_error *error) {
+static lar_status check_more(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
     const size_t nodes = (size_t)work->mesh->node_count;
     int32_t crossing;
@@ -273,11 +273,11 @@ static lar_status watch_more(lar_fit_work *work, lar_error *error) {
     if (apart->all || ++apart->tries == LOCAL) memset(apart->strict, true, (size_t)apart->count);
     if (apart->all || !few || apart->tries == LOCAL) {
         apart->all = true;
-        memset(apart->watched, true, nodes);
+        memset(apart->checked, true, nodes);
         return LAR_OK;
     }
     lar_status status = find(work, WARY, &near, error);
-    if (!status) watch_around(apart, nodes);
+    if (!status) check_around(apart, nodes);
     return status;
 }
 
@@ -285,7 +285,7 @@ lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error
     lar_fit_apart *apart = &work->apart;
     const size_t nodes = (size_t)work->mesh->node_count;
     lar_status status = find(work, GAP, again, error);
-    if (*again) status = watch_more(work, error);
+    if (*again) status = check_more(work, error);
     if (status || !*again) return status;
     apart->any = true;
     memcpy(work->x, apart->from, nodes * sizeof *work->x);

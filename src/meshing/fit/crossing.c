@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "meshing/fit/face_boxes.h"
 #include "model/triangles/triangles.h"
@@ -25,13 +25,13 @@ static int common_nodes(const int32_t a[4], const int32_t b[4], int common[4]) {
 }
 
 /* Compares, where fmin and fmax would be calls: most pairs end here. */
-static double least(const double (*x)[3], const int32_t face[4], int i) {
+static double min(const double (*x)[3], const int32_t face[4], int i) {
     const double one = x[face[0]][i] < x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
     const double other = x[face[2]][i] < x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
     return one < other ? one : other;
 }
 
-static double most(const double (*x)[3], const int32_t face[4], int i) {
+static double max(const double (*x)[3], const int32_t face[4], int i) {
     const double one = x[face[0]][i] > x[face[1]][i] ? x[face[0]][i] : x[face[1]][i];
     const double other = x[face[2]][i] > x[face[3]][i] ? x[face[2]][i] : x[face[3]][i];
     return one > other ? one : other;
@@ -39,8 +39,7 @@ static double most(const double (*x)[3], const int32_t face[4], int i) {
 
 static bool boxes_apart(const double (*x)[3], const int32_t a[4], const int32_t b[4], double gap) {
     for (int i = 0; i < 3; i++)
-        if (least(x, b, i) - most(x, a, i) > gap || least(x, a, i) - most(x, b, i) > gap)
-            return true;
+        if (min(x, b, i) - max(x, a, i) > gap || min(x, a, i) - max(x, b, i) > gap) return true;
     return false;
 }
 
@@ -243,7 +242,7 @@ static double room(const corners *c, const double way[3]) {
 static double room_between_boxes(const double (*x)[3], const int32_t a[4], const int32_t b[4]) {
     double widest = -INFINITY;
     for (int i = 0; i < 3; i++) {
-        const double above = least(x, b, i) - most(x, a, i), below = least(x, a, i) - most(x, b, i);
+        const double above = min(x, b, i) - max(x, a, i), below = min(x, a, i) - max(x, b, i);
         widest = above > widest ? above : widest;
         widest = below > widest ? below : widest;
     }
@@ -276,10 +275,10 @@ static double room_at_shared(const corners *c, const double *edge, const double 
     for (int i = 0; i < 3; i++) at[i] = way[i] / length;
     for (int turn = 0; turn < TURNS; turn++) {
         int worst = 0;
-        double least = INFINITY, room = INFINITY;
+        double min = INFINITY, room = INFINITY;
         for (int k = 0; k < count; k++) {
             const double cosine = lar_dot(at, out[k]);
-            if (cosine < least) least = cosine, worst = k;
+            if (cosine < min) min = cosine, worst = k;
             room = far[k] * cosine < room ? far[k] * cosine : room;
         }
         room /= lar_length(at);
@@ -386,7 +385,7 @@ lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[
                                              : lar_fail_memory(error, 12 * (size_t)count,
                                                                "which faces cross each other");
     if (!status) status = lar_face_boxes_create(x, face, count, &boxes, error);
-    if (!status) lar_share(count, PORTION, look_around, &s);
+    if (!status) lar_parallel_for(count, PORTION, look_around, &s);
     *found = (lar_face_crossings){0};
     for (int32_t f = 0; !status && f < count; f++) {
         found->pairs += s.pairs[f];

@@ -31,20 +31,22 @@ static int32_t find_pair(const lar_fit_work *work, int a, int b) {
     return -1;
 }
 
-static lar_status list_points(lar_fit_work *work, const lar_draft_mesh *draft, lar_error *error) {
-    const int32_t nodes = draft->mesh.node_count;
+static lar_status list_points(lar_fit_work *work, const lar_unfitted_mesh *unfitted,
+                              lar_error *error) {
+    const int32_t nodes = unfitted->mesh.node_count;
     size_t capacity = 0;
-    work->point_count = draft->meet_start[nodes];
+    work->point_count = unfitted->meet_start[nodes];
     work->point = lar_calloc((size_t)work->point_count, sizeof *work->point);
     work->point_start = lar_calloc((size_t)nodes + 1, sizeof *work->point_start);
     if (!work->point || !work->point_start)
         return lar_fail_memory(error, (size_t)work->point_count * sizeof *work->point,
                                "fitting the boundary");
-    memcpy(work->point_start, draft->meet_start, ((size_t)nodes + 1) * sizeof *work->point_start);
+    memcpy(work->point_start, unfitted->meet_start,
+           ((size_t)nodes + 1) * sizeof *work->point_start);
     int32_t last = -1;
     for (int32_t n = 0; n < nodes; n++)
-        for (int32_t i = draft->meet_start[n]; i < draft->meet_start[n + 1]; i++) {
-            const uint16_t *meet = draft->meet[i];
+        for (int32_t i = unfitted->meet_start[n]; i < unfitted->meet_start[n + 1]; i++) {
+            const uint16_t *meet = unfitted->meet[i];
             if (last < 0 || work->pair[last].region[0] != meet[0] ||
                 work->pair[last].region[1] != meet[1])
                 last = find_pair(work, meet[0], meet[1]);
@@ -162,14 +164,14 @@ static bool list_neighbours(lar_fit_work *work, size_t slots) {
                                &work->slot_start, &work->slot_around);
 }
 
-lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
+lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_mesh *unfitted,
                                lar_fit_work *work, lar_error *error) {
-    const lar_mesh *mesh = &draft->mesh;
+    const lar_mesh *mesh = &unfitted->mesh;
     const size_t nodes = (size_t)mesh->node_count;
     work->boundary = boundary;
     work->mesh = mesh;
-    work->size = draft->size;
-    work->slot = (const int32_t(*)[4])draft->slot;
+    work->size = unfitted->size;
+    work->slot = (const int32_t(*)[4])unfitted->slot;
     memcpy(work->origin, mesh->position[0], sizeof work->origin);
     work->x = lar_calloc(nodes, sizeof *work->x);
     work->awake = lar_calloc(nodes, sizeof *work->awake);
@@ -179,9 +181,9 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mes
     for (size_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++)
             work->x[n][i] = (mesh->position[n][i] - work->origin[i]) / work->size;
-    lar_status status = list_points(work, draft, error);
+    lar_status status = list_points(work, unfitted, error);
     if (status == LAR_OK) status = list_faces(work, error);
-    if (status == LAR_OK && !list_neighbours(work, (size_t)draft->slot_count))
+    if (status == LAR_OK && !list_neighbours(work, (size_t)unfitted->slot_count))
         status = lar_fail_memory(error, nodes * 12 * sizeof(int32_t), "the elements around nodes");
     return status ? status : lar_fit_apart_create(work, error);
 }

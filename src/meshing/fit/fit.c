@@ -28,11 +28,11 @@ enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
-    const double least = lar_fit_least(work, work->law.floor, &part);
-    if (!(least > 0))
+    const double min = lar_fit_min(work, work->law.floor, &part);
+    if (!(min > 0))
         return lar_fail(error, LAR_ERROR_MODEL,
                         "the grid that is to be fitted has an element without volume");
-    work->law.floor = fmin(work->law.floor, 0.9 * least);
+    work->law.floor = fmin(work->law.floor, 0.9 * min);
     work->law.aim = fmax(work->law.aim, work->law.floor);
     return LAR_OK;
 }
@@ -53,7 +53,8 @@ static lar_status sweep_apart(lar_fit_work *work, lar_error *error) {
 static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_error *error) {
     for (int32_t n = 0; n < work->mesh->node_count; n++) work->awake[n] = true;
     for (int round = 0; round < ROUNDS; round++) {
-        if (options && options->watch && !options->watch(options->context, (double)round / ROUNDS))
+        if (options && options->progress &&
+            !options->progress(options->context, (double)round / ROUNDS))
             return lar_fail(error, LAR_ERROR_ARGUMENT, "stopped while the mesh was fitted");
         if (round >= BALANCE) {
             lar_status status = lar_fit_volume_balance(work, 0.8, error);
@@ -67,19 +68,19 @@ static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_er
     return LAR_OK;
 }
 
-lar_status lar_fit(const lar_boundary *boundary, lar_draft_mesh *draft,
+lar_status lar_fit(const lar_boundary *boundary, lar_unfitted_mesh *unfitted,
                    const lar_fit_options *options, lar_error *error) {
     lar_fit_work work = {
         .law = usual, .slot_law = lenient, .face_weight = FACE_WEIGHT, .node_weight = NODE_WEIGHT};
     if (options && options->floor > 0) work.law.floor = options->floor;
     if (options && options->aim > 0) work.law.aim = options->aim;
-    lar_status status = lar_fit_work_create(boundary, draft, &work, error);
+    lar_status status = lar_fit_work_create(boundary, unfitted, &work, error);
     if (status == LAR_OK) status = check_start(&work, error);
     if (status == LAR_OK) status = lar_fit_targets_create(&work, error);
     if (status == LAR_OK) status = run(&work, options, error);
-    for (int32_t n = 0; status == LAR_OK && n < draft->mesh.node_count; n++)
+    for (int32_t n = 0; status == LAR_OK && n < unfitted->mesh.node_count; n++)
         for (int i = 0; i < 3; i++)
-            draft->mesh.position[n][i] = work.origin[i] + work.size * work.x[n][i];
+            unfitted->mesh.position[n][i] = work.origin[i] + work.size * work.x[n][i];
     lar_fit_work_clear(&work);
     return status;
 }

@@ -1,17 +1,17 @@
-/* From cubes on a lattice to hexahedra on the true boundary.
+/* From cubes on a grid to hexahedra on the true boundary.
  *
- * The draft is valid as it stands: every cell a cube. Fitting never leaves validity: a node moves
- * only where the elements around it stay good, so there is nothing to untangle.
+ * The unfitted mesh is valid as it stands: every cell a cube. Fitting never leaves validity: a node
+ * moves only where the elements around it stay good, so there is nothing to untangle.
  */
 #ifndef LAR_MESHING_FIT_FIT_H
 #define LAR_MESHING_FIT_FIT_H
 
-#include "meshing/grid/lattice.h"
+#include "meshing/grid/voxel_grid.h"
 #include "model/mesh/mesh.h"
 
-/* A mesh on the lattice, and what meets at each of its nodes. */
-typedef struct lar_draft_mesh {
-    lar_mesh mesh;       /* element_tag = region number until lar_draft_finish */
+/* A mesh on the grid, and what meets at each of its nodes. */
+typedef struct lar_unfitted_mesh {
+    lar_mesh mesh;       /* element_tag = region number until lar_unfitted_finish */
     double size;         /* edge of a cell [m] */
     int32_t *meet_start; /* [nodes + 1] into meet */
     uint16_t (*meet)[2]; /* pairs (a, b), a < b, of regions (0 outside, cuts by number) between
@@ -20,33 +20,33 @@ typedef struct lar_draft_mesh {
     int32_t (*slot)[4];  /* corners of cells outside of which an edge goes over to another side of
                             the body: the ends of three edges, right-handed, and the corner */
     int32_t slot_count;
-} lar_draft_mesh;
+} lar_unfitted_mesh;
 
-lar_status lar_draft_create(const lar_lattice *lattice, const lar_boundary *boundary,
-                            lar_draft_mesh *draft, lar_error *error);
-void lar_draft_clear(lar_draft_mesh *draft);
+lar_status lar_unfitted_create(const lar_voxel_grid *voxel_grid, const lar_boundary *boundary,
+                               lar_unfitted_mesh *unfitted, lar_error *error);
+void lar_unfitted_clear(lar_unfitted_mesh *unfitted);
 
 /* Told now and then how far it is, 0..1; false asks to stop (LAR_ERROR_ARGUMENT, "stopped"). */
-typedef bool lar_fit_watch(void *context, double part);
+typedef bool lar_fit_progress(void *context, double part);
 
 typedef struct lar_fit_options {
-    double floor;         /* no element's scaled Jacobian falls below; 0: 0.25 */
-    double aim;           /* nine of ten elements shall be above; 0: 0.55 */
-    lar_fit_watch *watch; /* may be NULL */
+    double floor;               /* no element's scaled Jacobian falls below; 0: 0.25 */
+    double aim;                 /* nine of ten elements shall be above; 0: 0.55 */
+    lar_fit_progress *progress; /* may be NULL */
     void *context;
 } lar_fit_options;
 
-/* Moves the draft's nodes: those where regions meet to the true boundary, all others so that the
- * elements are good and each region keeps its volume. `options` may be NULL. The same input gives
- * the same bits. On failure the draft is as it was. */
-lar_status lar_fit(const lar_boundary *boundary, lar_draft_mesh *draft,
+/* Moves the unfitted mesh's nodes: those where regions meet to the true boundary, all others so
+ * that the elements are good and each region keeps its volume. `options` may be NULL. The same
+ * input gives the same bits. On failure the unfitted mesh is as it was. */
+lar_status lar_fit(const lar_boundary *boundary, lar_unfitted_mesh *unfitted,
                    const lar_fit_options *options, lar_error *error);
 
 /* Cell tags become those of the regions; named sets are added: faces "surface" (all outer faces),
  * "NAME_surface" per region when there are several (its outer faces), "A_B" per interface as faces
  * of A, "cut_left" ... per flat cut; elements "NAME" per region. Names are made of letters, digits
  * and "_". Moves the mesh out. */
-lar_status lar_draft_finish(lar_draft_mesh *draft, const lar_boundary *boundary, lar_mesh *mesh,
-                            lar_error *error);
+lar_status lar_unfitted_finish(lar_unfitted_mesh *unfitted, const lar_boundary *boundary,
+                               lar_mesh *mesh, lar_error *error);
 
 #endif

@@ -197,16 +197,16 @@ int32_t lar_fit_sweep(lar_fit_work *work) {
     return moved;
 }
 
-double lar_fit_least(const lar_fit_work *work, double bar, double *part_above) {
-    double least = INFINITY;
+double lar_fit_min(const lar_fit_work *work, double bar, double *part_above) {
+    double min = INFINITY;
     int32_t above = 0;
     for (int32_t e = 0; e < work->mesh->element_count; e++) {
         double corner[8][3];
         lar_fit_corners(work, e, corner);
         const double jacobian = lar_scaled_jacobian(corner);
-        least = fmin(least, jacobian);
+        min = fmin(min, jacobian);
         above += jacobian > bar;
     }
     *part_above = (double)above / work->mesh->element_count;
-    return least;
+    return min;
 }

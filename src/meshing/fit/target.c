@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/share.h"
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "meshing/fit/work.h"
 
@@ -82,7 +82,7 @@ lar_status lar_fit_targets_create(lar_fit_work *work, lar_error *error) {
     const size_t bytes = (size_t)work->boundary->triangles.triangle_count * sizeof(int32_t);
     planting all = {.work = work};
     all.failed = !sort_triangles(&all);
-    if (!all.failed) lar_share(work->pair_count, PORTION, plant_trees, &all);
+    if (!all.failed) lar_parallel_for(work->pair_count, PORTION, plant_trees, &all);
     free(all.order);
     if (!all.failed) return LAR_OK;
     return lar_fail_memory(error, bytes, "the triangles between two regions");
@@ -222,6 +222,6 @@ static void renew_points(void *context, int32_t first, int32_t end) {
 
 void lar_fit_targets_renew(lar_fit_work *work) {
     enum { PORTION = 512 };
-    lar_share(work->face_count, PORTION, renew_faces, work);
-    lar_share(work->point_count, PORTION, renew_points, work);
+    lar_parallel_for(work->face_count, PORTION, renew_faces, work);
+    lar_parallel_for(work->point_count, PORTION, renew_points, work);
 }

@@ -64,11 +64,11 @@ static void solve_pressures(const lar_fit_work *work, const double *missing, dou
 /* Where the elements' shape holds against an offset, volumes follow only by a part of it: what goes
  * on missing is asked for with more and more weight. */
 static void weigh_missing(lar_fit_region *region, double *missing, size_t regions) {
-    static const double FOLLOWS = 0.6, MORE = 1.5, MOST = 4;
+    static const double FOLLOWS = 0.6, MORE = 1.5, MAX = 4;
     for (size_t r = 1; r < regions; r++) {
         const double part = region[r].missing != 0 ? missing[r] / region[r].missing : 0;
         region[r].missing = missing[r];
-        region[r].weight = part > FOLLOWS ? fmin(MORE * region[r].weight, MOST) : 1;
+        region[r].weight = part > FOLLOWS ? fmin(MORE * region[r].weight, MAX) : 1;
         missing[r] *= region[r].weight;
     }
 }

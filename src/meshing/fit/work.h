@@ -1,5 +1,5 @@
-/* What fitting works on. Lengths are in cells, from the first node of the draft: everything is
- * near 1, and a weight means the same for a mouse and for a man.
+/* What fitting works on. Lengths are in cells, from the first node of the unfitted mesh: everything
+ * is near 1, and a weight means the same for a mouse and for a man.
  *
  *     fit.c          the order of things
  *     faces.c        which elements and faces are around each node
@@ -75,15 +75,15 @@ typedef struct lar_fit_apart {
     int32_t (*face)[4], count;
     int32_t *start, *around; /* per node: face * 4 + corner */
     bool *crosses;           /* per face */
-    bool *watched;           /* per node: its faces must stay clear of others */
+    bool *checked;           /* per node: its faces must stay clear of others */
     bool any, all;           /* of nodes */
     bool *strict;            /* per face: clear of neighbours that look the same way too */
     bool *ring;              /* per node: of faces that cross, and around them */
     int tries;               /* of this round */
     int32_t *near_start;     /* per face with a watched node: the faces that it may meet */
     lar_fit_near *near;
-    double (*from)[3]; /* per node: where it was before this round, */
-    bool *awake;       /* and whether it was worth moving */
+    double (*from)[3];      /* per node: where it was before this round, */
+    bool *awake;            /* and whether it was worth moving */
     lar_fit_extent *extent; /* per face */
 } lar_fit_apart;
 
@@ -103,15 +103,15 @@ typedef struct lar_fit_work {
     lar_fit_pair *pair;
     lar_fit_region *region; /* [regions + 1] */
 
-    const int32_t (*slot)[4]; /* the draft's */
+    const int32_t (*slot)[4]; /* the unfitted mesh's */
     lar_fit_law law, slot_law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
     bool *awake;                     /* per node: worth moving */
     lar_fit_apart apart;
 } lar_fit_work;
 
-/* Fills a zeroed one. The draft and the boundary must outlive it. */
-lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_draft_mesh *draft,
+/* Fills a zeroed one. The unfitted mesh and the boundary must outlive it. */
+lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_mesh *unfitted,
                                lar_fit_work *work, lar_error *error);
 void lar_fit_work_clear(lar_fit_work *work);
 
@@ -147,7 +147,7 @@ bool lar_fit_list_around(const int32_t *node, size_t stride, size_t count, int p
                          int32_t **start, int32_t **around);
 
 /* The least scaled Jacobian, the part of the elements above `bar`. */
-double lar_fit_least(const lar_fit_work *work, double bar, double *part_above);
+double lar_fit_min(const lar_fit_work *work, double bar, double *part_above);
 
 /* The area of a quadrilateral, as a vector: half the product of its diagonals. */
 void lar_fit_area(const lar_fit_work *work, const int32_t node[4], double area[3]);

@@ -64,7 +64,7 @@ void lar_image_clear(lar_image *image) {
 }
 
 void lar_image_count(const lar_image *image, int64_t *count) {
-    memset(count, 0, (LAR_IMAGE_LABEL_MOST + 1) * sizeof *count);
+    memset(count, 0, (LAR_IMAGE_LABEL_MAX + 1) * sizeof *count);
     size_t voxels = (size_t)image->size[0] * (size_t)image->size[1] * (size_t)image->size[2];
     for (size_t v = 0; v < voxels; v++) count[image->label[v]]++;
 }
@@ -177,10 +177,10 @@ static lar_status collect_names(const char *path, const lar_bytes *bytes, lar_im
                             "%s:%d: the line does not begin with a label; write \"LABEL,NAME\"",
                             path, number);
         }
-        if (label < 0 || label > LAR_IMAGE_LABEL_MOST)
+        if (label < 0 || label > LAR_IMAGE_LABEL_MAX)
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s:%d: label %lld is not between 0 and %d; write \"LABEL,NAME\"", path,
-                            number, (long long)label, LAR_IMAGE_LABEL_MOST);
+                            number, (long long)label, LAR_IMAGE_LABEL_MAX);
         lar_span name = take_name(rest, separator);
         if (name.length == 0)
             return lar_fail(error, LAR_ERROR_FORMAT,

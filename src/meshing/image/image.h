@@ -19,11 +19,7 @@
 
 /* Voxels that an image may have, and along one axis: labels take 1 GB at most, and a slice of the
  * image, of which some are held besides, no more than that. */
-enum {
-    LAR_IMAGE_VOXELS_MOST = 1 << 29,
-    LAR_IMAGE_SIDE_MOST = 1 << 13,
-    LAR_IMAGE_LABEL_MOST = 65535
-};
+enum { LAR_IMAGE_VOXELS_MAX = 1 << 29, LAR_IMAGE_SIDE_MAX = 1 << 13, LAR_IMAGE_LABEL_MAX = 65535 };
 
 typedef struct lar_label_name {
     int32_t label;
@@ -57,7 +53,7 @@ lar_status lar_nrrd_parse(const char *path, const lar_bytes *bytes, lar_image *i
 /* The name that the file gives to a label, or NULL. Owned by the image. */
 const char *lar_image_label_name(const lar_image *image, int32_t label);
 
-/* Voxels of every label, [LAR_IMAGE_LABEL_MOST + 1], by the caller. */
+/* Voxels of every label, [LAR_IMAGE_LABEL_MAX + 1], by the caller. */
 void lar_image_count(const lar_image *image, int64_t *count);
 
 /* Cubic metres of a voxel. */

@@ -210,13 +210,13 @@ static lar_status read_voxels(const nifti_header *header, const lar_bytes *bytes
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: voxels of type %s (%d) are no labels; write whole numbers", path,
                         nifti_datatype_string(header->type), header->type);
-    double least = header->version == 1 ? 352 : 544;
-    if (!(header->offset >= least && header->offset < 0x1p53) ||
+    double min = header->version == 1 ? 352 : 544;
+    if (!(header->offset >= min && header->offset < 0x1p53) ||
         header->offset != floor(header->offset))
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: vox_offset, where the voxels begin, is not a byte from %g on; the "
                         "header is damaged, write the image again",
-                        path, least);
+                        path, min);
     lar_image_stream stream;
     lar_status status = lar_image_stream_open(&stream, path, bytes->data, bytes->size,
                                               lar_image_is_gzip(bytes->data, bytes->size), error);

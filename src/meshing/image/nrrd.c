@@ -133,7 +133,7 @@ static lar_status skip_bytes(const lar_nrrd_header *header, const int64_t size[3
     lar_status status = lar_nrrd_whole(header, LAR_NRRD_BYTE_SKIP, 0, &skip, error);
     if (status) return status;
     if (skip == -1 && encoding == RAW) {
-        uint64_t there = lar_image_stream_most(stream), needed;
+        uint64_t there = lar_image_stream_max(stream), needed;
         if (__builtin_mul_overflow((uint64_t)size[0], (uint64_t)size[1], &needed) ||
             __builtin_mul_overflow(needed, (uint64_t)size[2], &needed) ||
             __builtin_mul_overflow(needed, (uint64_t)each, &needed) || needed > there)
@@ -232,11 +232,11 @@ static lar_status read_segments(const lar_nrrd_header *header, lar_image *image,
         if (label->is_name || !name->is_name || label->number != name->number) continue;
         int64_t number;
         if (!lar_span_int64(label->value.text, &number) || number < 0 ||
-            number > LAR_IMAGE_LABEL_MOST)
+            number > LAR_IMAGE_LABEL_MAX)
             status = lar_fail(error, LAR_ERROR_FORMAT,
                               "%s:%d: the segment's label is no whole number from 0 to %d; correct "
                               "it",
-                              header->path, label->value.line, LAR_IMAGE_LABEL_MOST);
+                              header->path, label->value.line, LAR_IMAGE_LABEL_MAX);
         else if (name->value.text.length > 0)
             entry[named++] = (lar_image_entry){(int32_t)number, s + 1, name->value.text};
     }

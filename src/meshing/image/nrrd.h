@@ -34,7 +34,7 @@ typedef enum lar_nrrd_field {
     LAR_NRRD_FIELDS
 } lar_nrrd_field;
 
-enum { LAR_NRRD_AXES_MOST = 4 };
+enum { LAR_NRRD_AXES_MAX = 4 };
 
 typedef struct lar_nrrd_value {
     lar_span text; /* at == NULL: not there */

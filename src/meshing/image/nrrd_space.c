@@ -172,7 +172,7 @@ static lar_status read_sizes(const lar_nrrd_header *header, int *axes, int64_t *
         return lar_nrrd_missing(header, LAR_NRRD_SIZES, error);
     lar_status status = lar_nrrd_whole(header, LAR_NRRD_DIMENSION, 0, &dimension, error);
     if (status) return status;
-    if (dimension < 3 || dimension > LAR_NRRD_AXES_MOST)
+    if (dimension < 3 || dimension > LAR_NRRD_AXES_MAX)
         return lar_nrrd_bad(header, LAR_NRRD_DIMENSION,
                             "is not 3; write the one volume that holds the labels", error);
     *axes = (int)dimension;
@@ -222,9 +222,9 @@ static lar_status choose_axes(const lar_nrrd_header *header, int axes, const int
 lar_status lar_nrrd_geometry(const lar_nrrd_header *header, int64_t size[3], lar_image *image,
                              lar_error *error) {
     int axes = 0, chosen[3] = {0};
-    int64_t all[LAR_NRRD_AXES_MOST];
-    double direction[LAR_NRRD_AXES_MOST][3] = {{0}}, origin[3] = {0}, sign[2], metres = 1e-3;
-    bool is_space[LAR_NRRD_AXES_MOST] = {true, true, true, true};
+    int64_t all[LAR_NRRD_AXES_MAX];
+    double direction[LAR_NRRD_AXES_MAX][3] = {{0}}, origin[3] = {0}, sign[2], metres = 1e-3;
+    bool is_space[LAR_NRRD_AXES_MAX] = {true, true, true, true};
     bool directed = header->field[LAR_NRRD_SPACE_DIRECTIONS].text.at != NULL;
     lar_status status = read_sizes(header, &axes, all, error);
     if (!status) status = set_signs(header, sign, error);

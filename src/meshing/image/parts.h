@@ -40,7 +40,7 @@ bool lar_image_is_gzip(const unsigned char *bytes, size_t size);
 uint64_t lar_image_stream_read(lar_image_stream *stream, void *out, uint64_t size);
 
 /* More bytes cannot come. */
-uint64_t lar_image_stream_most(const lar_image_stream *stream);
+uint64_t lar_image_stream_max(const lar_image_stream *stream);
 
 typedef enum lar_voxel_type {
     LAR_VOXEL_NONE,

@@ -5,10 +5,10 @@
 #include "meshing/image/parts.h"
 
 enum {
-    DEFLATE_MOST = 1032,
+    DEFLATE_MAX = 1032,
     PIECE = 4096 /* voxels */,
-    FEED = 1 << 30,        /* bytes, below zlib's int */
-    SURPLUS_MOST = 1 << 28 /* bytes that are read only to tell how many too many there are */
+    FEED = 1 << 30,       /* bytes, below zlib's int */
+    SURPLUS_MAX = 1 << 28 /* bytes that are read only to tell how many too many there are */
 };
 
 /* ---- bytes ---------------------------------------------------------------------------------- */
@@ -85,10 +85,10 @@ uint64_t lar_image_stream_read(lar_image_stream *stream, void *out, uint64_t siz
     return got;
 }
 
-uint64_t lar_image_stream_most(const lar_image_stream *stream) {
+uint64_t lar_image_stream_max(const lar_image_stream *stream) {
     uint64_t left = (uint64_t)(stream->end - stream->at);
     /* zlib may hold some bytes that it has taken. */
-    return stream->gzip ? (left + 8) * DEFLATE_MOST : left;
+    return stream->gzip ? (left + 8) * DEFLATE_MAX : left;
 }
 
 /* ---- memory --------------------------------------------------------------------------------- */
@@ -102,26 +102,26 @@ lar_status lar_image_allocate(lar_image *image, const int64_t size[3], size_t by
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s: the image has %lld voxels along axis %c; write it again", path,
                             (long long)size[a], "ijk"[a]);
-        if (size[a] > LAR_IMAGE_SIDE_MOST)
+        if (size[a] > LAR_IMAGE_SIDE_MAX)
             return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                             "%s: the image has %lld voxels along axis %c, more than %d; cut it to "
                             "the organs that are wanted, or resample it",
-                            path, (long long)size[a], "ijk"[a], LAR_IMAGE_SIDE_MOST);
-        if ((voxels *= size[a]) > LAR_IMAGE_VOXELS_MOST)
+                            path, (long long)size[a], "ijk"[a], LAR_IMAGE_SIDE_MAX);
+        if ((voxels *= size[a]) > LAR_IMAGE_VOXELS_MAX)
             return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                             "%s: %lld x %lld x %lld voxels are more than %d; cut the image to the "
                             "organs that are wanted, or resample it",
                             path, (long long)size[0], (long long)size[1], (long long)size[2],
-                            LAR_IMAGE_VOXELS_MOST);
+                            LAR_IMAGE_VOXELS_MAX);
         image->size[a] = (int32_t)size[a];
     }
-    uint64_t promised = (uint64_t)voxels * bytes_each, most = lar_image_stream_most(stream);
-    if (promised > most)
+    uint64_t promised = (uint64_t)voxels * bytes_each, max = lar_image_stream_max(stream);
+    if (promised > max)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: the header promises %llu bytes of voxels, the file holds %s%llu; it "
                         "is cut short or damaged, copy or write it again",
                         path, (unsigned long long)promised, stream->gzip ? "at most " : "",
-                        (unsigned long long)most);
+                        (unsigned long long)max);
     image->label = lar_calloc((size_t)voxels, sizeof *image->label);
     if (!image->label) return lar_fail_memory(error, (size_t)voxels * sizeof *image->label, path);
     return LAR_OK;
@@ -184,12 +184,12 @@ static lar_status no_label(const lar_image *image, int64_t voxel, double value, 
                     "from 0 to %d: this is no label map, perhaps the scan itself; segment it "
                     "first, or give the segmentation",
                     image->source, (long long)i, (long long)j, (long long)k, words,
-                    LAR_IMAGE_LABEL_MOST);
+                    LAR_IMAGE_LABEL_MAX);
 }
 
 /* 0 is there already: memory that is not written to takes no room, and most of a scan is 0. */
 static inline bool take_label(double value, double slack, uint16_t *label) {
-    if (!(value > -0.5 && value < LAR_IMAGE_LABEL_MOST + 0.5)) return false;
+    if (!(value > -0.5 && value < LAR_IMAGE_LABEL_MAX + 0.5)) return false;
     int32_t whole = (int32_t)(value + 0.5);
     if (whole != 0) *label = (uint16_t)whole;
     return fabs(value - whole) <= slack;
@@ -213,7 +213,7 @@ static lar_status cut_short(const lar_image_stream *stream, uint64_t promised, u
 /* gzip's check sum stands behind its last byte, so all is read; and a file that holds more than its
  * header promises is damaged, or another image than the header says. */
 static lar_status check_end(lar_image_stream *stream, uint64_t promised, lar_error *error) {
-    uint64_t surplus = lar_image_stream_read(stream, NULL, SURPLUS_MOST);
+    uint64_t surplus = lar_image_stream_read(stream, NULL, SURPLUS_MAX);
     if (stream->starved) return lar_fail_memory(error, WINDOW, stream->path);
     if (stream->damaged)
         return lar_fail(error, LAR_ERROR_FORMAT,
@@ -225,7 +225,7 @@ static lar_status check_end(lar_image_stream *stream, uint64_t promised, lar_err
                         "%s: the header promises %llu bytes of voxels, but %s%llu more follow "
                         "them; the header or the data are damaged, copy or write the file again",
                         stream->path, (unsigned long long)promised,
-                        surplus == SURPLUS_MOST ? "at least " : "", (unsigned long long)surplus);
+                        surplus == SURPLUS_MAX ? "at least " : "", (unsigned long long)surplus);
     if (stream->at < stream->end)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: behind the end of the compressed data follow %llu bytes that are no "

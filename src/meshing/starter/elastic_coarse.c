@@ -11,11 +11,11 @@
 
 /* About so many boxes, of two elements at least. */
 static double box_size(const lar_elastic *elastic) {
-    static const double BOXES = 160, LEAST = 2;
+    static const double BOXES = 160, MIN = 2;
     double volume = 0;
     for (int32_t k = 0; k < elastic->element_count; k++) volume += elastic->element[k].volume;
     double edge = cbrt(volume / fmax(1, elastic->element_count));
-    return fmax(LEAST * edge, cbrt(volume / BOXES));
+    return fmax(MIN * edge, cbrt(volume / BOXES));
 }
 
 static bool same_box(const double a[3], const double b[3], double box) {
@@ -121,7 +121,7 @@ static lar_status lay_matrix(lar_coarse *coarse, const lar_elastic *elastic, lar
 static void add_pair(lar_coarse *coarse, const int32_t *node, double K[24][24], int a, int b) {
     const int32_t row = coarse->group[node[a]], column = coarse->group[node[b]];
     if (row < 0 || column < 0 || row < column) return;
-    lar_block *block = lar_factor_at(&coarse->factor, row, column);
+    lar_factor_block *block = lar_factor_at(&coarse->factor, row, column);
     double KP[3][LAR_RIGID] = {{0}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

@@ -13,7 +13,7 @@
 
 #include "meshing/starter/elastic_factor.h"
 
-enum { LAR_RIGID = LAR_BLOCK }; /* motions of a group */
+enum { LAR_RIGID = LAR_FACTOR_BLOCK }; /* motions of a group */
 
 typedef struct lar_coarse {
     int32_t node_count, group_count;

@@ -169,7 +169,7 @@ void lar_factor_clear(lar_factor *factor) {
     *factor = (lar_factor){0};
 }
 
-lar_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column) {
+lar_factor_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column) {
     size_t low = factor->start[column], high = factor->start[column + 1] - 1;
     while (low < high) {
         const size_t middle = (low + high) / 2;
@@ -185,9 +185,9 @@ lar_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column) {
 
 /* The lower half of a block on the diagonal, which keeps inverses on it. `whole`: what stood on the
  * diagonal at first. */
-static void compute_diagonal(lar_block a, const double whole[LAR_BLOCK]) {
+static void compute_diagonal(lar_factor_block a, const double whole[LAR_FACTOR_BLOCK]) {
     static const double NOTHING = 1e-9;
-    for (int r = 0; r < LAR_BLOCK; r++) {
+    for (int r = 0; r < LAR_FACTOR_BLOCK; r++) {
         double pivot = a[r][r];
         for (int c = 0; c < r; c++) {
             for (int k = 0; k < c; k++) a[r][c] -= a[r][k] * a[c][k];
@@ -199,39 +199,40 @@ static void compute_diagonal(lar_block a, const double whole[LAR_BLOCK]) {
 }
 
 /* A block below becomes that times the inverse of the diagonal one, transposed. */
-static void compute_below(lar_block b, const lar_block diagonal) {
-    for (int r = 0; r < LAR_BLOCK; r++)
-        for (int c = 0; c < LAR_BLOCK; c++) {
+static void compute_below(lar_factor_block b, const lar_factor_block diagonal) {
+    for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
+        for (int c = 0; c < LAR_FACTOR_BLOCK; c++) {
             for (int k = 0; k < c; k++) b[r][c] -= b[r][k] * diagonal[c][k];
             b[r][c] *= diagonal[c][c];
         }
 }
 
 /* What is left of a later column: to -= a b^T. */
-static void subtract(lar_block to, const lar_block a, const lar_block b) {
-    for (int r = 0; r < LAR_BLOCK; r++)
-        for (int c = 0; c < LAR_BLOCK; c++)
-            for (int k = 0; k < LAR_BLOCK; k++) to[r][c] -= a[r][k] * b[c][k];
+static void subtract(lar_factor_block to, const lar_factor_block a, const lar_factor_block b) {
+    for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
+        for (int c = 0; c < LAR_FACTOR_BLOCK; c++)
+            for (int k = 0; k < LAR_FACTOR_BLOCK; k++) to[r][c] -= a[r][k] * b[c][k];
 }
 
 lar_status lar_factor_compute(lar_factor *factor, lar_error *error) {
-    double(*whole)[LAR_BLOCK] = lar_calloc((size_t)factor->count, sizeof *whole);
+    double(*whole)[LAR_FACTOR_BLOCK] = lar_calloc((size_t)factor->count, sizeof *whole);
     if (!whole && factor->count > 0)
         return lar_fail_memory(error, (size_t)factor->count * sizeof *whole, "a coarse matrix");
     for (int32_t c = 0; c < factor->count; c++)
-        for (int i = 0; i < LAR_BLOCK; i++) whole[c][i] = factor->block[factor->start[c]][i][i];
+        for (int i = 0; i < LAR_FACTOR_BLOCK; i++)
+            whole[c][i] = factor->block[factor->start[c]][i][i];
     for (int32_t c = 0; c < factor->count; c++) {
-        lar_block *block = factor->block;
+        lar_factor_block *block = factor->block;
         const int32_t *row = factor->row;
         const size_t own = factor->start[c], last = factor->start[c + 1];
         compute_diagonal(block[own], whole[c]);
         for (size_t k = own + 1; k < last; k++)
-            compute_below(block[k], (const double(*)[LAR_BLOCK])block[own]);
+            compute_below(block[k], (const double(*)[LAR_FACTOR_BLOCK])block[own]);
         for (size_t k = own + 1; k < last; k++)
             for (size_t i = k; i < last; i++)
                 subtract(*lar_factor_at(factor, row[i], row[k]),
-                         (const double(*)[LAR_BLOCK])block[i],
-                         (const double(*)[LAR_BLOCK])block[k]);
+                         (const double(*)[LAR_FACTOR_BLOCK])block[i],
+                         (const double(*)[LAR_FACTOR_BLOCK])block[k]);
     }
     free(whole);
     return LAR_OK;
@@ -241,27 +242,28 @@ lar_status lar_factor_compute(lar_factor *factor, lar_error *error) {
 
 void lar_factor_solve(const lar_factor *factor, lar_loads *x) {
     for (int32_t c = 0; c < factor->count; c++) {
-        lar_loads *own = x + (size_t)c * LAR_BLOCK;
-        const lar_block *diagonal = &factor->block[factor->start[c]];
-        for (int r = 0; r < LAR_BLOCK; r++) {
+        lar_loads *own = x + (size_t)c * LAR_FACTOR_BLOCK;
+        const lar_factor_block *diagonal = &factor->block[factor->start[c]];
+        for (int r = 0; r < LAR_FACTOR_BLOCK; r++) {
             for (int k = 0; k < r; k++) own[r] -= (*diagonal)[r][k] * own[k];
             own[r] *= (*diagonal)[r][r];
         }
         for (size_t b = factor->start[c] + 1; b < factor->start[c + 1]; b++) {
-            lar_loads *to = x + (size_t)factor->row[b] * LAR_BLOCK;
-            for (int r = 0; r < LAR_BLOCK; r++)
-                for (int k = 0; k < LAR_BLOCK; k++) to[r] -= factor->block[b][r][k] * own[k];
+            lar_loads *to = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
+            for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
+                for (int k = 0; k < LAR_FACTOR_BLOCK; k++) to[r] -= factor->block[b][r][k] * own[k];
         }
     }
     for (int32_t c = factor->count - 1; c >= 0; c--) {
-        lar_loads *own = x + (size_t)c * LAR_BLOCK;
-        const lar_block *diagonal = &factor->block[factor->start[c]];
+        lar_loads *own = x + (size_t)c * LAR_FACTOR_BLOCK;
+        const lar_factor_block *diagonal = &factor->block[factor->start[c]];
         for (size_t b = factor->start[c] + 1; b < factor->start[c + 1]; b++) {
-            const lar_loads *from = x + (size_t)factor->row[b] * LAR_BLOCK;
-            for (int r = 0; r < LAR_BLOCK; r++)
-                for (int k = 0; k < LAR_BLOCK; k++) own[k] -= factor->block[b][r][k] * from[r];
+            const lar_loads *from = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
+            for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
+                for (int k = 0; k < LAR_FACTOR_BLOCK; k++)
+                    own[k] -= factor->block[b][r][k] * from[r];
         }
-        for (int r = LAR_BLOCK - 1; r >= 0; r--) {
+        for (int r = LAR_FACTOR_BLOCK - 1; r >= 0; r--) {
             own[r] *= (*diagonal)[r][r];
             for (int k = 0; k < r; k++) own[k] -= (*diagonal)[r][k] * own[r];
         }

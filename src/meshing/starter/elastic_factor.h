@@ -14,15 +14,15 @@
 
 #include "meshing/starter/elastic.h"
 
-enum { LAR_BLOCK = 6 };
+enum { LAR_FACTOR_BLOCK = 6 };
 
-typedef double lar_block[LAR_BLOCK][LAR_BLOCK];
+typedef double lar_factor_block[LAR_FACTOR_BLOCK][LAR_FACTOR_BLOCK];
 
 typedef struct lar_factor {
-    int32_t count;    /* columns, in blocks */
-    size_t *start;    /* [count + 1] where a column's blocks stand */
-    int32_t *row;     /* of each block; a column's own first, then ascending */
-    lar_block *block; /* [row within][column within] */
+    int32_t count;           /* columns, in blocks */
+    size_t *start;           /* [count + 1] where a column's blocks stand */
+    int32_t *row;            /* of each block; a column's own first, then ascending */
+    lar_factor_block *block; /* [row within][column within] */
 } lar_factor;
 
 /* Lays the blocks out, all zero, for `count` unknowns (of six numbers each) of which each of
@@ -34,7 +34,7 @@ void lar_factor_clear(lar_factor *factor);
 
 /* The block at a row and a column not after it; the pair must be known. Of a block on the diagonal
  * only the lower half is read. */
-lar_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column);
+lar_factor_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column);
 
 /* Cholesky's, in place. Of numbers that depend on others those that come later are left out: they
  * will be 0. */

@@ -3,7 +3,7 @@
 
 #include "meshing/starter/elastic_coarse.h"
 
-enum { STEPS_MOST = 400, STEPS_LAST = 10 };
+enum { STEPS_MAX = 400, STEPS_LAST = 10 };
 
 typedef struct search {
     const lar_elastic *elastic;
@@ -108,7 +108,7 @@ lar_status lar_elastic_solve(const lar_elastic *elastic, const lar_load_vectors 
         precondition(&s, s.rz);
         turn(&s, none);
     }
-    for (int steps = 0; !status && steps < STEPS_MOST && !done(&s, steps, work); steps++) {
+    for (int steps = 0; !status && steps < STEPS_MAX && !done(&s, steps, work); steps++) {
         double *gain = s.gain[steps % STEPS_LAST];
         step(&s, u, gain);
         LAR_EACH_LOAD work[l] += gain[l];

@@ -52,9 +52,9 @@ static double two_digits(double x) {
  * estimate of w is above the slowest, by a tenth or two, so c = 1.6 w is a little below 2 w and
  * everything decays with 0.8 w at least. */
 static double damping(const lar_meshing *m) {
-    static const double WITHOUT = 10, LEAST = 0.3, PART = 1.6;
+    static const double WITHOUT = 10, MIN = 0.3, PART = 1.6;
     if (!(m->support.slowest > 0)) return WITHOUT;
-    return two_digits(fmax(LEAST, PART * m->support.slowest));
+    return two_digits(fmax(MIN, PART * m->support.slowest));
 }
 
 /* Time in which the slowest motion has become a hundredth, with some room. */
@@ -64,13 +64,13 @@ static double settling(const lar_meshing *m) {
 
 /* The pull and what comes after it; half seconds. */
 static double duration(const lar_meshing *m) {
-    static const double PULL = 1.2, LEAST = 2;
-    if (!m->support.handle) return LEAST;
-    return fmax(LEAST, ceil(2 * (PULL + settling(m))) / 2);
+    static const double PULL = 1.2, MIN = 2;
+    if (!m->support.handle) return MIN;
+    return fmax(MIN, ceil(2 * (PULL + settling(m))) / 2);
 }
 
-static double least_height(const lar_mesh *mesh, int32_t e) {
-    double least = INFINITY, x[8][3], edge[3][3], area[3];
+static double min_height(const lar_mesh *mesh, int32_t e) {
+    double min = INFINITY, x[8][3], edge[3][3], area[3];
     lar_mesh_corners(mesh, e, x);
     for (int a = 0; a < 8; a++) {
         double largest = 0;
@@ -80,25 +80,25 @@ static double least_height(const lar_mesh *mesh, int32_t e) {
             largest = fmax(largest, lar_length(area));
         }
         /* `area` is that of edges 2 and 0 now. */
-        least = fmin(least, fabs(lar_dot(area, edge[1])) / largest);
+        min = fmin(min, fabs(lar_dot(area, edge[1])) / largest);
     }
-    return least;
+    return min;
 }
 
 /* The least height of an element, divided by the speed of pressure waves in it, and half of that:
  * an element that is squeezed to half its height still bears the step. The height at a corner is
  * the volume that its edges span over the largest area of two of them. */
 static double squeezed_step(const lar_meshing *m) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int32_t r = 0; r < m->info.regions; r++) {
         const lar_region_info *region = &m->region[r];
         double modulus = region->bulk_modulus + 4 * region->shear_modulus / 3;
         double speed = sqrt(modulus / region->density);
         for (int32_t e = 0; e < m->mesh.element_count; e++)
             if (m->mesh.element_tag[e] == region->tag)
-                least = fmin(least, least_height(&m->mesh, e) / speed);
+                min = fmin(min, min_height(&m->mesh, e) / speed);
     }
-    return least / 2;
+    return min / 2;
 }
 
 static void put_head(const lar_meshing *m, FILE *f) {
@@ -189,14 +189,14 @@ static void put_fix(const lar_meshing *m, FILE *f) {
         fputs(
             "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
             f);
-    if (support->pads > 0)
+    if (support->extra_supports > 0)
         fputs("# Pads: small places of its underside, where its neighbours carry it in the patient "
               "and\n"
               "# without which it could not bear its weight. Without that line it hangs free.\n",
               f);
     if (support->held) fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
     any = support->held;
-    if (support->pads > 0) {
+    if (support->extra_supports > 0) {
         fprintf(f, "%s  - { nodes: pads, axes: xyz }\n", any ? "" : "fix:\n");
         any = true;
     }
@@ -245,16 +245,16 @@ static double ball_around(const lar_mesh *mesh, double middle[3]) {
 }
 
 static double longest_edge(const lar_mesh *mesh) {
-    double most = 0, x[8][3], edge[3];
+    double max = 0, x[8][3], edge[3];
     for (int32_t e = 0; e < mesh->element_count; e++) {
         lar_mesh_corners(mesh, e, x);
         for (int a = 0; a < 8; a++)
             for (int k = 0; k < 3; k++) {
                 lar_minus(x[lar_fit_edge[a][k]], x[a], edge);
-                most = fmax(most, lar_length(edge));
+                max = fmax(max, lar_length(edge));
             }
     }
-    return most;
+    return max;
 }
 
 /* Outside of that ball, so that they touch nothing, above the body as the viewer sees it at first:
@@ -266,8 +266,8 @@ static void put_tools(const lar_meshing *m, FILE *f) {
     double middle[3], right[3], way[2][3], place[2][3];
     double radius = ball_around(&m->mesh, middle), length = lar_length(eye);
     /* Thinner ones would be felt by some points of large faces only (model/contact_check.h). */
-    double least = 0.13 * longest_edge(&m->mesh);
-    double probe = fmax(least, 0.035 * radius), jaw = fmax(least, 0.012 * radius);
+    double min = 0.13 * longest_edge(&m->mesh);
+    double probe = fmax(min, 0.035 * radius), jaw = fmax(min, 0.012 * radius);
     double jaws = fmax(5 * jaw, 0.12 * radius);
     double away = fmax(1.28 * radius, 1.05 * radius + jaws + jaw);
     lar_cross(up, eye, right);

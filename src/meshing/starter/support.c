@@ -18,12 +18,12 @@
 
 #include "base/union_find.h"
 #include "meshing/meshing.h"
-#include "meshing/starter/pads.h"
+#include "meshing/starter/extra_supports.h"
 
 static const double TENTH = 0.1;
 /* What the pull moves the handle by, as part of the body's length. Nothing else bounds it: what is
- * taken from the handle's own cross-section, or from that of pads near it, is another on every
- * mesh. */
+ * taken from the handle's own cross-section, or from that of extra supports near it, is another on
+ * every mesh. */
 static const double MOVES = 0.02;
 /* Where nothing holds the body, and so nothing says how far it would move: what the pull would
  * stretch a bar of the handle's cross-section by. */
@@ -132,7 +132,7 @@ static void mark_faces(choice *c, const lar_set *faces) {
 static int mark_cuts(choice *c) {
     const lar_mesh *mesh = &c->meshing->mesh;
     const lar_boundary *boundary = &c->meshing->boundary;
-    int32_t most = 0;
+    int32_t max = 0;
     int where = -1;
     for (int i = 0; i < LAR_CUTS; i++) {
         const char *name = boundary->cut[i].name;
@@ -140,8 +140,8 @@ static int mark_cuts(choice *c) {
             const lar_set *faces = &mesh->set[s];
             if (!is_cut(c, faces, name)) continue;
             mark_faces(c, faces);
-            if (faces->count > most) {
-                most = faces->count;
+            if (faces->count > max) {
+                max = faces->count;
                 where = side_of(name);
             }
         }
@@ -207,12 +207,12 @@ static lar_status mark_loose_pieces(choice *c, int side) {
     for (int32_t e = 0; ready && e < mesh->element_count; e++) {
         int32_t root = lar_union_root(p.parent, mesh->element[e][0]);
         const double *range = p.range[root];
-        double least = DBL_MAX;
+        double min = DBL_MAX;
         for (int a = 0; a < 8; a++) {
             double place = mesh->position[mesh->element[e][a]][side / 2];
-            least = fmin(least, side % 2 ? range[1] - place : place - range[0]);
+            min = fmin(min, side % 2 ? range[1] - place : place - range[0]);
         }
-        bool reaches = !p.held[root] && least <= TENTH * (range[1] - range[0]);
+        bool reaches = !p.held[root] && min <= TENTH * (range[1] - range[0]);
         for (int a = 0; reaches && a < 8; a++) c->held[mesh->element[e][a]] = true;
     }
     free(p.parent);
@@ -307,7 +307,7 @@ static double rounded(double force) {
     return round(force / digit) * digit;
 }
 
-static void choose_pull(choice *c, int side, const lar_motion *motion) {
+static void choose_pull(choice *c, int side, const lar_sag *motion) {
     lar_support *support = &c->meshing->support;
     double length = 0, force;
     for (int i = 0; i < 3; i++) length = fmax(length, c->upper[i] - c->lower[i]);
@@ -324,25 +324,25 @@ static void choose_pull(choice *c, int side, const lar_motion *motion) {
 
 /* Marks per node that only exist while choosing. */
 typedef struct marks {
-    bool *handle, *opposed, *pad;
+    bool *handle, *opposed, *extra;
 } marks;
 
-/* Pads, where nobody said what holds it and its weight asks for them. */
-static lar_status add_pads(choice *c, int side, const marks *in, lar_motion *motion) {
+/* Extra supports, where nobody said what holds it and its weight asks for them. */
+static lar_status add_extra_supports(choice *c, int side, const marks *in, lar_sag *motion) {
     lar_support *support = &c->meshing->support;
     int32_t count = 0;
-    lar_status status =
-        lar_pads_choose(c->meshing, c->held, BACK / 2, -1, in->handle, side >= 0 ? side / 2 : 0,
-                        in->pad, &support->pads, &support->carried, motion, c->error);
-    if (!status) status = add_set(c, "pads", in->pad, &count);
-    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->pad[n];
+    lar_status status = lar_extra_supports_choose(
+        c->meshing, c->held, BACK / 2, -1, in->handle, side >= 0 ? side / 2 : 0, in->extra,
+        &support->extra_supports, &support->carried, motion, c->error);
+    if (!status) status = add_set(c, "pads", in->extra, &count);
+    for (int32_t n = 0; n < c->meshing->mesh.node_count; n++) c->held[n] |= in->extra[n];
     return status;
 }
 
 static lar_status choose(choice *c, const char *rule, const marks *in) {
     const lar_mesh *mesh = &c->meshing->mesh;
     lar_support *support = &c->meshing->support;
-    lar_motion motion = {0};
+    lar_sag motion = {0};
     int held_side = -1, side = -1;
     int32_t count = 0, held = 0;
     lar_status status = hold(c, rule, &held_side);
@@ -350,17 +350,17 @@ static lar_status choose(choice *c, const char *rule, const marks *in) {
     if (!status && mean_shear(c->meshing) > 0) side = choose_handle(c, held_side, in->handle);
     if (!status && side >= 0 && held == 0)
         support->opposed = mark_handle(c, opposite(side), in->opposed) > 0;
-    if (!status && !rule) status = add_pads(c, side, in, &motion);
+    if (!status && !rule) status = add_extra_supports(c, side, in, &motion);
     if (!status && rule)
-        status = lar_motion_estimate(c->meshing, support->opposed ? in->opposed : c->held,
-                                     in->handle, side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
+        status = lar_sag_estimate(c->meshing, support->opposed ? in->opposed : c->held, in->handle,
+                                  side >= 0 ? side / 2 : 0, &motion, NULL, c->error);
     for (int32_t n = 0; n < mesh->node_count; n++) support->fixed_nodes += c->held[n];
     support->slowest = motion.slowest;
     if (status || side < 0 || (held == 0 && !support->opposed)) return status;
     choose_pull(c, side, &motion);
     if (!support->handle) support->opposed = false;
     if (support->handle) status = add_set(c, "handle", in->handle, &count);
-    if (count == 0) support->handle = NULL; /* pads took it */
+    if (count == 0) support->handle = NULL; /* extra supports took it */
     if (!status && support->opposed) status = add_set(c, "handle_opposite", in->opposed, &count);
     return status;
 }
@@ -376,7 +376,7 @@ lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error 
     free(c.outer);
     free(mark);
     meshing->info.fix = meshing->support.rule;
-    meshing->info.pads = meshing->support.pads;
+    meshing->info.extra_supports = meshing->support.extra_supports;
     meshing->info.fixed_nodes = meshing->support.fixed_nodes;
     return status;
 }

@@ -11,8 +11,7 @@ typedef struct lar_tissue {
     double shear_modulus; /* at small strain [Pa] */
     double poisson_ratio; /* of the starter scene: below what tissue has, for longer steps */
     double density;       /* [kg/m^3] */
-    double
-        most;   /* [m^3] more than its organs hold in anybody, for doubts about units; 0: unknown */
+    double max; /* [m^3] more than its organs hold in anybody, for doubts about units; 0: unknown */
     bool rigid; /* bone: held where it is, and given a stiffness that real time bears */
     const char *source; /* who measured it, where, year */
 } lar_tissue;

@@ -177,7 +177,7 @@ static double energy(const fit *f, const double *flat, double *flat_gradient) {
             gradient[p->node][c] += 2.0 * f->surface_weight * away * p->normal[c];
     }
     for (int a = 0; a < f->half->node_count; ++a)
-        if (f->half->lattice[a][0] == 0) gradient[a][0] = 0.0;
+        if (f->half->grid[a][0] == 0) gradient[a][0] = 0.0;
     return sum;
 }
 
@@ -218,9 +218,9 @@ static void descend(const history *past, const double *gradient, double *directi
 }
 
 static double largest(const double *v, size_t n) {
-    double most = 0.0;
-    for (size_t i = 0; i < n; ++i) most = fabs(v[i]) > most ? fabs(v[i]) : most;
-    return most;
+    double max = 0.0;
+    for (size_t i = 0; i < n; ++i) max = fabs(v[i]) > max ? fabs(v[i]) : max;
+    return max;
 }
 
 static void minimise(const fit *f, double *x) {
@@ -283,8 +283,8 @@ static void find_plane(const fit *f, plane *p) {
         }
         const double square = dot3(slope, slope) + 1e-6;
         double step = here / square;
-        const double most = 3.0 / sqrt(square);
-        step = step > most ? most : step < -most ? -most : step;
+        const double max = 3.0 / sqrt(square);
+        step = step > max ? max : step < -max ? -max : step;
         for (int c = 0; c < 3; ++c) at[c] -= step * slope[c];
     }
     const double norm = sqrt(dot3(slope, slope)) + 1e-12;

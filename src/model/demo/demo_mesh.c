@@ -7,7 +7,7 @@
 #include "model/demo/demo_parts.h"
 
 /* Elements and nodes are numbered from below, row by row, so that neighbours in space are near in
- * memory. `at` holds, for every lattice point of the whole organ, an index of the half or -1. */
+ * memory. `at` holds, for every grid point of the whole organ, an index of the half or -1. */
 enum { I_SPAN = 2 * LAR_DEMO_I_END + 1 };
 typedef int whole_table[LAR_DEMO_K_END + 1][LAR_DEMO_J_NODES][I_SPAN];
 
@@ -34,13 +34,13 @@ static lar_status reserve(lar_mesh *mesh, size_t nodes, size_t elements, lar_err
                : lar_fail_memory(error, nodes * sizeof *mesh->position, "the demonstration organ");
 }
 
-/* Numbers the nodes of both halves; `nodes` becomes lattice point -> mesh node. */
+/* Numbers the nodes of both halves; `nodes` becomes grid point -> mesh node. */
 static void place_nodes(const lar_demo_half *half, whole_table nodes, lar_mesh *mesh,
-                        int (*lattice)[3]) {
+                        int (*grid)[3]) {
     empty(nodes);
     for (int a = 0; a < half->node_count; ++a)
         for (int side = -1; side <= 1; side += 2)
-            *entry(nodes, side * half->lattice[a][0], half->lattice[a][1], half->lattice[a][2]) = a;
+            *entry(nodes, side * half->grid[a][0], half->grid[a][1], half->grid[a][2]) = a;
     for (int k = 0; k <= LAR_DEMO_K_END; ++k)
         for (int j = LAR_DEMO_J_FIRST; j <= LAR_DEMO_J_END; ++j)
             for (int i = -LAR_DEMO_I_END; i <= LAR_DEMO_I_END; ++i) {
@@ -52,7 +52,7 @@ static void place_nodes(const lar_demo_half *half, whole_table nodes, lar_mesh *
                 mesh->position[n][1] = 1e-3 * from[1];
                 mesh->position[n][2] = 1e-3 * from[2];
                 mesh->node_id[n] = n;
-                memcpy(lattice[n], (int[3]){i, j, k}, sizeof lattice[n]);
+                memcpy(grid[n], (int[3]){i, j, k}, sizeof grid[n]);
                 *node = n;
             }
 }
@@ -80,7 +80,7 @@ static void place_elements(const lar_demo_half *half, whole_table nodes, whole_t
             }
 }
 
-/* Node sets as boxes of lattice points, both ends included. */
+/* Node sets as boxes of grid points, both ends included. */
 static const struct named_box {
     const char *name;
     int low[3], high[3];
@@ -95,7 +95,7 @@ static const struct named_box {
     {"ovary_right", {-12, 2, 9}, {-8, 6, 12}},
 };
 
-static lar_status add_node_sets(lar_mesh *mesh, int (*lattice)[3], lar_error *error) {
+static lar_status add_node_sets(lar_mesh *mesh, int (*grid)[3], lar_error *error) {
     lar_status status = LAR_OK;
     for (size_t s = 0; !status && s < sizeof node_boxes / sizeof node_boxes[0]; ++s) {
         const struct named_box *box = &node_boxes[s];
@@ -104,7 +104,7 @@ static lar_status add_node_sets(lar_mesh *mesh, int (*lattice)[3], lar_error *er
         for (int32_t n = 0; n < mesh->node_count; ++n) {
             bool inside = true;
             for (int d = 0; d < 3; ++d)
-                inside &= lattice[n][d] >= box->low[d] && lattice[n][d] <= box->high[d];
+                inside &= grid[n][d] >= box->low[d] && grid[n][d] <= box->high[d];
             if (inside) index[count++] = n;
         }
         status = lar_mesh_add_set(mesh, box->name, LAR_SET_NODES, index, count, error);
@@ -129,26 +129,25 @@ static lar_status add_element_sets(lar_mesh *mesh, lar_error *error) {
 }
 
 static lar_status assemble(const lar_demo_half *half, lar_mesh *mesh, lar_error *error) {
-    const size_t most_nodes = 2 * (size_t)half->node_count;
-    int(*lattice)[3] = lar_calloc(most_nodes, sizeof *lattice);
-    if (!lattice)
-        return lar_fail_memory(error, most_nodes * sizeof *lattice, "the demonstration organ");
+    const size_t max_nodes = 2 * (size_t)half->node_count;
+    int(*grid)[3] = lar_calloc(max_nodes, sizeof *grid);
+    if (!grid) return lar_fail_memory(error, max_nodes * sizeof *grid, "the demonstration organ");
     whole_table nodes, cells;
-    lar_status status = reserve(mesh, most_nodes, 2 * (size_t)half->cell_count, error);
+    lar_status status = reserve(mesh, max_nodes, 2 * (size_t)half->cell_count, error);
     if (!status) {
-        place_nodes(half, nodes, mesh, lattice);
+        place_nodes(half, nodes, mesh, grid);
         place_elements(half, nodes, cells, mesh);
-        status = add_node_sets(mesh, lattice, error);
+        status = add_node_sets(mesh, grid, error);
     }
     if (!status) status = add_element_sets(mesh, error);
-    free(lattice);
+    free(grid);
     return status;
 }
 
 lar_status lar_demo_mesh(lar_mesh *mesh, lar_error *error) {
     lar_demo_half half = {0};
     const lar_demo_shape shape = lar_demo_shape_create();
-    lar_status status = lar_demo_lattice(&half, error);
+    lar_status status = lar_demo_grid(&half, error);
     if (!status) status = lar_demo_fit(&half, &shape, error);
     if (!status) status = assemble(&half, mesh, error);
     lar_demo_half_clear(&half);

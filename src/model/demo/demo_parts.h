@@ -2,7 +2,7 @@
  *
  * Three steps, each in its own file:
  *
- *   demo_lattice.c  which cells there are. The organ is laid out as bricks on an integer lattice
+ *   demo_grid.c  which cells there are. The organ is laid out as bricks on an integer grid
  *                   (i to the patient's left, j to the back, k up), so that the mesh conforms by
  *                   construction and the numbers of cells and nodes are exact bookkeeping.
  *   demo_shape.c    where the surface is. Simple bodies (ellipsoids, swept tubes, sheets) are
@@ -11,7 +11,7 @@
  *                   is moved so that the elements become as box-like and even as they can.
  *
  *          fundus
- *       .-'""""""'-.  ____ tube (2 x 2 cells)         front view of the left half; the lattice
+ *       .-'""""""'-.  ____ tube (2 x 2 cells)         front view of the left half; the grid
  *      |            |'____'---.                       holds i >= 0 only and is mirrored at i = 0,
  *      |   corpus   |  meso- / '|  free end           so that the organ is symmetric to the bit
  *       \          /|salpinx/  _|
@@ -29,7 +29,7 @@
 
 enum { LAR_DEMO_UTERUS = 1, LAR_DEMO_TUBES, LAR_DEMO_OVARIES, LAR_DEMO_LIGAMENTS };
 
-/* Lattice sizes: node coordinates 0 <= I <= I_END and so on; corpus and cervix stand on K = 0,
+/* Grid sizes: node coordinates 0 <= I <= I_END and so on; corpus and cervix stand on K = 0,
  * the round ligament ends at J = J_FIRST. */
 enum {
     LAR_DEMO_I_END = 15,
@@ -42,7 +42,7 @@ enum {
 /* Cells and nodes with i >= 0; positions in millimetres. */
 typedef struct lar_demo_half {
     int node_count;
-    int (*lattice)[3]; /* I, J, K of every node */
+    int (*grid)[3]; /* I, J, K of every node */
     double (*position)[3];
     int cell_count;
     int (*corner)[8]; /* node indices in the order of mesh.h */
@@ -52,7 +52,7 @@ typedef struct lar_demo_half {
 
 /* Fills a zeroed half with cells, nodes and a first guess of the positions, close enough to the
  * surface to be drawn onto it. The caller clears it, also on failure. */
-lar_status lar_demo_lattice(lar_demo_half *half, lar_error *error);
+lar_status lar_demo_grid(lar_demo_half *half, lar_error *error);
 void lar_demo_half_clear(lar_demo_half *half);
 
 enum { LAR_DEMO_TUBE_POINTS = 17, LAR_DEMO_TUBE_BEND = 11, LAR_DEMO_LIGAMENT_POINTS = 9 };

@@ -53,13 +53,13 @@ static const cell_type cell_types[] = {
 };
 enum { QUADRILATERAL = 3, HEXAHEDRON = 5 };
 /* Of the cells that are not refused at once. */
-enum { MOST_NODES = 75 };
+enum { MAX_NODES = 75 };
 
 /* One cell with the groups it belongs to. */
 typedef struct cell {
     int64_t id;
     const cell_type *type;
-    int64_t node[MOST_NODES];
+    int64_t node[MAX_NODES];
     const int64_t *group;
     size_t group_count;
     int line;

@@ -10,7 +10,7 @@
  *           scene_contact.c   contact
  *           scene_tools.c     tools
  *           scene_output.c    output, probes
- *           scene_surface.c   the fine surface that rides on the mesh
+ *           scene_surface.c   the embedded surface
  *           scene_value.c     numbers, words, keys, and every message's "FILE:LINE:COLUMN: "
  *
  * Every function here returns the status of lar_scene_fail, which has written the sentence.

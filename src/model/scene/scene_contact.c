@@ -6,10 +6,10 @@
 /* Faces of the outer surface; `self: true` means all of it. */
 static lar_status read_faces(lar_scene *scene, const lar_yaml *node, int32_t **face,
                              int32_t *count) {
-    char fault[LAR_FAULT_SIZE];
+    char problem[LAR_PROBLEM_SIZE];
     lar_status status = lar_scene_select(scene, node, LAR_SET_FACES, false, face, count);
-    if (!status && lar_face_list_fault(scene->model, *face, *count, fault))
-        status = lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", fault);
+    if (!status && lar_face_list_problem(scene->model, *face, *count, problem))
+        status = lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", problem);
     return status;
 }
 
@@ -76,9 +76,9 @@ static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
         status = read_between(scene, between, contact);
     else
         status = read_plane(scene, entry, faces, contact);
-    char fault[LAR_FAULT_SIZE];
-    if (!status && lar_contact_fault(scene->model, contact, fault))
-        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", fault);
+    char problem[LAR_PROBLEM_SIZE];
+    if (!status && lar_contact_problem(scene->model, contact, problem))
+        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);
     return status;
 }
 

@@ -24,7 +24,7 @@ static stiffness_form own_form(lar_law law) {
 }
 
 /* Keys of a material: its own four, then all that any law may be asked with. */
-enum { OWN_KEYS = 4, KEYS_MOST = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
+enum { OWN_KEYS = 4, KEYS_MAX = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
 
 static void add_keys(const char **key, const stiffness_form *form) {
     for (int i = 0; i < form->count; i++) {
@@ -35,9 +35,9 @@ static void add_keys(const char **key, const stiffness_form *form) {
 }
 
 /* Ends with NULL. */
-static void list_keys(const char *key[KEYS_MOST + 1]) {
+static void list_keys(const char *key[KEYS_MAX + 1]) {
     static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name"};
-    memset(key, 0, (KEYS_MOST + 1) * sizeof *key);
+    memset(key, 0, (KEYS_MAX + 1) * sizeof *key);
     for (int i = 0; i < OWN_KEYS; i++) key[i] = own[i];
     add_keys(key, &shear_bulk_form);
     add_keys(key, &young_form);
@@ -49,7 +49,7 @@ static void list_keys(const char *key[KEYS_MOST + 1]) {
 
 /* True when the entry has exactly the form's stiffness keys. */
 static bool has_form(const lar_yaml *node, const stiffness_form *form) {
-    const char *key[KEYS_MOST + 1];
+    const char *key[KEYS_MAX + 1];
     int present = 0;
     for (int i = 0; i < form->count; i++)
         if (!lar_yaml_get(node, form->key[i].name)) return false;
@@ -150,7 +150,7 @@ static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) 
 }
 
 static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
-    const char *const what = "a material", *name, *key[KEYS_MOST + 1];
+    const char *const what = "a material", *name, *key[KEYS_MAX + 1];
     const lar_yaml *cells = NULL, *law = NULL, *density = NULL;
     list_keys(key);
     lar_status status = lar_scene_keys(scene, node, what, key);

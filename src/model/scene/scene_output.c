@@ -71,7 +71,7 @@ static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
 
 static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     static const char *const keys[] = {"node", "nodes", "set", "sum", "name", NULL};
-    enum { MOST = 1000 };
+    enum { MAX = 1000 };
     lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
     if (status) return status;
     const lar_yaml *where = NULL, *sum = lar_yaml_get(entry, "sum");
@@ -93,11 +93,11 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
         status = lar_scene_fail(scene, sum, LAR_ERROR_FORMAT,
                                 "sum: expected reaction, the sum of the forces of the supports; "
                                 "without sum a probe is the mean displacement");
-    if (!status && scene->model->output.probe_count >= MOST)
+    if (!status && scene->model->output.probe_count >= MAX)
         status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
                                 "there are more than %d probes; write the field displacement "
                                 "instead",
-                                MOST);
+                                MAX);
     if (status) return status;
     lar_probe *probe = LAR_MODEL_APPEND(scene->model, output.probe);
     if (!probe) return lar_scene_no_memory(scene, sizeof *probe);

@@ -158,23 +158,23 @@ lar_status lar_scene_mark_set(lar_scene *scene, const lar_yaml *name, lar_set_ki
 /* ---- by number ---------------------------------------------------------------------------- */
 
 static lar_status unknown_tag(const lar_scene *scene, const lar_yaml *node) {
-    enum { MOST = 20 };
+    enum { MAX = 20 };
     const lar_mesh *mesh = &scene->model->mesh;
-    int32_t tag[MOST];
+    int32_t tag[MAX];
     int count = 0;
-    for (int32_t e = 0; e < mesh->element_count && count < MOST; e++) {
+    for (int32_t e = 0; e < mesh->element_count && count < MAX; e++) {
         int i = 0;
         while (i < count && tag[i] != mesh->element_tag[e]) i++;
         if (i == count) tag[count++] = mesh->element_tag[e];
     }
-    char list[MOST * 13] = "";
+    char list[MAX * 13] = "";
     size_t used = 0;
     for (int i = 0; i < count; i++)
         used +=
             (size_t)snprintf(list + used, sizeof list - used, "%s%d", i ? ", " : "", (int)tag[i]);
     return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
                           "no element has the tag %.24s; the tags in the mesh are %s%s", node->text,
-                          list, count == MOST ? ", ..." : "");
+                          list, count == MAX ? ", ..." : "");
 }
 
 lar_status lar_scene_mark_tag(lar_scene *scene, const lar_yaml *node, lar_set_kind kind,

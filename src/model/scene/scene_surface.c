@@ -1,4 +1,4 @@
-/* The key `surface`: a fine surface that rides on the mesh, for display. */
+/* The key `surface`: an embedded surface, for display. */
 #include "model/scene/scene.h"
 
 #include <stdlib.h>
@@ -39,6 +39,7 @@ lar_status lar_scene_read_surface(lar_scene *scene, const lar_yaml *node) {
     status = lar_triangles_read(path, scale, &surface, &own);
     free(path);
     if (!status)
-        status = lar_embedding_bind(&scene->model->mesh, &surface, &scene->model->embedding, &own);
+        status =
+            lar_embedded_surface_bind(&scene->model->mesh, &surface, &scene->model->embedded, &own);
     return status ? lar_scene_fail(scene, file, status, "%s", own.message) : LAR_OK;
 }

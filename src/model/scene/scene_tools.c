@@ -48,11 +48,11 @@ static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
 static lar_status read_name(lar_scene *scene, const lar_yaml *node, lar_tool *tool) {
     const lar_model *model = scene->model;
     const char *name;
-    char fault[LAR_FAULT_SIZE];
+    char problem[LAR_PROBLEM_SIZE];
     lar_status status = lar_scene_text(scene, node, "the name of the tool", &name);
     if (status) return status;
-    if (lar_tool_name_fault(name, fault))
-        return lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", fault);
+    if (lar_tool_name_problem(name, problem))
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", problem);
     for (int i = 0; i < model->tool_count - 1; i++)
         if (strcmp(model->tool[i].name, name) == 0)
             return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
@@ -123,9 +123,9 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     if (!status) status = lar_scene_need(scene, entry, what, "shape", "shape: sphere", &word);
     if (!status) status = read_shape(scene, word, &shape);
     if (!status) status = lar_scene_keys(scene, entry, shape->what, shape->keys);
-    if (!status && scene->model->tool_count >= LAR_MODEL_TOOLS_MOST)
+    if (!status && scene->model->tool_count >= LAR_MODEL_TOOLS_MAX)
         status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
-                                "there are more than %d tools; remove some", LAR_MODEL_TOOLS_MOST);
+                                "there are more than %d tools; remove some", LAR_MODEL_TOOLS_MAX);
     if (status) return status;
     lar_tool *tool = LAR_MODEL_APPEND(scene->model, tool);
     if (!tool) return lar_scene_no_memory(scene, sizeof *tool);
@@ -133,9 +133,9 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     status = read_name(scene, name, tool);
     if (!status) status = read_size(scene, entry, shape, tool);
     if (!status) status = read_pose(scene, entry, shape, tool);
-    char fault[LAR_FAULT_SIZE];
-    if (!status && lar_tool_fault(scene->model, tool, fault))
-        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", fault);
+    char problem[LAR_PROBLEM_SIZE];
+    if (!status && lar_tool_problem(scene->model, tool, problem))
+        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);
     return status;
 }
 
@@ -150,8 +150,8 @@ static double longest_edge(const lar_model *model) {
     return longest;
 }
 
-/* A face feels tools at 6 x 6 points at most (contact/touch.h). Between four of them there is room
- * for a tool of that radius. */
+/* A face feels tools at 6 x 6 points at most (contact/tool_contact.h). Between four of them there
+ * is room for a tool of that radius. */
 static lar_status notice_thin_tools(lar_scene *scene) {
     lar_model *model = scene->model;
     double edge = longest_edge(model), room = edge / 6 * sqrt(0.5);

@@ -61,11 +61,11 @@ static const char *closest(const char *word, const char *const *names, int count
 lar_status lar_scene_unknown(const lar_scene *scene, const lar_yaml *at, lar_status status,
                              const char *what, const char *list, const char *const *names,
                              int count) {
-    enum { MOST = 30 };
+    enum { MAX = 30 };
     char all[600] = "";
     size_t used = 0;
     int listed = 0;
-    while (listed < count && listed < MOST) {
+    while (listed < count && listed < MAX) {
         int wrote =
             snprintf(all + used, sizeof all - used, "%s%s", listed ? ", " : "", names[listed]);
         if (wrote < 0 || (size_t)wrote >= sizeof all - used) break;

@@ -125,7 +125,7 @@ static bool compare(void *context, int32_t other) {
         found->deep++;
     else if (found->shallow < INT32_MAX)
         found->shallow++;
-    return found->deep < LAR_CROSSINGS_MOST;
+    return found->deep < LAR_CROSSINGS_MAX;
 }
 
 static double mean_edge(const lar_triangles *triangles) {
@@ -149,8 +149,7 @@ lar_status lar_triangles_find_crossings(const lar_triangles *triangles, lar_cros
     search s = {.surface = triangles,
                 .harmless = LAR_CROSSING_HARMLESS * mean_edge(triangles),
                 .found = crossings};
-    for (int32_t t = 0; t < triangles->triangle_count && crossings->deep < LAR_CROSSINGS_MOST;
-         t++) {
+    for (int32_t t = 0; t < triangles->triangle_count && crossings->deep < LAR_CROSSINGS_MAX; t++) {
         double lower[3], upper[3];
         for (int i = 0; i < 3; i++) {
             const int32_t *c = triangles->corner[t];
@@ -178,7 +177,6 @@ lar_status lar_triangles_check_crossing(const lar_triangles *triangles, lar_erro
         "unite its parts or remake it in a mesh editor (Blender: remesh modifier; "
         "MeshLab: select self intersecting faces)",
         triangles->source ? triangles->source : "surface",
-        found.deep == LAR_CROSSINGS_MOST ? "more than " : "", found.deep,
-        found.deep == 1 ? "" : "s", found.deep == 1 ? "es" : "", found.deepest, at[0], at[1],
-        at[2]);
+        found.deep == LAR_CROSSINGS_MAX ? "more than " : "", found.deep, found.deep == 1 ? "" : "s",
+        found.deep == 1 ? "es" : "", found.deepest, at[0], at[1], at[2]);
 }

@@ -131,13 +131,13 @@ static int cheapest_cut(const bin *bins) {
     around = nothing;
     count = 0;
     int best = 1;
-    double least = INFINITY;
+    double min = INFINITY;
     for (int i = 1; i < BINS; i++) {
         widen(&around, &bins[i - 1].box);
         count += bins[i - 1].count;
         double cost = (count > 0 ? half_area(&around) * count : 0) + behind[i];
-        if (cost < least) {
-            least = cost;
+        if (cost < min) {
+            min = cost;
             best = i;
         }
     }

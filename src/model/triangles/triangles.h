@@ -2,8 +2,8 @@
  *
  *     .stl .obj .vtk .vtp --> lar_triangles --> the true boundary that meshing fits
  * (meshing/boundary/boundary.h)
- *                                          '--> the fine surface that rides on a mesh
- * (model/triangles/embedding.h)
+ *                                          '--> the embedded surface of a mesh
+ * (model/triangles/embedded_surface.h)
  *
  * Positions are in metres after scaling. Corners stand counter-clockwise seen from outside.
  */
@@ -81,7 +81,7 @@ lar_status lar_triangles_close(lar_triangles *triangles, int32_t *turned, lar_er
  * at. Shallow: up to LAR_CROSSING_HARMLESS of the mean edge, as rounding and smoothing leave them;
  * they tell neither an inside from an outside wrongly nor show on any element. */
 #define LAR_CROSSING_HARMLESS 0.01
-enum { LAR_CROSSINGS_MOST = 10000 }; /* deep ones; looking ends there */
+enum { LAR_CROSSINGS_MAX = 10000 }; /* deep ones; looking ends there */
 
 typedef struct lar_crossings {
     int32_t shallow, deep; /* pairs */

@@ -77,19 +77,19 @@ static bool read_axes(lar_span value, double q[4]) {
     /* The largest component first: one of the four is at least 1/2. */
     double square[4] = {1 + m[0][0] + m[1][1] + m[2][2], 1 + m[0][0] - m[1][1] - m[2][2],
                         1 - m[0][0] + m[1][1] - m[2][2], 1 - m[0][0] - m[1][1] + m[2][2]};
-    int most = 0;
+    int max = 0;
     for (int i = 1; i < 4; i++)
-        if (square[i] > square[most]) most = i;
+        if (square[i] > square[max]) max = i;
     double turn[3] = {m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
     for (int i = 0; i < 4; i++) {
-        if (i == most)
+        if (i == max)
             q[i] = square[i];
-        else if (most == 0)
+        else if (max == 0)
             q[i] = turn[i - 1];
         else if (i == 0)
-            q[i] = turn[most - 1];
+            q[i] = turn[max - 1];
         else
-            q[i] = m[i - 1][most - 1] + m[most - 1][i - 1];
+            q[i] = m[i - 1][max - 1] + m[max - 1][i - 1];
     }
     return lar_quaternion_normalise(q);
 }

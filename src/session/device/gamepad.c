@@ -123,7 +123,7 @@ static void look(gamepad_state *state) {
                           memory_order_relaxed);
 }
 
-static void *watch_controller(void *data) {
+static void *follow_controller(void *data) {
     gamepad_state *state = data;
     uint16_t told = 0;
     lar_pin_nowhere(); /* not where a processor computes, which may have started it */
@@ -196,7 +196,7 @@ static lar_status gamepad_open(lar_device_spec *spec, void **data, lar_error *er
     lar_status status = open_controller(state, spec, number, error);
     pthread_mutex_unlock(&sdl_lock);
     if (status) return status;
-    if (lar_thread_start(&state->thread, watch_controller, state))
+    if (lar_thread_start(&state->thread, follow_controller, state))
         return lar_fail(error, LAR_ERROR_MEMORY, "device '%s': the system gives no thread",
                         spec->text);
     state->started = true;

@@ -8,7 +8,7 @@
 static const uint64_t MILLISECOND = 1000000;
 enum { SILENCE = 20, FADE = 50, APPROACH = 300, LEAVE = 1000 }; /* [ms] */
 /* A device of 4 kHz sends as many in LEAVE; beyond it the numbers belong to something else. */
-enum { JUMP_MOST = 10000 };
+enum { JUMP_MAX = 10000 };
 
 void lar_link_create(lar_link *link, const char *token, const lar_tool_pose *tool) {
     *link = (lar_link){.tool = *tool, .pose = *tool, .from = *tool, .silent = true};
@@ -49,7 +49,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
             link->late++;
             return LAR_LINK_LATE;
         }
-        if (ahead > JUMP_MOST) return refuse(link);
+        if (ahead > JUMP_MAX) return refuse(link);
         link->lost += ahead - 1;
     }
     if (packet.buttons & LAR_BUTTON_CLOSE) packet.pose.opening = 0;
@@ -60,8 +60,8 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     return LAR_LINK_TAKEN;
 }
 
-static double toward(double value, double target, double most) {
-    return value + fmax(-most, fmin(most, target - value));
+static double toward(double value, double target, double max) {
+    return value + fmax(-max, fmin(max, target - value));
 }
 
 /* Between the place where the approach began and the hand; starts and ends without a jerk. */

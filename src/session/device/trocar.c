@@ -5,8 +5,8 @@
 #include "contact/tools.h"
 #include "base/quaternion.h"
 
-static const double TILT_MOST = 80 * 3.14159265358979323846 / 180;
-static const double DEPTH_LEAST = 0.001, DEPTH_MOST = 0.5;
+static const double TILT_MAX = 80 * 3.14159265358979323846 / 180;
+static const double DEPTH_MIN = 0.001, DEPTH_MAX = 0.5;
 
 /* The shortest turn that brings z to the unit vector u. */
 static void turn_of_z(const double u[3], double q[4]) {
@@ -17,16 +17,16 @@ static void turn_of_z(const double u[3], double q[4]) {
 
 void lar_trocar_create(lar_trocar *trocar, const double point[3], const lar_tool_pose *rest) {
     *trocar = (lar_trocar){.point = {point[0], point[1], point[2]},
-                           .tilt_most = TILT_MOST,
-                           .depth_least = DEPTH_LEAST,
-                           .depth_most = DEPTH_MOST};
+                           .tilt_max = TILT_MAX,
+                           .depth_min = DEPTH_MIN,
+                           .depth_max = DEPTH_MAX};
     double u[3], length = 0;
     for (int i = 0; i < 3; i++) {
         u[i] = point[i] - rest->position[i];
         length += u[i] * u[i];
     }
     length = sqrt(length);
-    if (length < DEPTH_LEAST)
+    if (length < DEPTH_MIN)
         lar_turn(rest->orientation, (const double[3]){0, 0, 1}, u);
     else
         for (int i = 0; i < 3; i++) u[i] /= length;
@@ -64,8 +64,8 @@ bool lar_trocar_find(const lar_trocar *trocar, const lar_tool_pose *pose,
     for (int i = 0; i < 3; i++) out[i] = trocar->point[i] - pose->position[i];
     lar_turn_back(trocar->frame, out, u);
     double d = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-    bool inside = d >= trocar->depth_least && u[2] > 0;
-    angles->d = inside ? d : trocar->depth_least;
+    bool inside = d >= trocar->depth_min && u[2] > 0;
+    angles->d = inside ? d : trocar->depth_min;
     if (inside) { /* u = d (sin b, -sin a cos b, cos a cos b) */
         angles->beta = asin(fmax(-1, fmin(1, u[0] / d)));
         angles->alpha = atan2(-u[1], u[2]);
@@ -81,7 +81,7 @@ bool lar_trocar_find(const lar_trocar *trocar, const lar_tool_pose *pose,
 }
 
 void lar_trocar_limit(const lar_trocar *trocar, lar_trocar_angles *angles) {
-    angles->alpha = fmax(-trocar->tilt_most, fmin(trocar->tilt_most, angles->alpha));
-    angles->beta = fmax(-trocar->tilt_most, fmin(trocar->tilt_most, angles->beta));
-    angles->d = fmax(trocar->depth_least, fmin(trocar->depth_most, angles->d));
+    angles->alpha = fmax(-trocar->tilt_max, fmin(trocar->tilt_max, angles->alpha));
+    angles->beta = fmax(-trocar->tilt_max, fmin(trocar->tilt_max, angles->beta));
+    angles->d = fmax(trocar->depth_min, fmin(trocar->depth_max, angles->d));
 }

@@ -21,10 +21,10 @@
 #include "lariat.h"
 
 typedef struct lar_trocar {
-    double point[3];                /* where it pivots [m] */
-    double frame[4];                /* quaternion: the trocar's axes into the scene's */
-    double tilt_most;               /* limit of alpha and beta [rad] */
-    double depth_least, depth_most; /* limits of d [m] */
+    double point[3];             /* where it pivots [m] */
+    double frame[4];             /* quaternion: the trocar's axes into the scene's */
+    double tilt_max;             /* limit of alpha and beta [rad] */
+    double depth_min, depth_max; /* limits of d [m] */
 } lar_trocar;
 
 typedef struct lar_trocar_angles {
@@ -42,8 +42,8 @@ void lar_trocar_pose(const lar_trocar *trocar, const lar_trocar_angles *angles,
                      lar_tool_pose *pose);
 
 /* The four degrees of freedom of a pose, without limits. False when the tip is not inside the body
- * (d would be less than depth_least, or it is on the outer side): alpha and beta then stay as they
- * are, d is depth_least. */
+ * (d would be less than depth_min, or it is on the outer side): alpha and beta then stay as they
+ * are, d is depth_min. */
 bool lar_trocar_find(const lar_trocar *trocar, const lar_tool_pose *pose,
                      lar_trocar_angles *angles);
 

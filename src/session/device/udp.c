@@ -1,7 +1,7 @@
 /* A device on the network: a position in, a force out, each in one datagram (device_packet.h).
  *
  *     engine's thread, every tick:
- *       poll   recvmmsg, no waiting: what has come since the last tick, at most READ_MOST
+ *       poll   recvmmsg, no waiting: what has come since the last tick, at most READ_MAX
  *       feel   sendmmsg: one answer for every position that was taken
  *
  * No thread of its own: a force is known only when the tick is done, so a receiver that is woken by
@@ -9,7 +9,7 @@
  * where the engine may need all cores. When a packet came is told by the kernel's time stamp, not
  * by when the engine looked; so the answer time below is what the device sees, but for the wire.
  *
- * A flood: no more than READ_MOST packets are read in a tick. When there are as many, and
+ * A flood: no more than READ_MAX packets are read in a tick. When there are as many, and
  * somebody owns the device, the socket is connected to the owner, and the kernel drops all others
  * before they take room in its queue, until the owner has gone.
  */
@@ -28,7 +28,7 @@
 #include "session/device/backend.h"
 #include "session/device/link.h"
 
-enum { READ_MOST = 32 };
+enum { READ_MAX = 32 };
 
 /* One more byte than a packet has, so that longer ones are seen to be longer. */
 enum { ROOM = LAR_PACKET_BYTES + 1, CONTROL = 64 };
@@ -46,17 +46,17 @@ typedef struct udp_state {
     struct sockaddr_storage bound, owner;
     socklen_t bound_bytes, owner_bytes;
     int due; /* answers */
-    udp_answer answer[READ_MOST];
+    udp_answer answer[READ_MAX];
     udp_answer last;  /* taken: what is said while a force fades */
     int said_nothing; /* answers of zero since the force has faded */
     uint64_t unasked; /* answers that no packet asked for, since the last one */
     uint64_t answered;
     lar_histogram answer_time;
-    struct mmsghdr message[READ_MOST];
-    struct iovec vector[READ_MOST];
-    struct sockaddr_storage from[READ_MOST];
-    unsigned char bytes[READ_MOST][ROOM];
-    _Alignas(struct cmsghdr) unsigned char control[READ_MOST][CONTROL];
+    struct mmsghdr message[READ_MAX];
+    struct iovec vector[READ_MAX];
+    struct sockaddr_storage from[READ_MAX];
+    unsigned char bytes[READ_MAX][ROOM];
+    _Alignas(struct cmsghdr) unsigned char control[READ_MAX][CONTROL];
 } udp_state;
 
 /* ---- opening ----------------------------------------------------------------------------------
@@ -135,7 +135,7 @@ static lar_status udp_open(lar_device_spec *spec, void **data, lar_error *error)
     state->socket = -1;
     lar_link_create(&state->link, spec->token,
                     &(lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1});
-    for (int i = 0; i < READ_MOST; i++) {
+    for (int i = 0; i < READ_MAX; i++) {
         state->vector[i].iov_base = state->bytes[i];
         state->message[i].msg_hdr = (struct msghdr){.msg_iov = &state->vector[i],
                                                     .msg_iovlen = 1,
@@ -192,7 +192,7 @@ static void take(udp_state *state, int i, uint64_t now) {
     state->last = (udp_answer){.sequence = state->link.newest.sequence,
                                .time = state->link.newest.time,
                                .came = arrival(head)};
-    if (state->due < READ_MOST) state->answer[state->due++] = state->last;
+    if (state->due < READ_MAX) state->answer[state->due++] = state->last;
     state->said_nothing = 0;
     state->unasked = 0;
 }
@@ -212,7 +212,7 @@ static void choose_senders(udp_state *state, bool flooded) {
 
 static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pose) {
     udp_state *state = data;
-    for (int i = 0; i < READ_MOST; i++) {
+    for (int i = 0; i < READ_MAX; i++) {
         struct msghdr *head = &state->message[i].msg_hdr;
         head->msg_iovlen = 1;
         head->msg_namelen = sizeof state->from[i];
@@ -222,10 +222,10 @@ static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pos
         state->vector[i].iov_len = ROOM;
     }
     state->due = 0;
-    int count = recvmmsg(state->socket, state->message, READ_MOST, MSG_DONTWAIT, NULL);
+    int count = recvmmsg(state->socket, state->message, READ_MAX, MSG_DONTWAIT, NULL);
     for (int i = 0; i < count; i++) take(state, i, tick->now);
     bool here = lar_link_advance(&state->link, tick->paused, tick->now);
-    choose_senders(state, count == READ_MOST);
+    choose_senders(state, count == READ_MAX);
     if (here) *pose = state->link.pose;
     return here;
 }
@@ -310,7 +310,7 @@ static void udp_report(const void *data, lar_device_status *status) {
     status->answer_p50 = 1e-9 * lar_histogram_quantile(h, 0.5);
     status->answer_p99 = 1e-9 * lar_histogram_quantile(h, 0.99);
     status->answer_p999 = 1e-9 * lar_histogram_quantile(h, 0.999);
-    status->answer_max = 1e-9 * (double)h->most;
+    status->answer_max = 1e-9 * (double)h->max;
 }
 
 const lar_device_backend lar_device_udp = {.name = "udp",

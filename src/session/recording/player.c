@@ -99,9 +99,9 @@ static lar_status keep_key(lar_player *p, lar_simulation *simulation, lar_error 
     lar_status status = lar_simulation_gather(simulation, error);
     if (!status) status = lar_simulation_pack(simulation, p->path, &key.state, error);
     if (status) return status;
-    size_t most = KEY_BYTES / key.state.size;
-    p->keys_most = most > LAR_KEYS_MOST ? LAR_KEYS_MOST : most < 4 ? 4 : (int)most;
-    if (p->keys >= p->keys_most) thin_keys(p);
+    size_t max = KEY_BYTES / key.state.size;
+    p->keys_max = max > LAR_KEYS_MAX ? LAR_KEYS_MAX : max < 4 ? 4 : (int)max;
+    if (p->keys >= p->keys_max) thin_keys(p);
     p->key[p->keys++] = key;
     return LAR_OK;
 }

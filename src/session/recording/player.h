@@ -14,7 +14,7 @@
 #include "simulation/simulation.h"
 #include "session/recording/file.h"
 
-enum { LAR_KEYS_MOST = 64 };
+enum { LAR_KEYS_MAX = 64 };
 
 typedef struct lar_play_record {
     lar_record record;
@@ -38,8 +38,8 @@ typedef struct lar_player {
     uint64_t place;  /* now */
     uint64_t goal;   /* where somebody wants to go, computed as fast as it goes */
     size_t next;     /* record */
-    lar_play_key key[LAR_KEYS_MOST];
-    int keys, keys_most;
+    lar_play_key key[LAR_KEYS_MAX];
+    int keys, keys_max;
     uint64_t key_every; /* steps */
     bool rests;         /* when it comes to its goal */
 } lar_player;

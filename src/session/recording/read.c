@@ -9,7 +9,7 @@
 #include "session/recording/words.h"
 
 /* Sums of two numbers of steps do not overflow. */
-static const uint64_t STEPS_MOST = (uint64_t)1 << 60;
+static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
 
 lar_status lar_recording_refuse(const lar_recording_reader *reader, lar_error *error,
                                 const char *what) {
@@ -44,9 +44,9 @@ static lar_status check_header(const lar_recording_reader *reader, const uint64_
     double time_step = lar_double_of(word[6]);
     bool good = word[1] <= LAR_ELEMENT_HEX8_MATRIX && word[2] > 0 && word[2] <= INT32_MAX &&
                 word[3] > 0 && word[3] <= INT32_MAX && word[4] <= INT16_MAX && word[5] <= word[4] &&
-                time_step > 0 && isfinite(time_step) && word[7] > 0 && word[7] <= STEPS_MOST &&
+                time_step > 0 && isfinite(time_step) && word[7] > 0 && word[7] <= STEPS_MAX &&
                 word[8] > 0 &&
-                (word[0] <= LAR_RECORDING_WITHOUT_SPARES || word[9] <= LAR_SPARES_MOST);
+                (word[0] <= LAR_RECORDING_WITHOUT_SPARES || word[9] <= LAR_SPARES_MAX);
     if (good) return LAR_OK;
     return lar_fail(error, LAR_ERROR_FORMAT,
                     "%s: the header of the recording holds numbers that no recording has; take an "
@@ -136,7 +136,7 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
     record->pose.opening = lar_double_of(word[10]);
     for (int i = 0; i < 3; i++) sum += fabs(record->pose.position[i]);
     for (int i = 0; i < 4; i++) square += record->pose.orientation[i] * record->pose.orientation[i];
-    if (record->steps > 0 && record->steps <= STEPS_MOST && sum < 1e9 && fabs(square - 1) < 0.01 &&
+    if (record->steps > 0 && record->steps <= STEPS_MAX && sum < 1e9 && fabs(square - 1) < 0.01 &&
         record->pose.opening >= 0 && record->pose.opening <= 1)
         return LAR_OK;
     return lar_recording_refuse(reader, error, "moves a tool to where none can be; it was altered");
@@ -167,7 +167,7 @@ static bool is_too_late(const lar_recording_reader *reader, uint64_t step) {
 static lar_status take_record(lar_recording_reader *reader, const uint64_t *word,
                               lar_record *record, lar_error *error) {
     record->step = word[0];
-    if (record->step > STEPS_MOST)
+    if (record->step > STEPS_MAX)
         return lar_recording_refuse(reader, error, "has a step beyond all range; it was altered");
     if (record->kind != LAR_RECORD_STATE && record->step < reader->step)
         return lar_recording_refuse(reader, error, "goes back in time; it was altered");
@@ -202,7 +202,7 @@ static lar_status read_head(lar_recording_reader *reader, lar_record *record, la
 }
 
 lar_status lar_recording_next(lar_recording_reader *reader, lar_record *record, lar_error *error) {
-    uint64_t word[LAR_RECORD_WORDS_MOST], checksum;
+    uint64_t word[LAR_RECORD_WORDS_MAX], checksum;
     *record = (lar_record){0};
     reader->number++;
     lar_status status = read_head(reader, record, error);

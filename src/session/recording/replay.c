@@ -7,10 +7,10 @@
 typedef struct player {
     lar_simulation *simulation;
     lar_recording_reader reader;
-    lar_watch *watch;
+    lar_step_callback *callback;
     void *context;
     lar_replay_report *report;
-    bool stopped;   /* by the watch */
+    bool stopped;   /* by the callback */
     uint64_t equal; /* step of the latest hash that was equal; UINT64_MAX: none yet */
 } player;
 
@@ -61,7 +61,7 @@ lar_status lar_recording_check_simulation(const char *path, const lar_recording_
 /* ---- records ------------------------------------------------------------------------------- */
 
 /* Steps between two looks, also where ticks are long. */
-static const uint64_t PART_MOST = 1000;
+static const uint64_t PART_MAX = 1000;
 
 static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     lar_status status = LAR_OK;
@@ -69,12 +69,12 @@ static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     while (now < step && !status && !p->stopped) {
         uint64_t steps = step - now;
         if (steps > p->reader.header.tick_steps) steps = p->reader.header.tick_steps;
-        if (steps > PART_MOST) steps = PART_MOST;
+        if (steps > PART_MAX) steps = PART_MAX;
         status = lar_simulation_compute(p->simulation, steps, NULL, NULL, error);
         now = lar_simulation_steps(p->simulation);
         if (status) break;
         p->report->steps += steps;
-        p->stopped = p->watch && !p->watch(p->context, now);
+        p->stopped = p->callback && !p->callback(p->context, now);
     }
     return status;
 }
@@ -103,7 +103,7 @@ static lar_status compare(player *p, const lar_record *record, lar_error *error)
 
 /* The simulation is where a state or a reset has put it. */
 static void look_again(player *p) {
-    p->stopped = p->watch && !p->watch(p->context, lar_simulation_steps(p->simulation));
+    p->stopped = p->callback && !p->callback(p->context, lar_simulation_steps(p->simulation));
 }
 
 static lar_status take_state(player *p, const lar_record *record, lar_error *error) {
@@ -161,11 +161,11 @@ static lar_status play(player *p, const lar_record *record, lar_error *error) {
     return lar_recording_check_end(&p->reader, error);
 }
 
-lar_status lar_replay(lar_simulation *simulation, const char *path, lar_watch *watch, void *context,
-                      lar_replay_report *report, lar_error *error) {
+lar_status lar_replay(lar_simulation *simulation, const char *path, lar_step_callback *callback,
+                      void *context, lar_replay_report *report, lar_error *error) {
     lar_replay_report found = {.different = UINT64_MAX};
     player p = {.simulation = simulation,
-                .watch = watch,
+                .callback = callback,
                 .context = context,
                 .report = &found,
                 .equal = UINT64_MAX};

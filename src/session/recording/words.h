@@ -15,7 +15,7 @@ enum {
     LAR_RECORDING_VERSION = 3,        /* version 1 had no settings, and is read */
     LAR_RECORDING_WITHOUT_SPARES = 2, /* is written where no tool can be added */
     LAR_RECORDING_HEADER_WORDS = 10,  /* behind the magic, without the checksum */
-    LAR_RECORD_WORDS_MOST = 11        /* of the payload, but for states */
+    LAR_RECORD_WORDS_MAX = 11         /* of the payload, but for states */
 };
 
 /* Words of a record's payload; of a state: those before the checkpoint. 0: no such kind. */

@@ -69,8 +69,8 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
 
 void lar_recording_put(lar_recording_writer *writer, const lar_record *record) {
     int words = lar_record_words(record->kind);
-    uint64_t word[2 + LAR_RECORD_WORDS_MOST] = {(uint64_t)record->kind, 8 * (uint64_t)words,
-                                                record->step};
+    uint64_t word[2 + LAR_RECORD_WORDS_MAX] = {(uint64_t)record->kind, 8 * (uint64_t)words,
+                                               record->step};
     if (record->kind == LAR_RECORD_HASH) word[3] = record->hash;
     if (record->kind == LAR_RECORD_MOVE) {
         word[3] = (uint64_t)record->tool;

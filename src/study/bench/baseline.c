@@ -20,7 +20,7 @@ struct lar_baseline {
 
 static lar_bench_setting *add_setting(lar_bench_report *report, const char *name) {
     static lar_bench_setting none;
-    if (report->settings == LAR_BENCH_SETTINGS_MOST) return &none;
+    if (report->settings == LAR_BENCH_SETTINGS_MAX) return &none;
     lar_bench_setting *setting = &report->setting[report->settings++];
     setting->name = name;
     return setting;
@@ -41,7 +41,7 @@ void lar_bench_set_number(lar_bench_report *report, const char *name, double val
 lar_bench_figure *lar_bench_add(lar_bench_report *report, const char *unit, double value,
                                 bool judged, const char *format, ...) {
     static lar_bench_figure none;
-    bool room = report->figures < LAR_BENCH_FIGURES_MOST && isfinite(value);
+    bool room = report->figures < LAR_BENCH_FIGURES_MAX && isfinite(value);
     lar_bench_figure *figure = room ? &report->figure[report->figures++] : &none;
     *figure = (lar_bench_figure){.unit = unit, .value = value, .judged = judged};
     va_list args;

@@ -21,8 +21,8 @@
 #include "lariat.h"
 
 enum {
-    LAR_BENCH_SETTINGS_MOST = 12,
-    LAR_BENCH_FIGURES_MOST = 192,
+    LAR_BENCH_SETTINGS_MAX = 12,
+    LAR_BENCH_FIGURES_MAX = 192,
     LAR_BENCH_TEXT = 96 /* bytes of a name or a setting, with the end */
 };
 
@@ -44,8 +44,8 @@ typedef struct lar_bench_figure {
 typedef struct lar_bench_report {
     const char *bench; /* "kernel" */
     int settings, figures;
-    lar_bench_setting setting[LAR_BENCH_SETTINGS_MOST];
-    lar_bench_figure figure[LAR_BENCH_FIGURES_MOST];
+    lar_bench_setting setting[LAR_BENCH_SETTINGS_MAX];
+    lar_bench_figure figure[LAR_BENCH_FIGURES_MAX];
 } lar_bench_report;
 
 /* What does not fit is cut off or left out. */

@@ -129,7 +129,7 @@ static double sample_time(const bench *b) {
 
 static int packets_of(size_t bytes) {
     size_t packets = LAR_PAIR_BLOCK_BYTES / lar_comm_packet_bytes(bytes);
-    return packets > LAR_PAIR_BLOCK_MOST ? LAR_PAIR_BLOCK_MOST : (int)packets;
+    return packets > LAR_PAIR_BLOCK_MAX ? LAR_PAIR_BLOCK_MAX : (int)packets;
 }
 
 static lar_status take_latency(bench *b, int row, int size, int k, lar_error *error) {
@@ -323,7 +323,7 @@ static void list_rows(bench *b) {
 }
 
 static void list_sizes(const lar_bench_comm_options *options, lar_bench_comm_result *r) {
-    for (int32_t size = 8; size <= LAR_BENCH_COMM_BYTES_MOST; size *= options->quick ? 2048 : 2)
+    for (int32_t size = 8; size <= LAR_BENCH_COMM_BYTES_MAX; size *= options->quick ? 2048 : 2)
         r->size[r->sizes++] = size;
     int at = 0;
     while (at < r->sizes && r->size[at] < options->bytes) at++;
@@ -398,12 +398,12 @@ static lar_status measure_bound(const lar_bench_comm_options *options, lar_comm_
 
 lar_status lar_bench_comm(const lar_bench_comm_options *options, lar_bench_comm_result *result,
                           lar_error *error) {
-    if (options->bytes < 1 || options->bytes > LAR_BENCH_COMM_BYTES_MOST || options->repeat < 1 ||
-        options->repeat > LAR_BENCH_REPEAT_MOST)
+    if (options->bytes < 1 || options->bytes > LAR_BENCH_COMM_BYTES_MAX || options->repeat < 1 ||
+        options->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "packets of %d bytes, %d samples; take 1 to %d bytes and 1 to %d samples",
-                        (int)options->bytes, options->repeat, LAR_BENCH_COMM_BYTES_MOST,
-                        LAR_BENCH_REPEAT_MOST);
+                        (int)options->bytes, options->repeat, LAR_BENCH_COMM_BYTES_MAX,
+                        LAR_BENCH_REPEAT_MAX);
     lar_status status = check_list(options->backends, error);
     lar_comm_job launched;
     if (!status) status = lar_comm_job_find(&launched, error);

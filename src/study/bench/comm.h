@@ -28,13 +28,13 @@
 
 enum {
     LAR_BENCH_COMM_ROWS = 12,
-    LAR_BENCH_COMM_BYTES_MOST = 16384,
+    LAR_BENCH_COMM_BYTES_MAX = 16384,
     LAR_BENCH_COMM_SIZES = 13 /* 8, 16, ... 16384 and the one asked for */
 };
 
 typedef struct lar_bench_comm_options {
-    int32_t bytes;        /* of a packet, 1..LAR_BENCH_COMM_BYTES_MOST */
-    int repeat;           /* samples at this size, 1..LAR_BENCH_REPEAT_MOST; a third at others */
+    int32_t bytes;        /* of a packet, 1..LAR_BENCH_COMM_BYTES_MAX */
+    int repeat;           /* samples at this size, 1..LAR_BENCH_REPEAT_MAX; a third at others */
     const char *backends; /* "shm,tcp": only these; NULL: all */
     bool quick;           /* short samples of few sizes: whether it works, not how fast it is */
 } lar_bench_comm_options;

@@ -68,11 +68,11 @@ lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
     return LAR_OK;
 }
 
-lar_status lar_pair_measure(lar_pair_job *j, double least, uint64_t *rounds, lar_error *error) {
+lar_status lar_pair_measure(lar_pair_job *j, double min, uint64_t *rounds, lar_error *error) {
     for (;;) {
         j->rounds = *rounds;
         lar_status status = lar_pair_run(j, error);
-        if (status || j->seconds >= least || *rounds >= 1 << 20) return status;
+        if (status || j->seconds >= min || *rounds >= 1 << 20) return status;
         *rounds *= 2;
     }
 }
@@ -162,7 +162,7 @@ static lar_status close_end(lar_pair_job *j, int end, lar_error *error) {
 
 lar_status lar_pair_open(lar_pair *p, const int cores[2], lar_error *error) {
     p->listener = -1;
-    p->payload = lar_calloc_aligned(LAR_PAIR_PACKET_MOST, 1);
+    p->payload = lar_calloc_aligned(LAR_PAIR_PACKET_MAX, 1);
     p->word = lar_calloc_aligned(64, 1);
     for (int end = 0; end < 2; end++)
         p->buffer[end] = lar_calloc_aligned(2 * LAR_PAIR_HALF_BYTES, 1);

@@ -16,9 +16,9 @@
 /* Packets lie one after the other in blocks, at most so many and so long. */
 enum {
     LAR_PAIR_BLOCK_BYTES = 65536,
-    LAR_PAIR_BLOCK_MOST = 64,
-    LAR_PAIR_HALF_BYTES = LAR_PAIR_BLOCK_BYTES + 8 * LAR_PAIR_BLOCK_MOST + 64,
-    LAR_PAIR_PACKET_MOST = 16384
+    LAR_PAIR_BLOCK_MAX = 64,
+    LAR_PAIR_HALF_BYTES = LAR_PAIR_BLOCK_BYTES + 8 * LAR_PAIR_BLOCK_MAX + 64,
+    LAR_PAIR_PACKET_MAX = 16384
 };
 
 typedef enum lar_pair_kind { LAR_PAIR_WORD, LAR_PAIR_HAND, LAR_PAIR_COMM } lar_pair_kind;
@@ -70,8 +70,8 @@ lar_status lar_pair_await(lar_pair_job *job, int end, lar_error *error);
 /* Both ends, once, with job->rounds. The caller is end 0, or the process's own end. */
 lar_status lar_pair_run(lar_pair_job *job, lar_error *error);
 
-/* With twice the rounds again and again until it takes `least` seconds. *rounds is where to begin
+/* With twice the rounds again and again until it takes `min` seconds. *rounds is where to begin
  * and what was found. */
-lar_status lar_pair_measure(lar_pair_job *job, double least, uint64_t *rounds, lar_error *error);
+lar_status lar_pair_measure(lar_pair_job *job, double min, uint64_t *rounds, lar_error *error);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/beat.h"
+#include "base/deadline_clock.h"
 #include "base/histogram.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -63,15 +63,15 @@ static lar_status count_out(turn *t, double load, lar_error *error) {
 
 /* ---- a turn ------------------------------------------------------------------------------- */
 
-static void tick(turn *t, lar_beat *beat) {
-    lar_beat_wait(beat);
-    int64_t now = lar_clock_ns(), due = beat->due;
-    t->skipped += lar_beat_give_up(beat, now);
+static void tick(turn *t, lar_deadline_clock *deadline) {
+    lar_deadline_clock_wait(deadline);
+    int64_t now = lar_clock_ns(), due = deadline->due;
+    t->skipped += lar_deadline_clock_give_up(deadline, now);
     lar_histogram_add(&t->late, (uint64_t)(now - due));
     if (t->rounds > 0) t->sink += t->work->run(t->rounds);
     now = lar_clock_ns();
     lar_histogram_add(&t->done, (uint64_t)(now - due));
-    t->misses += lar_beat_next(beat, now);
+    t->misses += lar_deadline_clock_next(deadline, now);
 }
 
 static void forget(turn *t) {
@@ -83,14 +83,14 @@ static void forget(turn *t) {
 
 static void *keep_time(void *context) {
     turn *t = context;
-    lar_beat beat = {.period = PERIOD};
+    lar_deadline_clock deadline = {.period = PERIOD};
     lar_clock_be_prompt();
-    lar_beat_restart(&beat, lar_clock_ns() + (int64_t)PERIOD);
-    int64_t begin = beat.due + (int64_t)WARM_UP;
-    while (beat.due < begin) tick(t, &beat);
+    lar_deadline_clock_restart(&deadline, lar_clock_ns() + (int64_t)PERIOD);
+    int64_t begin = deadline.due + (int64_t)WARM_UP;
+    while (deadline.due < begin) tick(t, &deadline);
     forget(t);
-    int64_t end = beat.due + t->length;
-    while (beat.due < end) tick(t, &beat);
+    int64_t end = deadline.due + t->length;
+    while (deadline.due < end) tick(t, &deadline);
     return NULL;
 }
 
@@ -121,7 +121,7 @@ static lar_percentiles percentiles_of(const lar_histogram *times) {
     return (lar_percentiles){.p50 = 1e-3 * lar_histogram_quantile(times, 0.5),
                              .p99 = 1e-3 * lar_histogram_quantile(times, 0.99),
                              .p999 = 1e-3 * lar_histogram_quantile(times, 0.999),
-                             .most = 1e-3 * (double)times->most};
+                             .max = 1e-3 * (double)times->max};
 }
 
 static lar_status take_turns(bench *b, lar_bench_jitter_result *r, lar_error *error) {
@@ -145,12 +145,12 @@ static lar_status take_turns(bench *b, lar_bench_jitter_result *r, lar_error *er
 
 static lar_status check_options(const lar_bench_jitter_options *o, lar_error *error) {
     if (!(o->seconds >= 1e-9 * PERIOD && o->seconds <= LONGEST) || o->repeat < 1 ||
-        o->repeat > LAR_BENCH_REPEAT_MOST || !(o->load >= 0) ||
-        o->load > LAR_BENCH_JITTER_LOAD_MOST || o->priority < 0 || o->priority > 99)
+        o->repeat > LAR_BENCH_REPEAT_MAX || !(o->load >= 0) ||
+        o->load > LAR_BENCH_JITTER_LOAD_MAX || o->priority < 0 || o->priority > 99)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "turns last 0.001 to %g s, there are 1 to %d, a tick computes for up to "
                         "%d us, and the priority is 0 to 99",
-                        LONGEST, LAR_BENCH_REPEAT_MOST, LAR_BENCH_JITTER_LOAD_MOST);
+                        LONGEST, LAR_BENCH_REPEAT_MAX, LAR_BENCH_JITTER_LOAD_MAX);
     return LAR_OK;
 }
 

@@ -1,5 +1,5 @@
-/* How punctual this machine is: a thread that wakes a thousand times a second, as a session's does
- * (base/beat.h), and does nothing, or computes for a given time.
+/* Timer jitter and scheduling latency: a thread that wakes a thousand times a second, as a
+ * session's does (base/deadline_clock.h), and does nothing, or computes for a given time.
  *
  *     due          due          due          due
  *      |.|==load==|  |...|==load==|  |.|==load==|  |.........|==load=|      --seconds, --repeat
@@ -14,18 +14,18 @@
 
 #include "study/bench/kernel.h"
 
-enum { LAR_BENCH_JITTER_LOAD_MOST = 100000 }; /* [us] */
+enum { LAR_BENCH_JITTER_LOAD_MAX = 100000 }; /* [us] */
 
 typedef struct lar_bench_jitter_options {
     double seconds; /* of a turn, up to 3600 */
-    int repeat;     /* turns, 1..LAR_BENCH_REPEAT_MOST */
-    double load;    /* computed in every tick [us], 0..LAR_BENCH_JITTER_LOAD_MOST */
+    int repeat;     /* turns, 1..LAR_BENCH_REPEAT_MAX */
+    double load;    /* computed in every tick [us], 0..LAR_BENCH_JITTER_LOAD_MAX */
     int priority;   /* of the thread, SCHED_FIFO 1..99; 0: ordinary */
 } lar_bench_jitter_options;
 
 /* Percentiles of all ticks [us], known to 1.6 %; the last is exact. */
 typedef struct lar_percentiles {
-    double p50, p99, p999, most;
+    double p50, p99, p999, max;
 } lar_percentiles;
 
 typedef struct lar_bench_jitter_result {

@@ -15,12 +15,12 @@ static const double SIDE = 0.005;  /* of an element [m] */
 static const double JITTER = 0.12; /* of a side; scaled Jacobians stay above 0.3 */
 
 static int64_t ratio_of(const int32_t edge[3]) {
-    int32_t least = edge[0], most = edge[0];
+    int32_t min = edge[0], max = edge[0];
     for (int i = 1; i < 3; i++) {
-        least = edge[i] < least ? edge[i] : least;
-        most = edge[i] > most ? edge[i] : most;
+        min = edge[i] < min ? edge[i] : min;
+        max = edge[i] > max ? edge[i] : max;
     }
-    return (int64_t)most * 1000 / least;
+    return (int64_t)max * 1000 / min;
 }
 
 /* The better of two divisions: nearer to the wanted number, then nearer to a cube. */
@@ -160,12 +160,12 @@ static double percentile(const double *sample, int count, int percent) {
 
 lar_spread lar_spread_of(double *sample, int count) {
     qsort(sample, (size_t)count, sizeof *sample, compare);
-    return (lar_spread){.least = sample[0],
+    return (lar_spread){.min = sample[0],
                         .p25 = percentile(sample, count, 25),
                         .median = 0.5 * (sample[(count - 1) / 2] + sample[count / 2]),
                         .p75 = percentile(sample, count, 75),
                         .p95 = percentile(sample, count, 95),
-                        .most = sample[count - 1]};
+                        .max = sample[count - 1]};
 }
 
 /* What else runs takes the core away for milliseconds: the median of shorter sections does not see
@@ -218,7 +218,7 @@ static lar_status calibrate(lar_simulation *simulation, const lar_fma_peak *peak
 static lar_status measure(lar_simulation *simulation, const lar_fma_peak *peak,
                           lar_bench_kernel_result *result, lar_error *error) {
     static const double SAMPLE = 0.02; /* [s] */
-    double step_sample[LAR_BENCH_REPEAT_MOST], peak_sample[LAR_BENCH_REPEAT_MOST];
+    double step_sample[LAR_BENCH_REPEAT_MAX], peak_sample[LAR_BENCH_REPEAT_MAX];
     uint64_t rounds = 0;
     lar_status status = calibrate(simulation, peak, SAMPLE, &result->steps, &rounds, error);
     if (result->steps > SECTIONS) result->steps -= result->steps % SECTIONS;
@@ -262,12 +262,12 @@ static lar_status bench_model(const lar_model *model, const lar_bench_kernel_opt
 
 lar_status lar_bench_kernel(const lar_bench_kernel_options *options,
                             lar_bench_kernel_result *result, lar_error *error) {
-    enum { MOST_ELEMENTS = 20000000 };
-    if (options->elements < 1 || options->elements > MOST_ELEMENTS || options->repeat < 1 ||
-        options->repeat > LAR_BENCH_REPEAT_MOST)
+    enum { MAX_ELEMENTS = 20000000 };
+    if (options->elements < 1 || options->elements > MAX_ELEMENTS || options->repeat < 1 ||
+        options->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "a benchmark needs 1 to %d elements and 1 to %d samples", MOST_ELEMENTS,
-                        LAR_BENCH_REPEAT_MOST);
+                        "a benchmark needs 1 to %d elements and 1 to %d samples", MAX_ELEMENTS,
+                        LAR_BENCH_REPEAT_MAX);
     lar_bench_kernel_result made = {.repeat = options->repeat};
     lar_model *model = NULL;
     lar_bench_edges(options->elements, made.edge);

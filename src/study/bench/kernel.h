@@ -19,19 +19,19 @@
 
 #include "lariat.h"
 
-enum { LAR_BENCH_OPERATIONS = 816, LAR_BENCH_REPEAT_MOST = 1000 };
+enum { LAR_BENCH_OPERATIONS = 816, LAR_BENCH_REPEAT_MAX = 1000 };
 
 typedef struct lar_bench_kernel_options {
     int32_t elements; /* about so many; exactly, when it is a product of three like numbers */
     bool general;     /* not boxes */
     lar_isa isa;
-    int repeat; /* samples, 1..LAR_BENCH_REPEAT_MOST */
+    int repeat; /* samples, 1..LAR_BENCH_REPEAT_MAX */
 } lar_bench_kernel_options;
 
 /* Least, median and greatest of the samples; below or at p25, p75 and p95 lie so many per cent of
  * them. */
 typedef struct lar_spread {
-    double least, median, most, p25, p75, p95;
+    double min, median, max, p25, p75, p95;
 } lar_spread;
 
 /* Sorts the samples. */

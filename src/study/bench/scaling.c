@@ -200,15 +200,15 @@ static lar_status check_hash(bench *b, const lar_bench_scaling_row *row, uint64_
 static lar_status run_steps(bench *b, const lar_bench_scaling_row *row, lar_processes *processes,
                             const lar_options *options, double *microseconds, lar_error *error) {
     lar_bench_scaling_result *r = b->result;
-    stopwatch watch = {.next = r->warm_up, .section = r->steps / SECTIONS};
+    stopwatch callback = {.next = r->warm_up, .section = r->steps / SECTIONS};
     lar_simulation *simulation = NULL;
     lar_status status =
         lar_processes_create(processes, b->options->model, options, &simulation, error);
     if (status) return status;
     r->isa = lar_simulation_isa(simulation);
-    status = lar_simulation_advance_watched(simulation, r->warm_up + r->steps, tick, &watch, error);
+    status = lar_simulation_advance_with(simulation, r->warm_up + r->steps, tick, &callback, error);
     if (!status) status = check_hash(b, row, lar_simulation_hash(simulation), error);
-    if (!status) *microseconds = median_of_sections(&watch);
+    if (!status) *microseconds = median_of_sections(&callback);
     lar_simulation_destroy(simulation);
     return status;
 }
@@ -325,9 +325,9 @@ static lar_status measure(bench *b, lar_error *error) {
 
 lar_status lar_bench_scaling(const lar_bench_scaling_options *options,
                              lar_bench_scaling_result *result, lar_error *error) {
-    if (options->repeat < 1 || options->repeat > LAR_BENCH_REPEAT_MOST)
+    if (options->repeat < 1 || options->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d samples; take 1 to %d", options->repeat,
-                        LAR_BENCH_REPEAT_MOST);
+                        LAR_BENCH_REPEAT_MAX);
     lar_bench_scaling_result *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the benchmark");
     bench b = {.options = options, .result = made};

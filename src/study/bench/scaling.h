@@ -42,7 +42,7 @@ typedef struct lar_bench_scaling_options {
     const char *distribution; /* the same */
     bool pin;
     bool quick;                            /* few steps: whether it works, not how fast it is */
-    int repeat;                            /* turns, 1..LAR_BENCH_REPEAT_MOST */
+    int repeat;                            /* turns, 1..LAR_BENCH_REPEAT_MAX */
     const char *command;                   /* that a process is started with: "bench scaling" */
     const char *argument[2];               /* of it that say which model, NULL: fewer */
     void (*turn)(void *context, int turn); /* before each of them; may be NULL */

@@ -22,14 +22,14 @@ static bool next_word(const char **list, char *word, size_t room) {
     return true;
 }
 
-static lar_status read_count(const char *word, int32_t most, const char *what, int32_t *count,
+static lar_status read_count(const char *word, int32_t max, const char *what, int32_t *count,
                              lar_error *error) {
     char *end;
     long value = strtol(word, &end, 10);
-    if (end == word || *end || value < 1 || value > most)
+    if (end == word || *end || value < 1 || value > max)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s are no number of %s from 1 to %d; give a list such as 1,2,4",
-                        *word ? word : "blanks", what, (int)most);
+                        *word ? word : "blanks", what, (int)max);
     *count = (int32_t)value;
     return LAR_OK;
 }
@@ -109,7 +109,7 @@ static lar_status add_counts(const lar_bench_scaling_options *options, int32_t l
     lar_grid grid;
     int32_t count = 0;
     for (const char *list = options->processors; !status && next_word(&list, word, sizeof word);) {
-        status = read_count(word, LAR_GRID_MOST, "processors", &count, error);
+        status = read_count(word, LAR_GRID_MAX, "processors", &count, error);
         if (!status && launched > 1 && count > 1) count = launched;
         if (!status) status = lar_grid_cheapest(&options->model->mesh, count, &grid, error);
         if (!status) status = add_grid(options, &grid, launched, r, error);
@@ -119,7 +119,7 @@ static lar_status add_counts(const lar_bench_scaling_options *options, int32_t l
 
 lar_status lar_scaling_rows(const lar_bench_scaling_options *options, int32_t launched,
                             lar_bench_scaling_result *r, lar_error *error) {
-    enum { THREADS_MOST = 16 };
+    enum { THREADS_MAX = 16 };
     char word[32];
     int32_t count = 0;
     lar_status status = add_row(r, NONE, 1, 1, NONE, NULL, error);
@@ -129,7 +129,7 @@ lar_status lar_scaling_rows(const lar_bench_scaling_options *options, int32_t la
     /* The other processes of mpirun, while they wait, keep cores busy. */
     const char *list = launched > 1 ? NULL : options->threads;
     while (!status && next_word(&list, word, sizeof word)) {
-        status = read_count(word, THREADS_MOST, "threads", &count, error);
+        status = read_count(word, THREADS_MAX, "threads", &count, error);
         if (!status && count > 1) status = add_row(r, "1x1x1", 1, count, THREADS, NULL, error);
     }
     return status;

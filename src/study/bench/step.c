@@ -114,11 +114,11 @@ static lar_status take_sample(bench *b, int sample, lar_error *error) {
 
 /* ---- all samples ---------------------------------------------------------------------------- */
 
-/* The largest of 1, 2, 5, 10, 20, ... that is not above `most`. */
-static uint64_t round_down(double most) {
+/* The largest of 1, 2, 5, 10, 20, ... that is not above `max`. */
+static uint64_t round_down(double max) {
     uint64_t power = 1;
-    while ((double)power * 10 <= most && power < LAR_BENCH_STEP_STEPS_MOST) power *= 10;
-    return 5 * (double)power <= most ? 5 * power : 2 * (double)power <= most ? 2 * power : power;
+    while ((double)power * 10 <= max && power < LAR_BENCH_STEP_STEPS_MAX) power *= 10;
+    return 5 * (double)power <= max ? 5 * power : 2 * (double)power <= max ? 2 * power : power;
 }
 
 /* How many steps a sample has; what a machine takes for them differs little from day to day, and
@@ -154,18 +154,18 @@ static lar_status take_samples(bench *b, lar_error *error) {
     r->p50 = 1e-3 * lar_histogram_quantile(b->times, 0.5);
     r->p99 = 1e-3 * lar_histogram_quantile(b->times, 0.99);
     r->p999 = 1e-3 * lar_histogram_quantile(b->times, 0.999);
-    r->longest = 1e-3 * (double)b->times->most;
+    r->longest = 1e-3 * (double)b->times->max;
     return LAR_OK;
 }
 
 static lar_status check_options(const lar_bench_step_options *o, lar_error *error) {
-    if (o->repeat < 1 || o->repeat > LAR_BENCH_REPEAT_MOST)
+    if (o->repeat < 1 || o->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d samples; take 1 to %d", o->repeat,
-                        LAR_BENCH_REPEAT_MOST);
-    if (o->steps > LAR_BENCH_STEP_STEPS_MOST ||
-        (o->warm_up > LAR_BENCH_STEP_STEPS_MOST && o->warm_up != UINT64_MAX))
+                        LAR_BENCH_REPEAT_MAX);
+    if (o->steps > LAR_BENCH_STEP_STEPS_MAX ||
+        (o->warm_up > LAR_BENCH_STEP_STEPS_MAX && o->warm_up != UINT64_MAX))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "a sample has at most %d steps, after as many",
-                        LAR_BENCH_STEP_STEPS_MOST);
+                        LAR_BENCH_STEP_STEPS_MAX);
     return LAR_OK;
 }
 

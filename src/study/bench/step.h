@@ -14,15 +14,15 @@
 
 #include "study/bench/kernel.h"
 
-enum { LAR_BENCH_STEP_STEPS_MOST = 100000000 };
+enum { LAR_BENCH_STEP_STEPS_MAX = 100000000 };
 
 typedef struct lar_bench_step_options {
     const lar_model *model;
     lar_isa isa;
     uint64_t steps;   /* of a sample, 0: 1, 2 or 5 times a power of ten that last some tenths of a
-                         second; at most LAR_BENCH_STEP_STEPS_MOST */
+                         second; at most LAR_BENCH_STEP_STEPS_MAX */
     uint64_t warm_up; /* steps before them; UINT64_MAX: a fifth of them */
-    int repeat;       /* samples, 1..LAR_BENCH_REPEAT_MOST */
+    int repeat;       /* samples, 1..LAR_BENCH_REPEAT_MAX */
 } lar_bench_step_options;
 
 typedef struct lar_bench_step_result {

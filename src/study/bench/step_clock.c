@@ -17,7 +17,7 @@ void lar_step_clock_start(lar_step_clock *step_clock, const lar_simulation *simu
     step_clock->start = 1e-9 * (double)lar_clock_ns();
 }
 
-/* What the watch over an advance knows. */
+/* What the callback of an advance knows. */
 typedef struct stretch {
     lar_step_clock *clock;
     const lar_step_glance *glance;
@@ -73,7 +73,7 @@ lar_status lar_step_clock_advance(lar_step_clock *step_clock, lar_simulation *si
     if (asked_to_stop(&s)) return LAR_OK;
     s.begin = lar_clock_ns();
     s.look = s.begin + (glance ? nanoseconds(glance->every) : 0);
-    return lar_simulation_advance_watched(simulation, steps, after_step, &s, error);
+    return lar_simulation_advance_with(simulation, steps, after_step, &s, error);
 }
 
 double lar_step_clock_elapsed(const lar_step_clock *step_clock) {
@@ -89,5 +89,5 @@ double lar_step_clock_quantile(const lar_step_clock *step_clock, double share) {
 }
 
 double lar_step_clock_longest(const lar_step_clock *step_clock) {
-    return 1e-3 * (double)step_clock->times.most;
+    return 1e-3 * (double)step_clock->times.max;
 }

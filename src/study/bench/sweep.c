@@ -57,7 +57,7 @@ static double room(void) {
 static const struct {
     lar_isa isa;
     const char *name;
-    int32_t most; /* elements: slower ones take too long */
+    int32_t max; /* elements: slower ones take too long */
 } sets[] = {{LAR_ISA_AVX512, "avx512", INT32_MAX},
             {LAR_ISA_AVX2, "avx2", INT32_MAX},
             {LAR_ISA_NEON, "neon", INT32_MAX},
@@ -82,7 +82,7 @@ static bool goes_on(const lar_sweep_options *o, int32_t elements, const char *is
     char what[80];
     snprintf(what, sizeof what, "%d %s, %s", (int)elements, general ? "general elements" : "boxes",
              isa);
-    return !o->watch || o->watch(o->context, what);
+    return !o->callback || o->callback(o->context, what);
 }
 
 lar_status lar_bench_sweep(const lar_sweep_options *o, lar_sweep_result *result, lar_error *error) {
@@ -99,7 +99,7 @@ lar_status lar_bench_sweep(const lar_sweep_options *o, lar_sweep_result *result,
         }
         for (size_t k = 0; k < sizeof sets / sizeof *sets && !status; k++)
             for (int general = 1; general >= 0 && !status; general--) {
-                if (size[s] > sets[k].most || !lar_fma_peak_find(sets[k].name)) continue;
+                if (size[s] > sets[k].max || !lar_fma_peak_find(sets[k].name)) continue;
                 if (!goes_on(o, size[s], sets[k].name, general)) goto end;
                 status = add_row(o, size[s], sets[k].isa, general, &made, error);
             }

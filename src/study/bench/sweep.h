@@ -30,7 +30,7 @@ typedef struct lar_sweep_options {
     int32_t elements; /* the largest block; smaller ones of 500, 1840, 20,000, 200,000 */
     int repeat;       /* samples of each */
     /* Told before each row what it is; false from it ends the sweep. May be NULL. */
-    bool (*watch)(void *context, const char *what);
+    bool (*callback)(void *context, const char *what);
     void *context;
 } lar_sweep_options;
 

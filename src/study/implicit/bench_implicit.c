@@ -22,7 +22,7 @@ static lar_status run_engine(const lar_model *model, lar_bench_implicit_result *
         r->explicit_seconds += lar_clock_seconds() - start;
         lar_energy energy;
         lar_simulation_energy(simulation, &energy);
-        r->kinetic_most = fmax(r->kinetic_most, energy.kinetic);
+        r->kinetic_max = fmax(r->kinetic_max, energy.kinetic);
     }
     r->explicit_steps = lar_simulation_steps(simulation);
     r->until = lar_simulation_time(simulation);

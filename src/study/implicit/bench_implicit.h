@@ -51,12 +51,12 @@ typedef struct lar_bench_implicit_result {
     int64_t values;
     double implicit_seconds;
     lar_implicit_tally tally;
-    bool failed;         /* the implicit way; the figures are of what it did until then */
-    double reached;      /* [s] */
-    char reason[512];    /* why it failed */
-    double largest;      /* displacement of an axis, explicitly [m] */
-    double apart;        /* largest difference against it, at `until`; -1 where it failed */
-    double kinetic_most; /* of the engine, seen a hundred times in the run [J] */
+    bool failed;        /* the implicit way; the figures are of what it did until then */
+    double reached;     /* [s] */
+    char reason[512];   /* why it failed */
+    double largest;     /* displacement of an axis, explicitly [m] */
+    double apart;       /* largest difference against it, at `until`; -1 where it failed */
+    double kinetic_max; /* of the engine, seen a hundred times in the run [J] */
 } lar_bench_implicit_result;
 
 /* Fails where the engine fails or PETSc is asked for and not there; not where the implicit way

@@ -36,7 +36,7 @@ struct lar_implicit {
 };
 
 lar_implicit_options lar_implicit_options_default(void) {
-    return (lar_implicit_options){.time_step = 0.01, .tolerance = 1e-6, .newton_most = 25};
+    return (lar_implicit_options){.time_step = 0.01, .tolerance = 1e-6, .newton_max = 25};
 }
 
 /* ---- making --------------------------------------------------------------------------------- */
@@ -47,7 +47,7 @@ static lar_status refuse(const lar_model *model, const lar_implicit_options *o, 
                         "%s: the implicit comparison knows neither contact nor tools; take a scene "
                         "without them",
                         lar_model_source(model));
-    if (!(o->time_step > 0 && isfinite(o->time_step)) || !(o->tolerance > 0) || o->newton_most < 1)
+    if (!(o->time_step > 0 && isfinite(o->time_step)) || !(o->tolerance > 0) || o->newton_max < 1)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "implicit integration needs a step, a tolerance and iterations above 0");
     return LAR_OK;
@@ -278,13 +278,13 @@ static lar_status fail_at(const lar_implicit *m, double dt, const char *why, lar
 static lar_status iterate(lar_implicit *m, double *u, double dt, lar_error *error) {
     bool upright, found;
     lar_status status = balance(m, u, dt, &upright, error);
-    for (int n = 0; !status && n <= m->options.newton_most; n++) {
+    for (int n = 0; !status && n <= m->options.newton_max; n++) {
         double to_go = 0;
         for (int32_t r = 0; r < m->rows; r++)
             if (m->held[r]) to_go = fmax(to_go, fabs(m->target[r] - u[r]));
         if (!(to_go > 0) && norm(m->rows, m->residual) <= m->options.tolerance * m->reference)
             return LAR_OK;
-        if (n == m->options.newton_most) break;
+        if (n == m->options.newton_max) break;
         lar_linear_result linear;
         double start = lar_clock_seconds();
         assemble(m, u, dt);
@@ -391,7 +391,7 @@ lar_status lar_implicit_advance(lar_implicit *m, double until, lar_error *error)
         if (!status && halved > 0) {
             halved--;
             dt *= 2;
-        } else if (status == LAR_ERROR_UNSTABLE && halved < m->options.halvings_most) {
+        } else if (status == LAR_ERROR_UNSTABLE && halved < m->options.halvings_max) {
             halved++;
             m->tally.halved++;
             dt = 0.5 * (dt < left ? dt : left);

@@ -26,8 +26,8 @@ typedef struct lar_implicit_options {
     double time_step; /* [s] */
     bool quasi_static;
     double tolerance;          /* of the residual, against the forces that balance in it */
-    int newton_most;           /* iterations of a step */
-    int halvings_most;         /* of a step that fails */
+    int newton_max;            /* iterations of a step */
+    int halvings_max;          /* of a step that fails */
     lar_linear_solver *solver; /* stays the caller's */
 } lar_implicit_options;
 

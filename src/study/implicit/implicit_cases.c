@@ -21,14 +21,14 @@ static const implicit_body body_of[LAR_IMPLICIT_CASES] = {
     [LAR_IMPLICIT_BUCKLE] = {"Arch that buckles", {24, 2, 2}, false, 2e3, 2e4, 20, 1},
     [LAR_IMPLICIT_LOOSE] = {"Block with a loose piece", {6, 2, 2}, false, 2e3, 2e4, 5, 0.2}};
 
-/* Nodes whose place x fastest, is `at` along x, and beyond `least` along y and z. */
-static lar_status list(const implicit_body *b, int at, const int least[2], lar_node_list *nodes,
+/* Nodes whose place x fastest, is `at` along x, and beyond `min` along y and z. */
+static lar_status list(const implicit_body *b, int at, const int min[2], lar_node_list *nodes,
                        lar_error *error) {
     int32_t wide = b->edge[0] + 1, deep = b->edge[1] + 1, high = b->edge[2] + 1;
     nodes->node = lar_calloc((size_t)deep * (size_t)high, sizeof *nodes->node);
     if (!nodes->node) return lar_fail_memory(error, (size_t)deep * 4, "a set of nodes");
-    for (int32_t z = least[1]; z < high; z++)
-        for (int32_t y = least[0]; y < deep; y++)
+    for (int32_t z = min[1]; z < high; z++)
+        for (int32_t y = min[0]; y < deep; y++)
             nodes->node[nodes->count++] = at + wide * (y + deep * z);
     return LAR_OK;
 }
@@ -41,14 +41,14 @@ static lar_status hold(lar_model *model, const implicit_body *b, int at, lar_err
 }
 
 /* `total` newtons on the nodes of a list, shared equally, growing smoothly `over` seconds. */
-static lar_status pull(lar_model *model, const implicit_body *b, int at, const int least[2],
+static lar_status pull(lar_model *model, const implicit_body *b, int at, const int min[2],
                        const double total[3], double over, lar_error *error) {
     lar_curve *curve = LAR_MODEL_APPEND(model, curve);
     lar_nodal_load *load = LAR_MODEL_APPEND(model, load);
     if (!curve || !load) return lar_fail_memory(error, sizeof *load, "a load");
     *curve = (lar_curve){.kind = LAR_CURVE_RAMP, .over = over};
     load->curve = model->curve_count - 1;
-    lar_status status = list(b, at, least, &load->nodes, error);
+    lar_status status = list(b, at, min, &load->nodes, error);
     for (int i = 0; i < 3 && !status; i++) load->force[i] = total[i] / load->nodes.count;
     return status;
 }

@@ -19,7 +19,7 @@ struct lar_linear_solver {
 };
 
 lar_linear_options lar_linear_options_default(void) {
-    return (lar_linear_options){.method = "own", .tolerance = 1e-8, .iterations_most = 20000};
+    return (lar_linear_options){.method = "own", .tolerance = 1e-8, .iterations_max = 20000};
 }
 
 /* ---- the module of PETSc -------------------------------------------------------------------- */
@@ -143,7 +143,7 @@ static void conjugate_gradients(const lar_linear_options *o, const lar_sparse *A
         p[i] = inverse[i] * b[i];
     }
     double norm = sqrt(dot(n, b, b)), rz = dot(n, r, p);
-    for (; result->iterations < o->iterations_most; result->iterations++) {
+    for (; result->iterations < o->iterations_max; result->iterations++) {
         result->residual = norm > 0 ? sqrt(dot(n, r, r)) / norm : 0;
         result->solved = result->residual <= o->tolerance;
         if (result->solved) return;

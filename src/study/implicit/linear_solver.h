@@ -24,7 +24,7 @@ typedef struct lar_linear_options {
     const char *method;         /* "own", or of PETSc "cg" or "bcgs" (BiCGSTAB) */
     const char *preconditioner; /* of PETSc: "jacobi", "icc", "ilu", "gamg"; else NULL */
     double tolerance;           /* of the residual, against |b| */
-    int iterations_most;
+    int iterations_max;
 } lar_linear_options;
 
 /* "own", 1e-8, 20000. */

@@ -31,7 +31,7 @@ static PetscErrorCode prepare(KSP ksp, const lar_linear_options *o, Mat matrix) 
         code = PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE);
     if (!code) code = KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED);
     if (!code && strcmp(o->method, KSPCG) != 0) code = KSPSetPCSide(ksp, PC_RIGHT);
-    if (!code) code = KSPSetTolerances(ksp, o->tolerance, 0, 1e8, o->iterations_most);
+    if (!code) code = KSPSetTolerances(ksp, o->tolerance, 0, 1e8, o->iterations_max);
     return code;
 }
 

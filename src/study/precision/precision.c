@@ -71,11 +71,11 @@ static void compare(const lar_simulation *a, const lar_simulation *b, double off
 }
 
 static double fastest(const lar_simulation *s) {
-    double most = 0;
+    double max = 0;
     for (lar_lid n = 0; n < s->domain.layout.node_padded; n++)
         for (int i = 0; i < 3 && s->domain.layout.global[n] >= 0; i++)
-            most = fmax(most, fabs(s->state.v[4 * n + i]));
-    return most;
+            max = fmax(max, fabs(s->state.v[4 * n + i]));
+    return max;
 }
 
 typedef struct look {
@@ -86,16 +86,16 @@ typedef struct study {
     run run[LAR_PRECISION_COUNT];
     look look[LAR_PRECISION_LOOKS];
     double nanoseconds[LAR_PRECISION_COUNT][LAR_PRECISION_LOOKS];
-    double most_energy, most_strain;
+    double max_energy, max_strain;
     int looks;
 } study;
 
 static void note_energy(study *s) {
     lar_energy e;
     lar_simulation_energy(s->run[LAR_PRECISION_DOUBLE].simulation, &e);
-    s->most_energy = fmax(s->most_energy, e.kinetic + e.strain + e.hourglass);
-    s->most_energy = fmax(s->most_energy, fabs(e.external));
-    s->most_strain = fmax(s->most_strain, e.strain + e.hourglass);
+    s->max_energy = fmax(s->max_energy, e.kinetic + e.strain + e.hourglass);
+    s->max_energy = fmax(s->max_energy, fabs(e.external));
+    s->max_strain = fmax(s->max_strain, e.strain + e.hourglass);
 }
 
 /* All three go on, one after the other, and are looked at. Only double must not stop. */
@@ -129,14 +129,14 @@ static void conclude_way(study *s, int w, double largest, lar_precision_way *to)
     if (!r->went) return;
     lar_energy e;
     lar_simulation_energy(r->simulation, &e);
-    double size = largest > 0 ? largest : 1, energy = s->most_energy > 0 ? s->most_energy : 1;
+    double size = largest > 0 ? largest : 1, energy = s->max_energy > 0 ? s->max_energy : 1;
     to->difference = last->difference[w] / size;
     to->left = last->size[w] / size;
     for (int k = 0; k < s->looks; k++)
-        to->difference_most = fmax(to->difference_most, s->look[k].difference[w] / size);
+        to->difference_max = fmax(to->difference_max, s->look[k].difference[w] / size);
     to->hash = lar_simulation_hash(r->simulation);
     to->speed = fastest(r->simulation);
-    to->strain = (e.strain + e.hourglass) / (s->most_strain > 0 ? s->most_strain : 1);
+    to->strain = (e.strain + e.hourglass) / (s->max_strain > 0 ? s->max_strain : 1);
     to->drift = (all_energy(&e) - r->energy_begin) / energy;
     const lar_domain *domain = &r->simulation->domain;
     to->bytes = (double)(w == LAR_PRECISION_DOUBLE ? domain->block_bytes : r->single.bytes) /
@@ -236,7 +236,7 @@ static lar_status swings(const lar_model *model, lar_precision way, lar_isa isa,
         lar_simulation_energy(r.simulation, &e);
         const double begin = e.kinetic;
         domain->time_step *= factor;
-        domain->motion.dt *= factor;
+        domain->leapfrog.dt *= factor;
         for (lar_lid n = 0; n < domain->layout.node_padded; n++) domain->push[n] *= factor;
         *answer = !lar_simulation_advance(r.simulation, steps, error);
         lar_simulation_energy(r.simulation, &e);

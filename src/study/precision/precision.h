@@ -51,7 +51,7 @@ typedef struct lar_precision_options {
 typedef struct lar_precision_way {
     bool went;              /* false: stopped, and nothing below is after that */
     double difference;      /* largest of a node from double at the end, of `largest` */
-    double difference_most; /* the same, the worst look */
+    double difference_max;  /* the same, the worst look */
     double left;            /* largest displacement at the end, of `largest` */
     double speed;           /* largest velocity of an axis at the end [m/s] */
     double strain;          /* strain energy at the end, of the largest in double */

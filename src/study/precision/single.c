@@ -99,8 +99,8 @@ static void recover_single(const lar_single_kernels *kernels, const lar_block_ru
 
 #define DEFINE_RECOVER(kernels)                                                                    \
     static int64_t recover_##kernels(const lar_block_run *run, const double *u, int64_t *force,    \
-                                     const lar_hex8_limits *limits, lar_hex8_watch *watch) {       \
-        (void)limits, (void)watch;                                                                 \
+                                     const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {   \
+        (void)limits, (void)monitor;                                                               \
         recover_single(&lar_single_##kernels, run, u, force);                                      \
         return -1;                                                                                 \
     }
@@ -113,24 +113,24 @@ DEFINE_RECOVER(avx5121)
 
 /* lar_node_update where the state is float: every number is rounded to one, and the doubles of the
  * arrays only carry them. */
-static bool update_single(const lar_motion *motion, int32_t first, int32_t end, double *u,
+static bool update_single(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u,
                           double *v, int64_t *force, const double *push, const double *mass,
                           double *damped, double *fastest) {
-    const float keep = (float)motion->keep, dt = (float)motion->dt;
-    float most = 0;
+    const float keep = (float)leapfrog->keep, dt = (float)leapfrog->dt;
+    float max = 0;
     bool fits = true;
     for (int64_t k = 4 * (int64_t)first; k < 4 * (int64_t)end; k++) {
-        const float before = (float)v[k], drift = (float)motion->drift[k % 4];
+        const float before = (float)v[k], drift = (float)leapfrog->drift[k % 4];
         const float after = fmaf(-(float)force[k], (float)push[k / 4], fmaf(keep, before, drift));
         v[k] = after;
         u[k] = fmaf(dt, after, (float)u[k]);
         force[k] = 0;
-        fits = fits && fabsf(after) < motion->speed;
-        most = fmaxf(most, fabsf(after));
+        fits = fits && fabsf(after) < leapfrog->speed;
+        max = fmaxf(max, fabsf(after));
         const double twice = (double)before + after;
         if (mass) *damped += mass[k / 4] * twice * twice;
     }
-    if (most > *fastest) *fastest = most;
+    if (max > *fastest) *fastest = max;
     return fits;
 }
 

@@ -275,25 +275,25 @@ typedef struct lar_block_run {
     const lar_block_more *more;
 } lar_block_run;
 typedef struct lar_hex8_limits {
-    float least_volume, stress_square, hourglass_square;
+    float min_volume, stress_square, hourglass_square;
 } lar_hex8_limits;
 enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
-typedef struct lar_hex8_watch {
+typedef struct lar_hex8_monitor {
     const float *limit;
     int32_t count, *lane;
     float (*strain)[LAR_STRAIN_NUMBERS];
-} lar_hex8_watch;
-typedef struct lar_motion {
+} lar_hex8_monitor;
+typedef struct lar_leapfrog {
     float keep, dt, speed, drift[4], push;
-} lar_motion;
+} lar_leapfrog;
 typedef struct lar_kernels {
     const char *name;
     bool (*available)(void);
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
-                       const lar_hex8_limits *limits, lar_hex8_watch *watch);
+                       const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
     uint64_t (*corners)(const lar_block_run *run, int32_t b, const float *rest, const float *u,
                         const float share[2]);
-    bool (*update)(const lar_motion *motion, int32_t first, int32_t end, float *u, float *v,
+    bool (*update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, float *u, float *v,
                    int64_t *force, const float *push, const float *mass, float *damped,
                    float *fastest);
 } lar_kernels;

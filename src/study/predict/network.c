@@ -12,7 +12,7 @@
 
 const char *const lar_span_kind_name[LAR_SPAN_KINDS] = {"compute", "exchange", "wait", "link"};
 
-enum { STEPS = 8, STEPS_MOST = 1000 };
+enum { STEPS = 8, STEPS_MAX = 1000 };
 
 /* Where a thread goes on: part of its batch, and which wait, packet or the like of it. */
 typedef enum part { RECOVER, WAIT, RECEIVE, POSITIONS, SEND, DONE } part;
@@ -354,9 +354,9 @@ lar_status lar_network_simulate(const lar_network_options *options, lar_network_
                     .steps = options->steps ? options->steps : STEPS,
                     .result = &made,
                     .error = error};
-    if (s.steps < 2 || s.steps > STEPS_MOST)
+    if (s.steps < 2 || s.steps > STEPS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d steps; take 2 to %d", (int)s.steps,
-                        STEPS_MOST);
+                        STEPS_MAX);
     s.status = lar_cluster_check(options->machine, error);
     if (!s.status) s.status = lar_wiring_make(options, &s.wiring, error);
     if (!s.status) s.status = prepare(&s);

@@ -22,7 +22,7 @@
 #include "divide/schedule/schedule.h"
 #include "study/predict/cluster.h"
 
-enum { LAR_NETWORK_SLICES = 20, LAR_NETWORK_PROCESSORS_MOST = 100000 };
+enum { LAR_NETWORK_SLICES = 20, LAR_NETWORK_PROCESSORS_MAX = 100000 };
 
 typedef struct lar_network_options {
     const lar_cluster *machine;

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "study/output.h"
 
-enum { BARS_MOST = 256, BINS = 100 };
+enum { BARS_MAX = 256, BINS = 100 };
 
 lar_status lar_network_write_csv(const char *path, const lar_network_result *r, lar_error *error) {
     lar_output o;
@@ -150,7 +150,7 @@ lar_status lar_network_write_svg(const char *path, const lar_network_result *r, 
                  .bar = r->threads > 1 ? 10 : 14,
                  .span = 1e6 * r->step,
                  .rows = r->processors * r->threads};
-    if (p.rows > BARS_MOST) p.rows = BARS_MOST;
+    if (p.rows > BARS_MAX) p.rows = BARS_MAX;
     p.bars = p.top + p.height + 70;
     fprintf(o.file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"900\" height=\"%.0f\" "

@@ -90,10 +90,10 @@ static lar_status choose_grid(const lar_network_options *o, lar_network_wiring *
                             "schedules for %d processors along an axis cannot stand for %d",
                             (int)has->edge[i], (int)w->grid[i]);
         count *= w->grid[i];
-        if (count > LAR_NETWORK_PROCESSORS_MOST)
+        if (count > LAR_NETWORK_PROCESSORS_MAX)
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "more than %d processors; take a smaller grid",
-                            LAR_NETWORK_PROCESSORS_MOST);
+                            LAR_NETWORK_PROCESSORS_MAX);
     }
     w->processors = (int32_t)count;
     return LAR_OK;

@@ -124,21 +124,21 @@ static lar_status simulate_blocks(const blocks *b, const lar_cluster *machine, i
         out->edge[i] = b->edge[i];
     }
     for (int32_t p = 0; p < r.processors; p++) {
-        if (r.of[p].bytes_sent > out->bytes_most) out->bytes_most = r.of[p].bytes_sent;
-        if (r.of[p].packets > out->packets_most) out->packets_most = r.of[p].packets;
+        if (r.of[p].bytes_sent > out->bytes_max) out->bytes_max = r.of[p].bytes_sent;
+        if (r.of[p].packets > out->packets_max) out->packets_max = r.of[p].packets;
     }
     lar_network_clear(&r);
     return LAR_OK;
 }
 
 static lar_status check_block(const lar_block_options *o, lar_error *error) {
-    if (o->elements < 1 || o->elements > LAR_PREDICT_BLOCK_MOST)
+    if (o->elements < 1 || o->elements > LAR_PREDICT_BLOCK_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d elements per processor; 1 to %d can be predicted", (int)o->elements,
-                        LAR_PREDICT_BLOCK_MOST);
-    if (o->processors < 1 || o->processors > LAR_NETWORK_PROCESSORS_MOST)
+                        LAR_PREDICT_BLOCK_MAX);
+    if (o->processors < 1 || o->processors > LAR_NETWORK_PROCESSORS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%d processors; 1 to %d can be predicted",
-                        (int)o->processors, LAR_NETWORK_PROCESSORS_MOST);
+                        (int)o->processors, LAR_NETWORK_PROCESSORS_MAX);
     if (o->scheme < 0 || o->scheme >= LAR_PREDICT_SCHEMES)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "scheme number %d; there are 0 to %d", o->scheme,
                         LAR_PREDICT_SCHEMES - 1);
@@ -204,8 +204,7 @@ lar_status lar_predict_critical(const lar_critical_options *o, lar_critical *out
     for (int scheme = 0; scheme < LAR_PREDICT_SCHEMES && !status; scheme++) {
         int32_t left = o->machines;
         for (int32_t m = 0; m < o->machines; m++) first[m] = 0;
-        for (int32_t edge = 1; edge <= o->edge_most && left > 0 && !status;
-             edge = next_edge(edge)) {
+        for (int32_t edge = 1; edge <= o->edge_max && left > 0 && !status; edge = next_edge(edge)) {
             if (o->tell) o->tell(o->context, scheme, edge);
             status = try_edge(o, scheme, edge, first, out, &left, error);
         }

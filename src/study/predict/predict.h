@@ -36,20 +36,20 @@ void lar_prediction_clear(lar_prediction *prediction); /* idempotent */
 /* ---- size scaling --------------------------------------------------------------------------- */
 
 typedef struct lar_block_options {
-    int32_t elements;   /* of each processor, about; 1..LAR_PREDICT_BLOCK_MOST */
+    int32_t elements;   /* of each processor, about; 1..LAR_PREDICT_BLOCK_MAX */
     int32_t processors; /* a near cube of so many, exactly */
     int32_t threads;    /* of a processor; 0: 1 */
     int scheme;         /* 0..LAR_PREDICT_SCHEMES - 1 */
     int32_t steps;      /* simulated, as in lar_network_options; 0: 8 */
 } lar_block_options;
 
-enum { LAR_PREDICT_BLOCK_MOST = 64000 };
+enum { LAR_PREDICT_BLOCK_MAX = 64000 };
 
 typedef struct lar_block_prediction {
     int32_t grid[3], edge[3]; /* processors; elements of a block */
     double step, alone;       /* [s]; alone: one processor's share of it all */
     double efficiency, occupation;
-    int64_t bytes_most, packets_most; /* a processor sends per step */
+    int64_t bytes_max, packets_max; /* a processor sends per step */
 } lar_block_prediction;
 
 lar_status lar_predict_block(const lar_block_options *options, const lar_cluster *machine,
@@ -70,7 +70,7 @@ typedef struct lar_critical {
  * with the next larger one that was tried: none has it by chance. */
 typedef struct lar_critical_options {
     const lar_cluster *machine;
-    int32_t machines, processors, threads, edge_most;
+    int32_t machines, processors, threads, edge_max;
     double efficiency;
     void (*tell)(void *context, int scheme, int32_t edge); /* before each block; may be NULL */
     void *context;

@@ -18,7 +18,7 @@ static void set_pace(lar_cluster *m, double factor) {
 static lar_status compare(const lar_model *model, const lar_bench_scaling_result *r,
                           lar_cluster *machine, lar_predict_check *out, lar_error *error) {
     lar_status status = LAR_OK;
-    double plain = 1e-6 * r->row[0].microseconds.least;
+    double plain = 1e-6 * r->row[0].microseconds.min;
     set_pace(machine, plain / lar_cluster_alone(machine, r->info.elements, r->info.nodes));
     for (int i = 0; i < LAR_PREDICT_CHECKS && !status; i++) {
         const lar_bench_scaling_row *row = &r->row[i + 1];
@@ -29,9 +29,9 @@ static lar_status compare(const lar_model *model, const lar_bench_scaling_result
             return lar_fail(error, LAR_ERROR_UNSUPPORTED, "%s by %s: %s", row->grid, row->comm,
                             row->missing);
         memcpy(out->grid[i], row->grid, sizeof row->grid);
-        out->measured[i].least = 1e-6 * row->microseconds.least;
+        out->measured[i].min = 1e-6 * row->microseconds.min;
         out->measured[i].median = 1e-6 * row->microseconds.median;
-        out->measured[i].most = 1e-6 * row->microseconds.most;
+        out->measured[i].max = 1e-6 * row->microseconds.max;
         status = lar_predict_model(model, &options, machine, 0, &p, error);
         if (!status) out->predicted[i] = p.network.step;
         lar_prediction_clear(&p);

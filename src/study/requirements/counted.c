@@ -256,12 +256,12 @@ static void fill_head(const lar_counted_block *from, lar_block_head *to) {
 
 void lar_counted_recover(int law, bool box, const lar_counted_block *block, const double *u,
                          int32_t nodes, int64_t *force, lar_operations *counts) {
-    enum { NODES_MOST = 64 };
-    counted displacement[4 * NODES_MOST];
+    enum { NODES_MAX = 64 };
+    counted displacement[4 * NODES_MAX];
     lar_hex8_block general;
     lar_box_block boxes;
     lar_block_more more;
-    if (nodes > NODES_MOST) return;
+    if (nodes > NODES_MAX) return;
     widen(u, 4 * (size_t)nodes, displacement);
     fill_head(block, box ? &boxes.head : &general.head);
     widen(block->modulus[LAR_BLOCK_PARAMETERS], LAR_MORE_PARAMETERS * LAR_BLOCK, more.modulus[0]);
@@ -287,7 +287,7 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
                         const double *push, lar_operations *counts) {
     enum { NODES = 8 };
     counted wide_u[4 * NODES], wide_v[4 * NODES], wide_push[NODES], fastest = 0;
-    const lar_motion motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
+    const lar_leapfrog motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
     widen(u, 4 * NODES, wide_u);
     widen(v, 4 * NODES, wide_v);
     widen(push, NODES, wide_push);
@@ -302,9 +302,9 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
 typedef counted element_force(const counted corner[8][3], const lar_material *material,
                               const counted u[8][3], counted force[8][3]);
 
-static double recover_element(element_force *recover_it, int law, const double parameter[LAR_LAW_PARAMETERS],
-                              const double corner[8][3], const double u[8][3], double force[8][3],
-                              lar_operations *counts) {
+static double recover_element(element_force *recover_it, int law,
+                              const double parameter[LAR_LAW_PARAMETERS], const double corner[8][3],
+                              const double u[8][3], double force[8][3], lar_operations *counts) {
     counted wide_corner[8][3], wide_u[8][3], wide_force[8][3];
     lar_material material = {.law = (lar_law)law, .density = 1};
     widen(parameter, LAR_LAW_PARAMETERS, material.parameter);
@@ -318,12 +318,14 @@ static double recover_element(element_force *recover_it, int law, const double p
     return (double)det;
 }
 
-double lar_counted_full(int law, const double parameter[LAR_LAW_PARAMETERS], const double corner[8][3],
-                        const double u[8][3], double force[8][3], lar_operations *counts) {
+double lar_counted_full(int law, const double parameter[LAR_LAW_PARAMETERS],
+                        const double corner[8][3], const double u[8][3], double force[8][3],
+                        lar_operations *counts) {
     return recover_element(lar_hex8_full_force, law, parameter, corner, u, force, counts);
 }
 
-double lar_counted_matrix(int law, const double parameter[LAR_LAW_PARAMETERS], const double corner[8][3],
-                          const double u[8][3], double force[8][3], lar_operations *counts) {
+double lar_counted_matrix(int law, const double parameter[LAR_LAW_PARAMETERS],
+                          const double corner[8][3], const double u[8][3], double force[8][3],
+                          lar_operations *counts) {
     return recover_element(lar_hex8_matrix_force, law, parameter, corner, u, force, counts);
 }

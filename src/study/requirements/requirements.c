@@ -20,7 +20,7 @@ _Static_assert(LAR_REQUIREMENTS_SCHEMES == (int)LAR_SCHEMES, "there is a place f
 _Static_assert(LAR_REQUIREMENTS_SHAPES == (int)LAR_SHAPE_COUNT, "there is a place for each shape");
 
 static void tell(const lar_requirements_options *options, const char *what) {
-    if (options->watch) options->watch(options->context, what);
+    if (options->progress) options->progress(options->context, what);
 }
 
 /* ---- counted from the mesh ---------------------------------------------------------------- */
@@ -86,7 +86,7 @@ static lar_status count_transfers(const lar_schedule_set *set, lar_requirements_
                 bytes += packet.bytes;
             }
         sent->bytes += bytes;
-        if (bytes > sent->bytes_most) sent->bytes_most = bytes;
+        if (bytes > sent->bytes_max) sent->bytes_max = bytes;
     }
     return LAR_OK;
 }
@@ -132,15 +132,15 @@ static lar_status distribute(const lar_model *model, const lar_requirements_opti
     return status;
 }
 
-static lar_status most_elements(const lar_distribution *distribution, int32_t *most,
-                                lar_error *error) {
+static lar_status max_elements(const lar_distribution *distribution, int32_t *max,
+                               lar_error *error) {
     size_t processors = (size_t)distribution->grid.count;
     int32_t *load = lar_calloc(processors, sizeof *load);
     if (!load) return lar_fail_memory(error, processors * sizeof *load, "loads");
     lar_distribution_load(distribution, load);
-    *most = 0;
+    *max = 0;
     for (size_t p = 0; p < processors; p++)
-        if (load[p] > *most) *most = load[p];
+        if (load[p] > *max) *max = load[p];
     free(load);
     return LAR_OK;
 }
@@ -154,7 +154,7 @@ static lar_status count_division(const lar_model *model, const lar_requirements_
     lar_status status = lar_incidence_build(mesh, &incidence, error);
     if (!status) status = count_mesh(mesh, &incidence, &r->quantities, error);
     if (!status) status = distribute(model, options, &distribution, error);
-    if (!status) status = most_elements(&distribution, &r->elements_most, error);
+    if (!status) status = max_elements(&distribution, &r->elements_max, error);
     if (!status) status = lar_sharing_build(&incidence, &distribution, &sharing, error);
     if (!status) {
         memcpy(r->grid, distribution.grid.edge, sizeof r->grid);
@@ -270,10 +270,10 @@ static double time_slow_kind(const lar_model *model, element_force *recover) {
 
 /* A measurement that cannot be made leaves its reason. */
 static void measure(const lar_model *model, lar_requirements *r) {
-    enum { BLOCK_MOST = 1000000, SAMPLES = 5 };
+    enum { BLOCK_MAX = 1000000, SAMPLES = 5 };
     static const double SECONDS = 0.15;
     int32_t elements = model->mesh.element_count;
-    lar_bench_kernel_options block = {.elements = elements < BLOCK_MOST ? elements : BLOCK_MOST,
+    lar_bench_kernel_options block = {.elements = elements < BLOCK_MAX ? elements : BLOCK_MAX,
                                       .general = true,
                                       .repeat = SAMPLES};
     lar_bench_kernel_result bench;

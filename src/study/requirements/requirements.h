@@ -27,7 +27,7 @@ typedef struct lar_requirements_options {
     double iterations;        /* n_it; 0: the thesis's 100 */
     double implicit_step;     /* dt_im [s]; 0: the thesis's 20 ms */
     bool measure;             /* step times on this machine, some tenths of a second */
-    void (*watch)(void *context, const char *what); /* called before each part; or NULL */
+    void (*progress)(void *context, const char *what); /* called before each part; or NULL */
     void *context;
 } lar_requirements_options;
 
@@ -43,7 +43,7 @@ typedef struct lar_requirements_sent {
     const char *scheme;
     int64_t vectors, packets, empty; /* empty packets among them: the signal word alone */
     int64_t bytes;                   /* of packets with signal words and tails */
-    int64_t bytes_most;              /* of the processor that sends most */
+    int64_t bytes_max;               /* of the processor that sends most */
     lar_requirements_packet *packet; /* [packets] owned; by sender, in the order of sending */
 } lar_requirements_sent;
 
@@ -73,7 +73,7 @@ typedef struct lar_requirements {
     bool demonstration; /* the model is the demonstration organ */
     lar_quantities quantities;
     int32_t grid[3];
-    int32_t elements_most; /* of one processor */
+    int32_t elements_max; /* of one processor */
     int32_t shape_count;
     lar_requirements_shape shape[LAR_REQUIREMENTS_SHAPES];
     lar_requirements_kernel kernel[LAR_NEEDS];

@@ -26,16 +26,16 @@ export function directionOf(gravity: Vector, scene: Vector): string {
 }
 
 /* Damping along a slider from 0 to 1: fine near nothing, which is where most bodies are. */
-export const dampingAt = (place: number, most: number): number => Number((most * place ** 3).toPrecision(2));
-export const placeOfDamping = (damping: number, most: number): number => Math.min(1, Math.cbrt(damping / most));
+export const dampingAt = (place: number, max: number): number => Number((max * place ** 3).toPrecision(2));
+export const placeOfDamping = (damping: number, max: number): number => Math.min(1, Math.cbrt(damping / max));
 
 /* Stiffness likewise: as far to half as to double, and exactly 1 near 1. */
-export function factorAt(place: number, least: number, most: number): number {
-    const factor = least * (most / least) ** place;
-    return Math.abs(Math.log(factor)) < 0.03 ? 1 : Number(Math.min(most, Math.max(least, factor)).toPrecision(3));
+export function factorAt(place: number, min: number, max: number): number {
+    const factor = min * (max / min) ** place;
+    return Math.abs(Math.log(factor)) < 0.03 ? 1 : Number(Math.min(max, Math.max(min, factor)).toPrecision(3));
 }
-export const placeOfFactor = (factor: number, least: number, most: number): number =>
-    Math.log(factor / least) / Math.log(most / least);
+export const placeOfFactor = (factor: number, min: number, max: number): number =>
+    Math.log(factor / min) / Math.log(max / min);
 
 export class BodyCard {
     private readonly card = element<HTMLDetailsElement>('body-card');
@@ -48,7 +48,7 @@ export class BodyCard {
     private hello: Hello | null = null;
     private status: Status | null = null;
     private down: Vector = [0, 0, -1]; // unit
-    private most = 200; // of damping [1/s]
+    private max = 200; // of damping [1/s]
     private own: Record<string, number> = {}; // until when the user's values stand
     private waiting = new Map<string, Request>();
     private sent = 0;
@@ -70,7 +70,7 @@ export class BodyCard {
         this.hello = hello;
         this.card.hidden = !hello.body; // an engine of before
         if (!hello.body) return;
-        this.most = Math.max(200, 10 * hello.body.damping);
+        this.max = Math.max(200, 10 * hello.body.damping);
         this.gravity.max = String(Math.max(GRAVITY_MOST, 2 * sizeOf(hello.body.gravity)));
         const names = hello.materials.map((material, i) => material.name || `organ ${i + 1}`);
         this.which.replaceChildren(new Option('all', '-1'), ...names.map((name, i) => new Option(name, String(i))));
@@ -87,7 +87,7 @@ export class BodyCard {
         for (const part of [this.gravity, this.direction, this.damping, this.stiffness, this.back]) part.disabled = fixed;
         if (this.isTheirs('gravity')) this.showGravity(body.gravity);
         if (this.isTheirs('damping')) {
-            this.damping.value = String(placeOfDamping(body.damping, this.most));
+            this.damping.value = String(placeOfDamping(body.damping, this.max));
             this.tellDamping(body.damping);
         }
         if (this.isTheirs('stiffness')) this.showStiffness();
@@ -152,7 +152,7 @@ export class BodyCard {
     }
 
     private setDamping(): void {
-        const value = dampingAt(this.damping.valueAsNumber, this.most);
+        const value = dampingAt(this.damping.valueAsNumber, this.max);
         this.send('damping', { do: 'damping', value });
         this.tellDamping(value);
     }

@@ -10,22 +10,22 @@ const PROCESSOR = 'processor';
 export class Colours {
     private fields: FieldInfo[] = [];
     private chosen: FieldInfo | null = null;
-    least = 0; // of the range
-    most = 0;
+    min = 0; // of the range
+    max = 0;
     private hello: Hello | null = null;
     private readonly list = element('fields');
     private readonly legend = element('legend');
     private readonly auto = element<HTMLInputElement>('auto');
-    private readonly fixedLeast = element<HTMLInputElement>('fixed-least');
-    private readonly fixedMost = element<HTMLInputElement>('fixed-most');
+    private readonly fixedMin = element<HTMLInputElement>('fixed-least');
+    private readonly fixedMax = element<HTMLInputElement>('fixed-most');
 
     constructor(
         private readonly view: View,
         private readonly ask: (field: string) => void,
     ) {
         this.auto.addEventListener('change', () => this.fix());
-        this.fixedLeast.addEventListener('input', () => this.applyFixed());
-        this.fixedMost.addEventListener('input', () => this.applyFixed());
+        this.fixedMin.addEventListener('input', () => this.applyFixed());
+        this.fixedMax.addEventListener('input', () => this.applyFixed());
     }
 
     get name(): string {
@@ -53,7 +53,7 @@ export class Colours {
         if (!this.chosen) this.view.tissue.showTissue();
         if (processors) this.view.tissue.showTints();
         if (!this.legend.hidden) {
-            this.least = this.most = 0;
+            this.min = this.max = 0;
             this.auto.checked = true;
             element('fixed').hidden = true;
             this.paintLegend();
@@ -67,8 +67,8 @@ export class Colours {
     frame(frame: Frame): void {
         if (!this.chosen || this.legend.hidden || frame.field !== this.chosen.number) return;
         if (this.auto.checked)
-            Object.assign(this, follow(this, frame.least, frame.most, this.chosen.unit, this.map === 'signed'));
-        this.view.tissue.showValues(this.map, this.least, this.most);
+            Object.assign(this, follow(this, frame.min, frame.max, this.chosen.unit, this.map === 'signed'));
+        this.view.tissue.showValues(this.map, this.min, this.max);
         this.labels();
     }
 
@@ -78,26 +78,26 @@ export class Colours {
 
     private fix(): void {
         element('fixed').hidden = this.auto.checked;
-        this.fixedLeast.value = String(Number(this.least.toPrecision(3)));
-        this.fixedMost.value = String(Number(this.most.toPrecision(3)));
+        this.fixedMin.value = String(Number(this.min.toPrecision(3)));
+        this.fixedMax.value = String(Number(this.max.toPrecision(3)));
     }
 
     private applyFixed(): void {
-        const least = this.fixedLeast.valueAsNumber;
-        const most = this.fixedMost.valueAsNumber;
-        if (!(most > least)) return;
-        this.least = least;
-        this.most = most;
-        this.view.tissue.showValues(this.map, least, most);
+        const min = this.fixedMin.valueAsNumber;
+        const max = this.fixedMax.valueAsNumber;
+        if (!(max > min)) return;
+        this.min = min;
+        this.max = max;
+        this.view.tissue.showValues(this.map, min, max);
         this.labels();
         this.view.changed();
     }
 
     private labels(): void {
         const unit = this.chosen?.unit ?? '';
-        write(element('legend-least'), withUnit(this.least, unit));
-        write(element('legend-middle'), withUnit((this.least + this.most) / 2, unit));
-        write(element('legend-most'), withUnit(this.most, unit));
+        write(element('legend-least'), withUnit(this.min, unit));
+        write(element('legend-middle'), withUnit((this.min + this.max) / 2, unit));
+        write(element('legend-most'), withUnit(this.max, unit));
     }
 
     private paintLegend(): void {

@@ -31,9 +31,9 @@ export class ForceHistory {
     }
 
     peak(): number {
-        let most = 0;
-        for (let i = Math.min(this.shown, this.count) - 1; i >= 0; i--) most = Math.max(most, this.ago(i));
-        return most;
+        let max = 0;
+        for (let i = Math.min(this.shown, this.count) - 1; i >= 0; i--) max = Math.max(max, this.ago(i));
+        return max;
     }
 }
 
@@ -76,21 +76,21 @@ export class Graph {
             const from = Math.floor(((columns - column) / columns) * (shown - 1));
             const to = Math.max(0, Math.floor(((columns - column - 1) / columns) * (shown - 1)) + 1);
             if (from >= have) continue;
-            let most = -1;
-            let least = Infinity;
+            let max = -1;
+            let min = Infinity;
             for (let ago = from; ago >= Math.min(to, from); ago--) {
                 const value = history.ago(ago);
-                most = Math.max(most, value);
-                least = Math.min(least, value);
+                max = Math.max(max, value);
+                min = Math.min(min, value);
             }
             const x = left + (column / columns) * wide;
             if (!started) {
-                pen.moveTo(x, bottom - Math.min(1, least / range) * tall);
+                pen.moveTo(x, bottom - Math.min(1, min / range) * tall);
                 first = x;
             }
             started = true;
-            pen.lineTo(x, bottom - Math.min(1, most / range) * tall);
-            if (most - least > range / tall) pen.lineTo(x, bottom - Math.min(1, least / range) * tall);
+            pen.lineTo(x, bottom - Math.min(1, max / range) * tall);
+            if (max - min > range / tall) pen.lineTo(x, bottom - Math.min(1, min / range) * tall);
         }
         if (!started) return;
         pen.strokeStyle = '#ffb938';

@@ -84,7 +84,7 @@ export class Panel {
         this.tick = hello.tick;
         this.details.title =
             `${hello.elements} elements, ${hello.nodes} nodes, ${hello.processors} processors, ` +
-            (hello.riding ? `fine surface of ${hello.riding.triangles} triangles, ` : '') +
+            (hello.riding ? `embedded surface of ${hello.riding.triangles} triangles, ` : '') +
             `${hello.isa}, steps of ${(hello.time_step * 1e6).toFixed(1)} µs, Lariat ${hello.lariat}`;
     }
 

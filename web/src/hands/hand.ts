@@ -1,5 +1,5 @@
 /* Pulling at the surface. What was pressed is moved in a plane through it that is parallel to the
- * screen; the engine finds a hand that takes hold there, of the mesh: where a fine surface is drawn, at
+ * screen; the engine finds a hand that takes hold there, of the mesh: where an embedded surface is drawn, at
  * the nearest point of the mesh's. The pulling is told at most 100 times a second. */
 import * as THREE from 'three';
 import { follow, nearestNode, type Hit } from './pick';

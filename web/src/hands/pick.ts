@@ -1,7 +1,7 @@
 /* Which point of the surface lies under the pointer: a ray against all drawn triangles. Asked for
  * when a button goes down and at most once a frame while the pointer moves, so brute force does. And
  * where the point that was hit is later, and which point of the mesh is nearest to it. */
-import type { Drawn } from '../picture/drawn';
+import type { SurfaceView } from '../picture/surfaceView';
 
 export interface Hit {
     point: [number, number, number];
@@ -20,7 +20,7 @@ export interface Among {
 }
 
 /* The nearest hit of the ray on the outside of the surface (Möller and Trumbore 1997). */
-export function pick(surface: Drawn, origin: Vector, direction: Vector, among?: Among): Hit | null {
+export function pick(surface: SurfaceView, origin: Vector, direction: Vector, among?: Among): Hit | null {
     const x = surface.positions;
     const t = among?.triangles ?? surface.triangles;
     // Along the ray: is beyond the plane where `ahead` + distance `speed` > 0.
@@ -79,7 +79,7 @@ export function pick(surface: Drawn, origin: Vector, direction: Vector, among?: 
 }
 
 /* Where a point that was hit is now. */
-export function follow(surface: Drawn, hit: Hit, out: Vector): void {
+export function follow(surface: SurfaceView, hit: Hit, out: Vector): void {
     out.x = out.y = out.z = 0;
     for (let k = 0; k < 3; k++) {
         const at = hit.corners[k]! * 3;
@@ -90,7 +90,7 @@ export function follow(surface: Drawn, hit: Hit, out: Vector): void {
 }
 
 /* The nearest drawn node, as a hit. */
-export function nearestNode(surface: Drawn, to: Vector): Hit {
+export function nearestNode(surface: SurfaceView, to: Vector): Hit {
     const x = surface.positions;
     let best = Infinity;
     let found = 0;
@@ -115,12 +115,12 @@ export function nearestPoint(
 ): { point: [number, number, number]; quad: number } {
     const best: [number, number, number] = [to.x, to.y, to.z];
     let quad = -1;
-    let least = Infinity;
+    let min = Infinity;
     for (let q = 0; q < quads.length; q += 4)
         for (let half = 1; half < 3; half++) {
             const square = nearOnTriangle(x, quads[q]! * 3, quads[q + half]! * 3, quads[q + half + 1]! * 3, to);
-            if (square >= least) continue;
-            least = square;
+            if (square >= min) continue;
+            min = square;
             quad = q / 4;
             for (let k = 0; k < 3; k++) best[k] = near[k]!;
         }
@@ -155,17 +155,17 @@ function nearOnTriangle(x: Float32Array, a: number, b: number, c: number, to: Ve
         near[2] = x[a + 2]! + u * uz + v * vz;
         return squareTo(to);
     }
-    let least = nearOnSide(x, a, b, to, Infinity);
-    least = nearOnSide(x, b, c, to, least);
-    return nearOnSide(x, c, a, to, least);
+    let min = nearOnSide(x, a, b, to, Infinity);
+    min = nearOnSide(x, b, c, to, min);
+    return nearOnSide(x, c, a, to, min);
 }
 
 function squareTo(to: Vector): number {
     return (near[0]! - to.x) ** 2 + (near[1]! - to.y) ** 2 + (near[2]! - to.z) ** 2;
 }
 
-/* The nearest point of a side where it is nearer than `least`, the square of a distance. */
-function nearOnSide(x: Float32Array, a: number, b: number, to: Vector, least: number): number {
+/* The nearest point of a side where it is nearer than `min`, the square of a distance. */
+function nearOnSide(x: Float32Array, a: number, b: number, to: Vector, min: number): number {
     const ux = x[b]! - x[a]!;
     const uy = x[b + 1]! - x[a + 1]!;
     const uz = x[b + 2]! - x[a + 2]!;
@@ -176,7 +176,7 @@ function nearOnSide(x: Float32Array, a: number, b: number, to: Vector, least: nu
     const py = x[a + 1]! + t * uy;
     const pz = x[a + 2]! + t * uz;
     const square = (px - to.x) ** 2 + (py - to.y) ** 2 + (pz - to.z) ** 2;
-    if (square >= least) return least;
+    if (square >= min) return min;
     near[0] = px;
     near[1] = py;
     near[2] = pz;

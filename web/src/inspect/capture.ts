@@ -108,11 +108,11 @@ export class Capture {
         pen.fillText(`${hello?.title || 'Lariat'}, ${frame.time.toFixed(3)} s, step ${frame.step}`, 12, middle);
         if (element('legend').hidden) return;
         const field = hello?.fields.find((one) => one.number === frame.field)?.title ?? '';
-        const [least, most] = ['legend-least', 'legend-most'].map((id) => element(id).textContent ?? '');
+        const [min, max] = ['legend-least', 'legend-most'].map((id) => element(id).textContent ?? '');
         pen.textAlign = 'right';
-        pen.fillText(most!, width - 12, middle);
-        const right = width - 20 - pen.measureText(most!).width;
+        pen.fillText(max!, width - 12, middle);
+        const right = width - 20 - pen.measureText(max!).width;
         pen.drawImage(element<HTMLCanvasElement>('legend-map'), right - 140, middle - 6, 140, 12);
-        pen.fillText(`${field}  ${least}`, right - 148, middle);
+        pen.fillText(`${field}  ${min}`, right - 148, middle);
     }
 }

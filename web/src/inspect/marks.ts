@@ -1,6 +1,6 @@
 /* Marks on the tissue, seen through all that lies before them: dots, and a line between two of them. */
 import * as THREE from 'three';
-import { steel } from '../picture/steel';
+import { instrumentMaterial } from '../picture/instrumentMaterial';
 
 const COLOUR = [0.25, 1.0, 0.55] as const;
 const Y = new THREE.Vector3(0, 1, 0);
@@ -14,7 +14,7 @@ export class Marks {
     private size = 1;
 
     constructor() {
-        const paint = steel({ colour: COLOUR, glow: 0.6, onTop: true });
+        const paint = instrumentMaterial({ colour: COLOUR, glow: 0.6, onTop: true });
         for (let i = 0; i < MOST; i++) this.dots.push(new THREE.Mesh(new THREE.SphereGeometry(1, 20, 14), paint));
         this.line = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 10).translate(0, 0.5, 0), paint);
         for (const part of [...this.dots, this.line]) {

@@ -30,18 +30,18 @@ export function binAt(seconds: number): number {
  * as far as `due`. */
 export function shownBins(bins: number[], due: number): [number, number] {
     const held = bins.map((count, i) => (count > 0 ? i : -1)).filter((i) => i >= 0);
-    const least = Math.min(...held, Math.floor(due));
-    const most = Math.max(...held, Math.ceil(due));
-    return [Math.max(0, least - 1), Math.min(bins.length, most + 2)];
+    const min = Math.min(...held, Math.floor(due));
+    const max = Math.max(...held, Math.ceil(due));
+    return [Math.max(0, min - 1), Math.min(bins.length, max + 2)];
 }
 
 /* Whole decades around some numbers, six at most: what is smaller is as good as nothing. */
 export function decades(values: number[]): [number, number] {
     const above = values.filter((value) => value > 0);
     if (!above.length) return [-6, -3];
-    const most = Math.ceil(Math.log10(Math.max(...above)) - 1e-9);
-    const least = Math.floor(Math.log10(Math.min(...above)));
-    return [Math.max(Math.min(least, most - 1), most - 6), most];
+    const max = Math.ceil(Math.log10(Math.max(...above)) - 1e-9);
+    const min = Math.floor(Math.log10(Math.min(...above)));
+    return [Math.max(Math.min(min, max - 1), max - 6), max];
 }
 
 interface Sample {
@@ -126,7 +126,7 @@ export class Plots {
 
     /* Heights are logarithms: one late answer in a million is to be seen. */
     private drawBars(sheet: Sheet, bins: number[], due: number): void {
-        const most = Math.max(...bins, 1);
+        const max = Math.max(...bins, 1);
         const pen = sheet.begin(`${bins.reduce((sum, n) => sum + n, 0)} times`);
         if (!pen) return;
         const at = due === Infinity || due === 0 ? -1 : binAt(due);
@@ -135,7 +135,7 @@ export class Plots {
         const x = (bin: number): number => ((bin - from) / (to - from)) * width;
         const foot = height - 14;
         for (let bin = from; bin < to; bin++) {
-            const tall = bins[bin] ? (0.08 + 0.92 * (Math.log(bins[bin]!) / Math.log(most + 1))) * (foot - 4) : 0;
+            const tall = bins[bin] ? (0.08 + 0.92 * (Math.log(bins[bin]!) / Math.log(max + 1))) * (foot - 4) : 0;
             pen.fillStyle = at >= 0 && bin >= at ? LATE : KINETIC;
             pen.fillRect(x(bin) + 0.5, foot - tall, Math.max(1, x(bin + 1) - x(bin) - 1), tall);
         }

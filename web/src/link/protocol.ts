@@ -163,8 +163,8 @@ export interface SurfaceMessage {
     processor: Uint32Array;
 }
 
-/* A fine surface that rides on the mesh. Frames have the surface's nodes first, then these. */
-export interface RidingMessage {
+/* An embedded surface. Frames have the surface's nodes first, then these. */
+export interface EmbeddedMessage {
     rest: Float32Array; // of the further nodes
     processor: Uint32Array; // of these
     weights: Float32Array; // eight per vertex
@@ -181,8 +181,8 @@ export interface Frame {
     whole: boolean; // the positions are those that the engine hashed
     checksum: number;
     field: number;
-    least: number;
-    most: number;
+    min: number;
+    max: number;
     positions: Float32Array;
     values: Float32Array;
     tools: Float32Array; // 16 words per tool
@@ -193,7 +193,7 @@ export const TOOL_WORDS = 16;
 export const KIND_SURFACE = 1;
 export const KIND_FRAME = 2;
 export const KIND_FORCES = 3;
-export const KIND_RIDING = 4;
+export const KIND_EMBEDDED = 4;
 export const KIND_SLICE = 5;
 
 export const kindOf = (data: ArrayBuffer): number =>
@@ -223,13 +223,13 @@ export function readSurface(data: ArrayBuffer): SurfaceMessage {
     };
 }
 
-export function readRiding(data: ArrayBuffer): RidingMessage {
+export function readEmbedded(data: ArrayBuffer): EmbeddedMessage {
     const head = new Uint32Array(data, 0, 4);
     const m = head[1]!;
     const k = head[2]!;
     const s = head[3]!;
     if (data.byteLength !== 16 + 20 * s + 68 * m + 12 * k)
-        throw new Error('a riding surface of wrong length');
+        throw new Error('an embedded surface of wrong length');
     const part = partsOf(data, 16);
     const rest = new Float32Array(...part(3 * s));
     const processor = new Uint32Array(...part(s));
@@ -247,7 +247,7 @@ export function readRiding(data: ArrayBuffer): RidingMessage {
 export function emptyFrame(): Frame {
     const none = new Float32Array(0);
     return {
-        step: 0, time: 0, hash: '', whole: true, checksum: 0, field: 0, least: 0, most: 0,
+        step: 0, time: 0, hash: '', whole: true, checksum: 0, field: 0, min: 0, max: 0,
         positions: none, values: none, tools: none, counts: new Uint32Array(0),
     };
 }
@@ -262,8 +262,8 @@ export function readFrame(data: ArrayBuffer, into: Frame): void {
     into.time = view.getFloat64(16, true);
     into.hash = hex(view.getUint32(28, true)) + hex(view.getUint32(24, true));
     into.field = view.getUint32(40, true);
-    into.least = view.getFloat64(48, true);
-    into.most = view.getFloat64(56, true);
+    into.min = view.getFloat64(48, true);
+    into.max = view.getFloat64(56, true);
     into.positions = new Float32Array(data, 72, 3 * n);
     into.values = new Float32Array(data, 72 + 12 * n, v);
     into.tools = new Float32Array(data, 72 + 12 * n + 4 * v, TOOL_WORDS * t);

@@ -2,8 +2,8 @@
  * last has arrived (T 6.5.1), so a slow display slows nothing but itself. */
 import { Connection, type Loss } from './connection';
 import {
-    KIND_FORCES, KIND_FRAME, KIND_RIDING, KIND_SLICE, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readRiding,
-    readSlice, readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type RidingMessage,
+    KIND_FORCES, KIND_FRAME, KIND_EMBEDDED, KIND_SLICE, KIND_SURFACE, emptyFrame, kindOf, readForces, readFrame, readEmbedded,
+    readSlice, readSurface, type Forces, type Frame, type HandNews, type Hello, type Request, type EmbeddedMessage,
     type Slice, type Status, type SurfaceMessage, type Text, type ToolInfo, type Values,
 } from './protocol';
 
@@ -18,7 +18,7 @@ export const ONLY_WATCHES = 'This page may only watch. Ask for the other address
 export interface Events {
     hello(hello: Hello): void;
     surface(surface: SurfaceMessage): void;
-    riding(riding: RidingMessage): void;
+    embedded(embedded: EmbeddedMessage): void;
     frame(frame: Frame): void;
     forces(forces: Forces): void;
     status(status: Status): void;
@@ -190,8 +190,8 @@ export class Session {
             this.events.forces(forces);
         } else if (kind === KIND_SURFACE) {
             this.events.surface(readSurface(data));
-        } else if (kind === KIND_RIDING) {
-            this.events.riding(readRiding(data));
+        } else if (kind === KIND_EMBEDDED) {
+            this.events.embedded(readEmbedded(data));
         } else if (kind === KIND_SLICE) {
             this.events.slice(readSlice(data));
         }

@@ -1,7 +1,7 @@
 /* The pull as one sees it: a dot where the tissue is held, a thread to where the hand is, and an arrow
  * along the force. Its length is in newtons: about a fifth of the organ's width at the full range of the bar. */
 import * as THREE from 'three';
-import { steel } from './steel';
+import { instrumentMaterial } from './instrumentMaterial';
 
 const BRIGHT = [0.35, 0.85, 1.0] as const;
 const YOURS = [1.0, 0.72, 0.12] as const;
@@ -19,8 +19,8 @@ export class PullPicture {
     private size = 1;
 
     constructor(colour: readonly [number, number, number] = YOURS) {
-        const arrow = steel({ colour, glow: 0.45, onTop: true });
-        const hand = steel({ colour: BRIGHT, glow: 0.9, alpha: 0.75, onTop: true });
+        const arrow = instrumentMaterial({ colour, glow: 0.45, onTop: true });
+        const hand = instrumentMaterial({ colour: BRIGHT, glow: 0.9, alpha: 0.75, onTop: true });
         this.dot = new THREE.Mesh(new THREE.SphereGeometry(1, 24, 16), arrow);
         this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 24).translate(0, 0.5, 0), arrow);
         this.head = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 32).translate(0, 0.5, 0), arrow);

@@ -126,7 +126,7 @@ function clamped(height: number): number {
     return Math.min(STEEPEST, Math.max(-STEEPEST, height));
 }
 
-/* The same angle, plus whole turns, next to another: the camera goes home the short way. */
+/* The same angle, plus whole turns, next to another: the camera returns the short way. */
 function nearestTurn(angle: number, to: number): number {
     return angle + Math.round((to - angle) / (2 * Math.PI)) * 2 * Math.PI;
 }

@@ -1,4 +1,4 @@
-/* The mesh's edges as lines. Where a fine surface is drawn instead of the mesh's own they would lie now
+/* The mesh's edges as lines. Where an embedded surface is drawn instead of the mesh's own they would lie now
  * before, now behind it. Those on the side towards the eye are brought nearer to it then, along the line
  * of sight, so that they stay where they are in the picture: by `lift` metres, and by more where the
  * surface is seen aslant. */

@@ -2,13 +2,13 @@
  * is the origin, the shaft lies along +z, jaws open in the plane y = 0 towards -z. */
 import * as THREE from 'three';
 import type { Rod } from './shadows';
-import { steel } from './steel';
+import { instrumentMaterial } from './instrumentMaterial';
 import { TOOL_WORDS, type Frame, type ToolInfo } from '../link/protocol';
 
-const STEEL = [0.62, 0.65, 0.68] as const;
+const METAL = [0.62, 0.65, 0.68] as const;
 const CHOSEN = [0.45, 0.75, 0.95] as const;
 
-interface Drawn {
+interface DrawnTool {
     info: ToolInfo;
     group: THREE.Group;
     jaws: [THREE.Object3D, THREE.Object3D] | null;
@@ -19,7 +19,7 @@ interface Drawn {
 
 export class Instruments {
     readonly group = new THREE.Group();
-    private readonly drawn: (Drawn | null)[] = [];
+    private readonly drawn: (DrawnTool | null)[] = [];
     private readonly center = new THREE.Vector3();
 
     /* Those that are drawn already stay. */
@@ -35,7 +35,7 @@ export class Instruments {
         for (const was of before) if (was && !this.drawn.includes(was)) this.forget(was);
     }
 
-    private forget(one: Drawn): void {
+    private forget(one: DrawnTool): void {
         this.group.remove(one.group);
         one.group.traverse((part) => part instanceof THREE.Mesh && part.geometry.dispose());
         one.material.dispose();
@@ -59,7 +59,7 @@ export class Instruments {
 
     choose(tool: number): void {
         this.drawn.forEach((one, i) => {
-            one?.material.uniforms.colour!.value.set(...(i === tool ? CHOSEN : STEEL));
+            one?.material.uniforms.colour!.value.set(...(i === tool ? CHOSEN : METAL));
         });
     }
 
@@ -92,9 +92,9 @@ export class Instruments {
     }
 }
 
-function draw(info: ToolInfo): Drawn {
+function draw(info: ToolInfo): DrawnTool {
     const group = new THREE.Group();
-    const material = steel({ colour: STEEL, polish: 1 });
+    const material = instrumentMaterial({ colour: METAL, polish: 1 });
     const add = (geometry: THREE.BufferGeometry, to: THREE.Object3D = group): THREE.Mesh => {
         const mesh = new THREE.Mesh(geometry, material);
         to.add(mesh);

@@ -1,8 +1,8 @@
 /* One drawn surface with its colours, as three.js draws it. */
 import * as THREE from 'three';
-import type { Drawn } from './drawn';
-import { grain } from './grain';
-import { openness } from './hollow';
+import type { SurfaceView } from './surfaceView';
+import { tissueNoise } from './tissueNoise';
+import { openness } from './ambientOcclusion';
 
 export interface Tints {
     organs: Float32Array; // three per drawn node
@@ -20,31 +20,31 @@ export class Organ {
     faded = 0;
     private readonly values: Float32Array;
 
-    /* `regionOf`: the organ that a triangle of `drawn` belongs to. `materials`: for what is shown, and
+    /* `regionOf`: the organ that a triangle of `surface` belongs to. `materials`: for what is shown, and
      * for what is faded. */
     constructor(
-        readonly drawn: Drawn,
+        readonly surface: SurfaceView,
         private readonly tints: Tints,
         materials: [THREE.Material, THREE.Material],
         private readonly regionOf: (triangle: number) => number,
     ) {
-        this.triangles = drawn.triangles.slice();
-        this.shown = drawn.triangles.length / 3;
+        this.triangles = surface.triangles.slice();
+        this.shown = surface.triangles.length / 3;
         this.regions = new Uint32Array(this.shown);
-        const unit = new Float32Array(drawn.rest.length);
+        const unit = new Float32Array(surface.rest.length);
         for (let i = 0; i < unit.length; i++)
-            unit[i] = (drawn.rest[i]! - drawn.center[i % 3]!) / drawn.size;
-        this.values = new Float32Array(drawn.nodes);
+            unit[i] = (surface.rest[i]! - surface.center[i % 3]!) / surface.size;
+        this.values = new Float32Array(surface.nodes);
         const geometry = new THREE.BufferGeometry();
         const changing = (array: Float32Array, width: number): THREE.BufferAttribute =>
             new THREE.BufferAttribute(array, width).setUsage(THREE.DynamicDrawUsage);
         geometry.setIndex(new THREE.BufferAttribute(this.triangles, 1));
-        geometry.setAttribute('position', changing(drawn.positions, 3));
-        geometry.setAttribute('normal', changing(drawn.normals, 3));
+        geometry.setAttribute('position', changing(surface.positions, 3));
+        geometry.setAttribute('normal', changing(surface.normals, 3));
         geometry.setAttribute('rest', new THREE.BufferAttribute(unit, 3));
         geometry.setAttribute('tint', new THREE.BufferAttribute(tints.organs.slice(), 3));
         geometry.setAttribute('value', changing(this.values, 1));
-        geometry.setAttribute('grain', new THREE.BufferAttribute(grain(unit, openness(drawn)), 4));
+        geometry.setAttribute('tissueNoise', new THREE.BufferAttribute(tissueNoise(unit, openness(surface)), 4));
         this.mesh = new THREE.Mesh(geometry, materials);
         this.mesh.frustumCulled = false;
         this.see(() => 'shown');
@@ -52,7 +52,7 @@ export class Organ {
 
     /* Shows, fades and hides organs. */
     see(seen: (region: number) => Seen): void {
-        const from = this.drawn.triangles;
+        const from = this.surface.triangles;
         const counts = { shown: 0, faded: 0, hidden: 0 };
         let to = 0;
         for (const wanted of ['shown', 'faded', 'hidden'] as const)
@@ -73,12 +73,12 @@ export class Organ {
     }
 
     place(nodes: Float32Array): void {
-        this.drawn.place(nodes);
+        this.surface.place(nodes);
         this.renew('position', 'normal');
     }
 
     paint(values: Float32Array): void {
-        this.drawn.paint(values, this.values);
+        this.surface.paint(values, this.values);
         this.renew('value');
     }
 

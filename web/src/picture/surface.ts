@@ -13,7 +13,7 @@
  *
  * All arrays are made once; a frame only writes into them.
  */
-import { boxOf, type Drawn } from './drawn';
+import { boxOf, type SurfaceView } from './surfaceView';
 import { edgesOf, faceNormal, normalsOf, split, trianglesOf, type Edges } from './quads';
 
 interface Level {
@@ -25,7 +25,7 @@ interface Level {
 
 const CREASE = Math.cos((55 * Math.PI) / 180);
 
-export class Surface implements Drawn {
+export class Surface implements SurfaceView {
     readonly meshNodes: number;
     readonly meshQuads: Uint32Array;
     readonly nodes: number;
@@ -41,8 +41,8 @@ export class Surface implements Drawn {
     readonly meanEdge: number; // of the mesh, at rest
     private readonly levels: Level[] = [];
 
-    /* Rounded as long as there are no more than `most` nodes. */
-    constructor(rest: Float32Array, quads: Uint32Array, most: number) {
+    /* Rounded as long as there are no more than `max` nodes. */
+    constructor(rest: Float32Array, quads: Uint32Array, max: number) {
         this.meshNodes = rest.length / 3;
         this.meshQuads = quads;
         let nodes = this.meshNodes;
@@ -53,7 +53,7 @@ export class Surface implements Drawn {
         let current = quads;
         while (this.levels.length < 2) {
             const finer = nodes + edges.ends.length / 2 + current.length / 4;
-            if (finer > most) break;
+            if (finer > max) break;
             this.levels.push({ nodes, quads: current, edges, sharp: new Uint8Array(nodes) });
             current = split(nodes, current, edges);
             lines = halved(lines, nodes, edges);

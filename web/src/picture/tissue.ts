@@ -16,9 +16,9 @@ const VERTEX = /* glsl */ `
 attribute vec3 rest;
 attribute vec3 tint;
 attribute float value;
-attribute vec4 grain;
+attribute vec4 tissueNoise;
 varying vec3 vView, vNormal, vRest, vTint;
-varying vec4 vGrain;
+varying vec4 vTissueNoise;
 varying float vValue;
 #if defined(CUT) || defined(SHADOWS)
 varying vec3 vPlace;
@@ -33,7 +33,7 @@ void main() {
     vRest = rest;
     vTint = tint;
     vValue = value;
-    vGrain = grain;
+    vTissueNoise = tissueNoise;
     gl_Position = projectionMatrix * p;
 }`;
 
@@ -63,7 +63,7 @@ vec4 noise(vec3 x) {
 
 const FRAGMENT = /* glsl */ `
 varying vec3 vView, vNormal, vRest, vTint;
-varying vec4 vGrain;    // mottling, distances from two nets of vessels, openness: grain.ts
+varying vec4 vTissueNoise;    // mottling, distances from two nets of vessels, openness: tissueNoise.ts
 varying float vValue;
 uniform mat3 turn;      // world to view
 uniform sampler2D map;
@@ -88,7 +88,7 @@ void main() {
     vec3 normal = normalize(vNormal);
     if (!gl_FrontFacing) normal = -normal;
     float plain = min(mapped, 1.0);
-    float hollow = vGrain.w;
+    float openness = vTissueNoise.w;
 
     // The film of fluid is uneven: bumps that are fixed to the tissue, along its surface.
     vec4 middle = noise(vRest * 11.0);
@@ -105,10 +105,10 @@ void main() {
     float cosine = mix(film, smooth_, 0.4);
 
     // Tissue: paler and darker places, vessels.
-    float mottle = vGrain.x * 0.55 + (middle.w - 0.5) * 0.55 + (fine.w - 0.5) * 0.35;
+    float mottle = vTissueNoise.x * 0.55 + (middle.w - 0.5) * 0.55 + (fine.w - 0.5) * 0.35;
     vec3 colour = vTint * exp(mottle * vec3(0.30, 0.62, 0.55));
-    float trunk = smoothstep(0.020, 0.004, abs(vGrain.y)) * smoothstep(-0.5, 0.4, vGrain.x);
-    float branch = smoothstep(0.011, 0.002, abs(vGrain.z)) * smoothstep(0.25, -0.35, vGrain.x);
+    float trunk = smoothstep(0.020, 0.004, abs(vTissueNoise.y)) * smoothstep(-0.5, 0.4, vTissueNoise.x);
+    float branch = smoothstep(0.011, 0.002, abs(vTissueNoise.z)) * smoothstep(0.25, -0.35, vTissueNoise.x);
     colour *= mix(vec3(1.0), vec3(0.60, 0.26, 0.34), trunk * 0.62);
     colour *= mix(vec3(1.0), vec3(0.78, 0.40, 0.42), branch * 0.55);
 
@@ -122,11 +122,11 @@ void main() {
 
     // Light that has been inside comes out red: green and blue fade sooner towards the rim.
     vec3 lit = pow(vec3(cosine * 0.93 + 0.07), mix(vec3(1.15, 1.95, 1.85), vec3(0.62), plain));
-    lit *= mix(vec3(hollow, hollow * hollow, hollow * hollow), vec3(0.55 + 0.45 * hollow), plain);
+    lit *= mix(vec3(openness, openness * openness, openness * openness), vec3(0.55 + 0.45 * openness), plain);
 
     // Highlights of the film: a soft sheen, and glints with a hard edge where it is thick.
     float off = 1.0 - film;
-    float wet = smoothstep(-0.5, 0.5, vGrain.x + (middle.w - 0.5) * 0.8);
+    float wet = smoothstep(-0.5, 0.5, vTissueNoise.x + (middle.w - 0.5) * 0.8);
     float sheen = 0.11 * exp(-off * 18.0);
     float glint = (0.30 + 0.60 * wet) * smoothstep(0.0125, 0.0035, off);
 #ifdef FINE
@@ -137,8 +137,8 @@ void main() {
     glint += 0.42 * wet * smoothstep(0.012, 0.001, drop) * smoothstep(0.6, 0.8, smooth_);
 #endif
     float grazing = (1.0 - smooth_) * (1.0 - smooth_);
-    vec3 shine = vec3(1.0, 0.97, 0.95) * (sheen + glint) * hollow;
-    shine += vec3(0.13, 0.06, 0.05) * grazing * grazing * hollow;
+    vec3 shine = vec3(1.0, 0.97, 0.95) * (sheen + glint) * openness;
+    shine += vec3(0.13, 0.06, 0.05) * grazing * grazing * openness;
     shine *= mix(1.0, 0.16, plain);
 
     vec3 light = colour * lit * mix(1.36, 1.08, plain) + shine;
@@ -203,11 +203,11 @@ export class Tissue {
         this.material.uniforms.mapped!.value = 2;
     }
 
-    showValues(map: MapName, least: number, most: number): void {
+    showValues(map: MapName, min: number, max: number): void {
         const uniforms = this.material.uniforms;
         uniforms.mapped!.value = 1;
         uniforms.map!.value = this.maps[map];
-        uniforms.range!.value.set(least, most > least ? 1 / (most - least) : 0);
+        uniforms.range!.value.set(min, max > min ? 1 / (max - min) : 0);
     }
 
     /* What is not needed is not in the shader: where the main processor draws it would cost a third. */

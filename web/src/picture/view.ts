@@ -3,8 +3,8 @@ import * as THREE from 'three';
 import { PullPicture } from './arrow';
 import { Endoscope } from './camera';
 import { Instruments } from './instruments';
-import { Cavity } from './cavity';
-import type { Drawn } from './drawn';
+import { Background } from './background';
+import type { SurfaceView } from './surfaceView';
 import { Cut } from '../inspect/cut';
 import { Marks } from '../inspect/marks';
 import { Edges } from './edges';
@@ -12,8 +12,8 @@ import { Organ, type Seen } from './organ';
 import { Others } from './others';
 import { organColour, processorColour, type Rgb } from './palette';
 import { nearestPoint, pick, type Hit } from '../hands/pick';
-import type { Frame, RidingMessage, SurfaceMessage } from '../link/protocol';
-import { Riding } from './riding';
+import type { Frame, EmbeddedMessage, SurfaceMessage } from '../link/protocol';
+import { EmbeddedSurface } from './embedded';
 import { Surface } from './surface';
 import { Tissue } from './tissue';
 
@@ -25,10 +25,10 @@ export class View {
     readonly cut = new Cut();
     readonly marks = new Marks();
     readonly tissue: Tissue;
-    drawn = 0; // pictures so far
+    pictures = 0; // pictures so far
     private readonly renderer: THREE.WebGLRenderer;
     private readonly scene = new THREE.Scene();
-    private readonly cavity = new Cavity();
+    private readonly background = new Background();
     private readonly fine: boolean;
     private readonly adapts: boolean;
     private sharpness = 1; // pixels drawn per pixel shown, along a side
@@ -51,13 +51,13 @@ export class View {
 
     constructor(readonly canvas: HTMLCanvasElement) {
         const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
-        this.fine = asked ? asked === 'fine' : drawnInHardware();
+        this.fine = asked ? asked === 'fine' : rendersInHardware();
         this.adapts = !asked;
         this.tissue = new Tissue(this.fine, this.cut.plane);
         this.tissue.shadows.on = this.fine;
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: this.fine, alpha: false });
         this.renderer.setClearColor(0x07080a);
-        this.scene.add(this.cavity.mesh, this.instruments.group, this.pull.group, this.others.group, this.marks.group);
+        this.scene.add(this.background.mesh, this.instruments.group, this.pull.group, this.others.group, this.marks.group);
         new ResizeObserver(() => {
             this.resize();
             this.draw(0); // at once: an empty canvas would flash
@@ -72,8 +72,8 @@ export class View {
     }
 
     /* What is drawn, and can be taken hold of. */
-    get surface(): Drawn | null {
-        return this.shown?.drawn ?? null;
+    get surface(): SurfaceView | null {
+        return this.shown?.surface ?? null;
     }
 
     get finer(): boolean {
@@ -112,23 +112,23 @@ export class View {
         this.see(this.seen);
     }
 
-    /* A fine surface that rides on the organ's mesh. */
-    setRiding(message: RidingMessage): void {
+    /* An embedded surface of the organ's mesh. */
+    setEmbedded(message: EmbeddedMessage): void {
         if (!this.mesh || this.fineOrgan) return;
         const first = this.mesh.meshNodes * 3;
         const rest = new Float32Array(first + message.rest.length);
         rest.set(this.mesh.rest.subarray(0, first));
         rest.set(message.rest, first);
-        const riding = new Riding(rest, message);
+        const embedded = new EmbeddedSurface(rest, message);
         const processor = (node: number): number =>
             this.processors[node] ?? message.processor[node - this.processors.length]!;
         const tints = {
-            organs: vertexTints(riding, (vertex) => this.colourOf(message.material[vertex]!)),
-            processors: vertexTints(riding, (vertex) => processorColour(processor(riding.leader(vertex)))),
+            organs: vertexTints(embedded, (vertex) => this.colourOf(message.material[vertex]!)),
+            processors: vertexTints(embedded, (vertex) => processorColour(processor(embedded.leader(vertex)))),
         };
         this.frameNodes = rest.length / 3;
         this.positions = this.values = null;
-        this.fineOrgan = new Organ(riding, tints, this.materials, (t) => message.material[riding.triangles[3 * t]!]!);
+        this.fineOrgan = new Organ(embedded, tints, this.materials, (t) => message.material[embedded.triangles[3 * t]!]!);
         this.scene.add(this.fineOrgan.mesh);
         this.see(this.seen);
     }
@@ -142,7 +142,7 @@ export class View {
         this.instruments.update(frame);
     }
 
-    /* The fine surface, where there is one, or the mesh's own. */
+    /* The embedded surface, where there is one, or the mesh's own. */
     showFine(yes: boolean): void {
         this.fineShown = yes;
         this.arrange();
@@ -213,7 +213,7 @@ export class View {
         if (!organ) return null;
         const count = organ.shown + (faded ? organ.faded : 0);
         const triangles = organ.triangles.subarray(0, 3 * count);
-        return pick(organ.drawn, ray.origin, ray.direction, { triangles, plane: this.cut.plane });
+        return pick(organ.surface, ray.origin, ray.direction, { triangles, plane: this.cut.plane });
     }
 
     /* The organ that a hit is of, as it was when it was hit. */
@@ -260,17 +260,17 @@ export class View {
     /* The farthest that a node of the surface is from its place at rest [m]. */
     displacement(): number {
         const { positions, rest, meshNodes } = this.mesh ?? { meshNodes: 0 };
-        let most = 0;
+        let max = 0;
         for (let i = 0; i < meshNodes * 3; i += 3)
-            most = Math.max(
-                most,
+            max = Math.max(
+                max,
                 Math.hypot(
                     positions![i]! - rest![i]!,
                     positions![i + 1]! - rest![i + 1]!,
                     positions![i + 2]! - rest![i + 2]!,
                 ),
             );
-        return most;
+        return max;
     }
 
     changed(): void {
@@ -286,9 +286,9 @@ export class View {
         const rods = this.tissue.shadows.on ? this.instruments.rods : [];
         this.tissue.use(this.cut.on, rods.length > 0);
         this.tissue.shadows.update(rods, this.endoscope.camera, this.mesh?.size ?? 1);
-        this.cavity.follow(this.endoscope.camera);
+        this.background.follow(this.endoscope.camera);
         this.renderer.render(this.scene, this.endoscope.camera);
-        this.drawn++;
+        this.pictures++;
         this.adapt(seconds);
         return true;
     }
@@ -325,7 +325,7 @@ export class View {
 
 /* Whether a graphics processor draws. Where the main processor has to, which the engine needs too, the
  * picture is plainer; the address may say otherwise, with #quality=fine or #quality=plain. */
-function drawnInHardware(): boolean {
+function rendersInHardware(): boolean {
     const probe = document.createElement('canvas').getContext('webgl2');
     const names = probe?.getExtension('WEBGL_debug_renderer_info');
     const name = probe && names ? String(probe.getParameter(names.UNMASKED_RENDERER_WEBGL)) : '';
@@ -355,8 +355,8 @@ function nodeTints(surface: Surface, colourOf: (node: number) => number[]): Floa
     return out;
 }
 
-function vertexTints(riding: Riding, colourOf: (vertex: number) => number[]): Float32Array {
-    const out = new Float32Array(riding.nodes * 3);
-    for (let i = 0; i < riding.nodes; i++) out.set(colourOf(i), i * 3);
+function vertexTints(embedded: EmbeddedSurface, colourOf: (vertex: number) => number[]): Float32Array {
+    const out = new Float32Array(embedded.nodes * 3);
+    for (let i = 0; i < embedded.nodes; i++) out.set(colourOf(i), i * 3);
     return out;
 }

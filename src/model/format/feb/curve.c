@@ -171,10 +171,10 @@ static lar_status read_controller(lar_feb *feb, xmlNode *node) {
             return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
                                 "a second load controller has the id %lld; renumber one of them",
                                 (long long)id);
-    enum { MOST = 10000 }; /* the search above is linear */
-    if (feb->controller_count >= MOST)
+    enum { MAX = 10000 }; /* the search above is linear */
+    if (feb->controller_count >= MAX)
         return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                            "more than %d load controllers; remove those that nothing uses", MOST);
+                            "more than %d load controllers; remove those that nothing uses", MAX);
     if (!LAR_GROW(feb->controller, feb->controller_room, feb->controller_count))
         return lar_feb_no_memory(feb, "the load curves");
     lar_feb_controller *entry = &feb->controller[feb->controller_count++];

@@ -21,10 +21,10 @@ static lar_status list_one(lar_feb *feb, xmlNode *node) {
             return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
                                 "a second material has the id %lld; renumber one of them",
                                 (long long)id);
-    enum { MOST = 10000 }; /* the search above is linear */
-    if (feb->material_count >= MOST)
+    enum { MAX = 10000 }; /* the search above is linear */
+    if (feb->material_count >= MAX)
         return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                            "more than %d materials; remove those that no part uses", MOST);
+                            "more than %d materials; remove those that no part uses", MAX);
     if (!LAR_GROW(feb->material, feb->material_room, feb->material_count))
         return lar_feb_no_memory(feb, "the materials");
     const char *name = lar_feb_attribute(feb, node, "name");

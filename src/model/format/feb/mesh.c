@@ -72,7 +72,7 @@ static const struct solid_type {
                    {"penta15", 15, 6, "15-node prism"},
                    {"pyra5", 5, 5, "five-node pyramid"},
                    {"pyra13", 13, 5, "13-node pyramid"}};
-enum { SOLID_TYPES = sizeof solid_types / sizeof solid_types[0], NODES_MOST = 15 };
+enum { SOLID_TYPES = sizeof solid_types / sizeof solid_types[0], NODES_MAX = 15 };
 
 static const struct solid_type *find_solid(const char *type) {
     for (int i = 0; i < SOLID_TYPES; i++)
@@ -127,7 +127,7 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
                                 "<%s> stands among the elements; only <elem id=\"...\"> belongs "
                                 "there",
                                 (const char *)element->name);
-        int64_t id, corner[NODES_MOST];
+        int64_t id, corner[NODES_MAX];
         int line = lar_feb_line(element);
         int32_t tag = material ? material->id : 0;
         status = lar_feb_id_attribute(feb, element, "id", &id);

@@ -12,7 +12,7 @@
 #include <libxml/parserInternals.h>
 #include <libxml/xmlerror.h>
 
-#include "model/format/xml_starved.h"
+#include "model/format/xml_guard.h"
 
 /* Called by libxml2 at <!DOCTYPE, before any entity is declared. */
 static void stop_at_doctype(void *context, const xmlChar *name, const xmlChar *external,
@@ -27,13 +27,13 @@ static lar_status parse_tree(lar_feb *feb, xmlParserCtxt *parser, const lar_byte
     int doctype_line = 0;
     parser->_private = &doctype_line;
     parser->sax->internalSubset = stop_at_doctype;
-    lar_xml_watch watch;
-    lar_xml_watch_begin(&watch);
+    lar_xml_guard guard;
+    lar_xml_guard_begin(&guard);
     feb->document =
         xmlCtxtReadMemory(parser, (const char *)bytes->data, (int)bytes->size, NULL, NULL,
                           XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
                               XML_PARSE_NOCDATA | XML_PARSE_BIG_LINES);
-    if (lar_xml_watch_end(&watch)) return lar_feb_no_memory(feb, "the deck");
+    if (lar_xml_guard_end(&guard)) return lar_feb_no_memory(feb, "the deck");
     if (doctype_line)
         return lar_fail(feb->error, LAR_ERROR_FORMAT,
                         "%s:%d: a document type declaration (<!DOCTYPE) has no place in a FEBio "

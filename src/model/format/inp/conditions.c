@@ -91,7 +91,7 @@ static lar_status keep_amplitude(inp_deck *deck, lar_span name, points *list) {
 }
 
 lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card) {
-    enum { MOST = 10000 }; /* they are looked up by walking the list */
+    enum { MAX = 10000 }; /* they are looked up by walking the list */
     lar_span name;
     bool smooth;
     points list = {0};
@@ -103,9 +103,9 @@ lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card) {
             return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                             "a second *AMPLITUDE is called '%.*s'; rename one of them",
                             inp_shown(name), name.at);
-    if (deck->amplitude_count >= MOST)
+    if (deck->amplitude_count >= MAX)
         return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "more than %d amplitudes; remove those that nothing uses", MOST);
+                        "more than %d amplitudes; remove those that nothing uses", MAX);
     status = read_pairs(deck, &list);
     if (!status && list.count == 0)
         status = inp_fail(deck, card->line, LAR_ERROR_FORMAT,

@@ -33,7 +33,7 @@ static bool same_surface(const inp_deck *deck, lar_span a, lar_span b) {
 }
 
 static lar_status read_pair(inp_deck *deck, lar_span line) {
-    char fault[LAR_FAULT_SIZE];
+    char problem[LAR_PROBLEM_SIZE];
     lar_span field[2];
     int count;
     lar_status status = inp_fields(deck, line, field, 2, &count);
@@ -51,8 +51,8 @@ static lar_status read_pair(inp_deck *deck, lar_span line) {
         contact->kind = LAR_CONTACT_BETWEEN;
         status = copy_faces(deck, field[1], &contact->against, &contact->against_count);
     }
-    if (!status && lar_contact_fault(deck->model, contact, fault))
-        status = inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL, "%s", fault);
+    if (!status && lar_contact_problem(deck->model, contact, problem))
+        status = inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL, "%s", problem);
     return status;
 }
 

@@ -117,8 +117,8 @@ lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *cons
 /* The value of a parameter that must be there. */
 lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name, lar_span *value);
 
-/* Fields of a data line, trimmed; at most `most`, more are an error. */
-lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int most, int *count);
+/* Fields of a data line, trimmed; at most `max`, more are an error. */
+lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int max, int *count);
 /* A finite number, or `fallback` where the field is empty or not there and that is allowed. */
 lar_status inp_number(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
                       double *value);

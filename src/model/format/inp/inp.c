@@ -145,7 +145,7 @@ typedef struct element_type {
     int corners; /* of a solid, 8 of hexahedra; 0: none */
     const char *what;
 } element_type;
-enum { NODES_MOST = 15 };
+enum { NODES_MAX = 15 };
 
 /* Solids, then faces and lines that mesh programs write beside the volume. */
 static const element_type element_types[] = {
@@ -258,7 +258,7 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
     }
     lar_status status = LAR_OK;
     while (!status && inp_data_line(reader, &line)) {
-        int64_t number[1 + NODES_MOST];
+        int64_t number[1 + NODES_MAX];
         int at = reader->line;
         status = read_connectivity(reader, line, number, type->nodes);
         if (!status) status = remember_id(reader, &reader->elements, number[0]);

@@ -19,15 +19,15 @@ static lar_status read_load_card(inp_deck *deck, const inp_card *card, int *curv
 /* ---- *CLOAD -------------------------------------------------------------------------------- */
 
 static lar_status forces_on(inp_deck *deck, int curve, inp_forces **forces) {
-    enum { MOST = 64 }; /* three numbers per node each */
+    enum { MAX = 64 }; /* three numbers per node each */
     for (size_t i = 0; i < deck->forces_count; i++)
         if (deck->forces[i].curve == curve) {
             *forces = &deck->forces[i];
             return LAR_OK;
         }
-    if (deck->forces_count >= MOST)
+    if (deck->forces_count >= MAX)
         return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
-                        "forces on more than %d amplitudes; join some of them", MOST);
+                        "forces on more than %d amplitudes; join some of them", MAX);
     double(*force)[3] = lar_calloc((size_t)deck->mesh->node_count, sizeof *force);
     if (!force || !LAR_GROW(deck->forces, deck->forces_room, deck->forces_count)) {
         free(force);

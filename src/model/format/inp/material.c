@@ -21,7 +21,7 @@ static inp_material *find_material(const inp_deck *deck, lar_span name) {
 
 lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
     static const char *const known[] = {"NAME", "RTOL", "DEPENDENCIES", NULL};
-    enum { MOST = 10000 }; /* they are looked up by walking the list */
+    enum { MAX = 10000 }; /* they are looked up by walking the list */
     lar_span name;
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_need(deck, card, "NAME", &name);
@@ -30,9 +30,9 @@ lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "a second *MATERIAL is called '%.*s'; rename one of them", inp_shown(name),
                         name.at);
-    if (deck->material_count >= MOST)
+    if (deck->material_count >= MAX)
         return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "more than %d materials; remove those that no section uses", MOST);
+                        "more than %d materials; remove those that no section uses", MAX);
     char *copy = lar_strndup(name.at, name.length);
     if (!copy || !LAR_GROW(deck->material, deck->material_room, deck->material_count)) {
         free(copy);
@@ -46,7 +46,7 @@ lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
 
 /* The material that an option belongs to, and its one line of numbers. More lines are values at
  * other temperatures. */
-static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *field, int most,
+static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *field, int max,
                               int *count, inp_material **material) {
     lar_span line;
     if (deck->current < 0)
@@ -57,7 +57,7 @@ static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *fi
     if (!inp_data_line(&deck->reader, &line))
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT, "*%.*s has no line of numbers; add it",
                         inp_shown(card->keyword), card->keyword.at);
-    lar_status status = inp_fields(deck, line, field, most, count);
+    lar_status status = inp_fields(deck, line, field, max, count);
     if (!status && inp_data_line(&deck->reader, &line))
         return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
                         "*%.*s depends on temperature or other fields, which Lariat does not have; "

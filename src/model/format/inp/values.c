@@ -66,14 +66,14 @@ lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name
 
 /* ---- data lines ---------------------------------------------------------------------------- */
 
-lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int most, int *count) {
+lar_status inp_fields(inp_deck *deck, lar_span line, lar_span *field, int max, int *count) {
     lar_span rest = line;
     *count = 0;
     for (bool more = true; more && rest.length > 0;) {
         lar_span one;
         more = lar_span_split(rest, ',', &one, &rest);
         one = lar_span_trim(one);
-        if (*count == most) {
+        if (*count == max) {
             if (one.length == 0) continue;
             return inp_expected(&deck->reader, deck->reader.line, "the end of the line", one);
         }

@@ -8,7 +8,7 @@
 #include <libxml/parser.h>
 
 #include "model/format/vtk/vtu_array.h"
-#include "model/format/xml_starved.h"
+#include "model/format/xml_guard.h"
 
 static const char *attribute(const xmlNode *node, const char *name) {
     const xmlAttr *found = xmlHasProp(node, (const xmlChar *)name);
@@ -34,11 +34,11 @@ xmlNode *lar_vtk_xml_child(xmlNode *node, const char *name) {
 
 static lar_status parse_xml(lar_vtk_xml *file) {
     xmlInitParser();
-    lar_xml_watch watch;
-    lar_xml_watch_begin(&watch);
+    lar_xml_guard guard;
+    lar_xml_guard_begin(&guard);
     xmlParserCtxt *context = xmlNewParserCtxt();
     if (!context) {
-        lar_xml_watch_end(&watch);
+        lar_xml_guard_end(&guard);
         return lar_fail_memory(file->error, sizeof *context, file->path);
     }
     /* No entity substitution, no network, and without XML_PARSE_HUGE the limits stay on. */
@@ -46,7 +46,7 @@ static lar_status parse_xml(lar_vtk_xml *file) {
                                        (int)file->split.xml_length, NULL, NULL,
                                        XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING);
     lar_status status = LAR_OK;
-    if (lar_xml_watch_end(&watch)) {
+    if (lar_xml_guard_end(&guard)) {
         status = lar_fail_memory(file->error, file->split.xml_length, file->path);
     } else if (!file->document) {
         const char *message =

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { DEFLATE_MOST = 1032, DEFLATE_SMALL = 64 };
+enum { DEFLATE_MAX = 1032, DEFLATE_SMALL = 64 };
 
 /* Bytes of the payload, one after the other, whether they stand there raw or as base64. */
 typedef struct byte_source {
@@ -29,7 +29,7 @@ static byte_source source_of(const lar_vtu_array_text *array) {
 }
 
 /* At most so many bytes can still come. */
-static size_t source_most(const byte_source *source) {
+static size_t source_max(const byte_source *source) {
     size_t left = (size_t)(source->end - source->at);
     return (source->base64 ? left / 4 * 3 : left) + (size_t)source->pending_count;
 }
@@ -111,7 +111,7 @@ static bool read_block_header(const lar_vtu_array_text *array, byte_source *sour
     if (!read_word(array, source, blocks)) return false;
     if (*blocks == 0) return true;
     if (!read_word(array, source, block_size) || !read_word(array, source, last_size)) return false;
-    if (!lar_claim_fits(*blocks, word, source_most(source))) return false;
+    if (!lar_claim_fits(*blocks, word, source_max(source))) return false;
     if (*last_size > *block_size) return false;
     if (*last_size == 0) *last_size = *block_size;
     uint64_t before;
@@ -143,12 +143,12 @@ static bool read_packed_sizes(const lar_vtu_array_text *array, byte_source *sour
     *sum = *largest = 0;
     for (uint64_t i = 0; i < blocks; i++) {
         uint64_t size;
-        if (!read_word(array, source, &size) || size > source_most(source)) return false;
+        if (!read_word(array, source, &size) || size > source_max(source)) return false;
         packed[i] = (size_t)size;
         if (__builtin_add_overflow(*sum, packed[i], sum)) return false;
         if (packed[i] > *largest) *largest = packed[i];
     }
-    return *sum <= source_most(source);
+    return *sum <= source_max(source);
 }
 
 /* An array that has its text for itself must end with it. */
@@ -172,7 +172,7 @@ static lar_status unpack(const lar_vtu_array_text *array, size_t size, unsigned 
     size_t *packed = lar_calloc((size_t)blocks, sizeof *packed);
     if (!packed) return lar_fail_memory(error, (size_t)blocks * sizeof *packed, array->name);
     if (!read_packed_sizes(array, &source, blocks, packed, &sum, &largest) ||
-        size / DEFLATE_MOST > sum + DEFLATE_SMALL) {
+        size / DEFLATE_MAX > sum + DEFLATE_SMALL) {
         free(packed);
         return damaged(array, "claim compressed sizes that cannot be", error);
     }
@@ -211,7 +211,7 @@ static lar_status copy_plain(const lar_vtu_array_text *array, size_t size, unsig
     if (!read_word(array, &source, &claimed)) return damaged(array, "have no header", error);
     if (claimed != size)
         return damaged(array, "do not have the size that the file's counts ask for", error);
-    if (size > source_most(&source)) return damaged(array, "end too early", error);
+    if (size > source_max(&source)) return damaged(array, "end too early", error);
     unsigned char *data = malloc(size + 1);
     if (!data) return lar_fail_memory(error, size, array->name);
     bool read = source_read(&source, data, size);

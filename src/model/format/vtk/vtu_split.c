@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* XML besides the payloads: a few kB in practice. A parsed tree takes up to 50 times its text. */
-enum { LARGEST_XML = 16 << 20, MOST_LINE_ENDS = 1 << 20 };
+enum { LARGEST_XML = 16 << 20, MAX_LINE_ENDS = 1 << 20 };
 
 typedef struct splitter {
     const char *path;
@@ -56,9 +56,9 @@ static void count_lines(splitter *s, const char *from, const char *to) {
 static lar_status drop(splitter *s, const char *from, const char *to) {
     int before = s->line;
     count_lines(s, from, to);
-    if (s->split->xml_length > MOST_LINE_ENDS) return LAR_OK;
+    if (s->split->xml_length > MAX_LINE_ENDS) return LAR_OK;
     lar_status status = LAR_OK;
-    for (int i = before; i < s->line && i - before < MOST_LINE_ENDS && !status; i++)
+    for (int i = before; i < s->line && i - before < MAX_LINE_ENDS && !status; i++)
         status = keep(s, "\n", 1);
     return status;
 }

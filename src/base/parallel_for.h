@@ -1,0 +1,29 @@
+/* Independent items of work, divided among the cores that the calling thread may use.
+ *
+ *     items      0 . . . | . . . . | . . . . | . . .        in portions
+ *     caller     #########           ########## ...         each takes the next one that is left
+ *     thread 1            ##########           ...
+ *
+ * For set-up, where a call lasts milliseconds at least: threads live as long as the call. What
+ * comes out may not depend on who did what: an item writes only what is its own. (A job that comes
+ * again and again is for a thread pool, base/thread_pool.h.) */
+#ifndef LAR_BASE_PARALLEL_FOR_H
+#define LAR_BASE_PARALLEL_FOR_H
+
+#include <stdint.h>
+
+/* Does the items first..end - 1. */
+typedef void lar_parallel_for_work(void *context, int32_t first, int32_t end);
+
+/* Cores that the calling thread may use, at least 1. */
+int32_t lar_usable_cores(void);
+
+/* Does `count` items, `portion` of them at a time, and returns when all are done. Where the system
+ * gives no thread the caller does it alone. Calls may be nested. */
+void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context);
+
+/* Cores that the calling thread may use, second threads of cores included. Not of base/pin.h, which
+ * knows none where Lariat was built without hwloc. */
+int32_t lar_usable_cores(void);
+
+#endif

@@ -1,0 +1,141 @@
+#include "base/thread_pool.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/pin.h"
+
+/* Polls before a waiting thread yields. */
+enum { POLLS = 50 };
+
+/* How long it polls and yields before it sleeps [s]: longer than from one tick of a session to the
+ * next (1 ms), because being woken takes some 50 us, a tenth of a tick's work. Where threads are
+ * more than cores, who stays awake takes time from the one that the next job comes from. */
+static const double AWAKE = 2.5e-3, AWAKE_OVERSUBSCRIBED = 0.2e-3;
+
+typedef struct worker {
+    lar_thread_pool *pool;
+    int32_t number;
+    pthread_t thread;
+    uint64_t done; /* atomic: jobs finished */
+} __attribute__((aligned(64))) worker;
+
+struct lar_thread_pool {
+    int32_t count, started; /* threads that run, the caller's not among them */
+    bool pin;
+    int32_t first_core;
+    double awake;             /* [s] */
+    lar_pin *caller;          /* where the caller's thread was before */
+    lar_thread_pool_job *job; /* NULL: end */
+    void *context;
+    uint64_t orders;  /* atomic: jobs given out */
+    int32_t sleepers; /* atomic; changed under the lock */
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    worker *worker; /* [count] */
+};
+
+static void sleep_until_order(lar_thread_pool *pool, uint64_t known) {
+    pthread_mutex_lock(&pool->lock);
+    __atomic_fetch_add(&pool->sleepers, 1, __ATOMIC_SEQ_CST);
+    /* Counted first, looked second: give_order stores first and counts second. */
+    while (__atomic_load_n(&pool->orders, __ATOMIC_SEQ_CST) == known)
+        pthread_cond_wait(&pool->wake, &pool->lock);
+    __atomic_fetch_sub(&pool->sleepers, 1, __ATOMIC_SEQ_CST);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+static void wait_for_order(lar_thread_pool *pool, uint64_t known) {
+    double until = lar_clock_seconds() + pool->awake;
+    do {
+        for (int i = 0; i < POLLS; i++)
+            if (__atomic_load_n(&pool->orders, __ATOMIC_ACQUIRE) != known) return;
+        sched_yield();
+    } while (lar_clock_seconds() < until);
+    sleep_until_order(pool, known);
+}
+
+static void *attend(void *argument) {
+    worker *own = argument;
+    lar_thread_pool *pool = own->pool;
+    if (pool->pin) lar_pin_to(pool->first_core + own->number);
+    for (uint64_t known = 0;; known++) {
+        wait_for_order(pool, known);
+        if (!pool->job) return NULL;
+        pool->job(pool->context, own->number);
+        __atomic_store_n(&own->done, known + 1, __ATOMIC_RELEASE);
+    }
+}
+
+static void give_order(lar_thread_pool *pool, lar_thread_pool_job *job, void *context) {
+    pool->job = job;
+    pool->context = context;
+    __atomic_fetch_add(&pool->orders, 1, __ATOMIC_SEQ_CST);
+    if (__atomic_load_n(&pool->sleepers, __ATOMIC_SEQ_CST) == 0) return;
+    pthread_mutex_lock(&pool->lock);
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
+                                  lar_thread_pool **out, lar_error *error) {
+    lar_thread_pool *pool = lar_calloc(1, sizeof *pool);
+    if (!pool) return lar_fail_memory(error, sizeof *pool, "threads");
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    pool->count = count;
+    pool->first_core = first_core;
+    pool->awake = count <= sysconf(_SC_NPROCESSORS_ONLN) ? AWAKE : AWAKE_OVERSUBSCRIBED;
+    pool->pin = pin && lar_pin_cores() >= first_core + count;
+    pool->worker = lar_calloc_aligned((size_t)count, sizeof *pool->worker);
+    lar_status status =
+        pool->worker ? LAR_OK
+                     : lar_fail_memory(error, (size_t)count * sizeof *pool->worker, "threads");
+    for (int32_t i = 1; i < count && !status; i++) {
+        pool->worker[i].pool = pool;
+        pool->worker[i].number = i;
+        int cause = pthread_create(&pool->worker[i].thread, NULL, attend, &pool->worker[i]);
+        if (cause)
+            status = lar_fail(error, LAR_ERROR_MEMORY,
+                              "the system gives no thread %d of %d: %s; use fewer processors or "
+                              "threads, or raise the limit (ulimit -u)",
+                              (int)i, (int)count, strerror(cause));
+        else
+            pool->started++;
+    }
+    if (status) {
+        lar_thread_pool_destroy(pool);
+        return status;
+    }
+    if (pool->pin) {
+        pool->caller = lar_pin_remember();
+        lar_pin_to(first_core);
+    }
+    *out = pool;
+    return LAR_OK;
+}
+
+void lar_thread_pool_destroy(lar_thread_pool *pool) {
+    if (!pool) return;
+    give_order(pool, NULL, NULL);
+    for (int32_t i = 1; i <= pool->started; i++) pthread_join(pool->worker[i].thread, NULL);
+    lar_pin_restore(pool->caller);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool->worker);
+    free(pool);
+}
+
+void lar_thread_pool_run(lar_thread_pool *pool, lar_thread_pool_job *job, void *context) {
+    uint64_t order = __atomic_load_n(&pool->orders, __ATOMIC_RELAXED) + 1;
+    if (pool->count > 1) give_order(pool, job, context);
+    job(context, 0);
+    for (int32_t i = 1; i < pool->count; i++)
+        for (int polls = 0; __atomic_load_n(&pool->worker[i].done, __ATOMIC_ACQUIRE) != order;)
+            if (++polls % POLLS == 0) sched_yield();
+}

@@ -1,0 +1,34 @@
+/* Threads that do a job together, again and again.
+ *
+ *     caller   run -- worker 0 ----.  run -- worker 0 ----.
+ *     thread 1 ... -- worker 1 ---'| ... -- worker 1 -----|      ... waiting: polls, yields, sleeps
+ *     thread 2 ... -- worker 2 --'   | ... - worker 2 -'      |
+ *
+ * The caller is one of them: two processors of a computer on two cores are two threads. Between
+ * jobs a thread polls for some milliseconds, because the next job usually comes at once or at the
+ * next tick of a session, and then sleeps.
+ */
+#ifndef LAR_BASE_THREAD_POOL_H
+#define LAR_BASE_THREAD_POOL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/error.h"
+
+typedef struct lar_thread_pool lar_thread_pool;
+
+/* What a worker does, 0..count-1. */
+typedef void lar_thread_pool_job(void *context, int32_t worker);
+
+/* Starts count - 1 threads. With `pin` every worker gets a core of its own, from number
+ * `first_core` of those that this process may use, where there are enough (base/pin.h); the
+ * caller's thread is bound while the pool lives. */
+lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
+                                  lar_thread_pool **pool, lar_error *error);
+void lar_thread_pool_destroy(lar_thread_pool *pool); /* accepts NULL */
+
+/* Runs the job in all workers and returns when all are done. */
+void lar_thread_pool_run(lar_thread_pool *pool, lar_thread_pool_job *job, void *context);
+
+#endif

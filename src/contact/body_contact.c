@@ -1,0 +1,576 @@
+#include "contact/body_contact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mechanics/face_contact.h"
+
+/* How much nearer a node and a face come when all nodes move by 1 along every axis. */
+static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
+
+/* ---- one group ------------------------------------------------------------------------------ */
+
+typedef struct touching {
+    int32_t count;
+    int32_t face[LAR_CONTACT_FACES];     /* contact faces, */
+    double weight[LAR_CONTACT_FACES][4]; /* and of their corners; all together 1 */
+    double force[3];                     /* on the node [N] */
+    double depth;                        /* [m] */
+    int32_t fading;                      /* the face that fades towards its edge; -1: none */
+    double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
+} touching;
+
+static inline void place_of_node(const lar_body_contact *contact, const lar_state *state,
+                                 int32_t node, double x[3], double v[3]) {
+    const lar_contact_view *view = &contact->view;
+    if (view->place) {
+        const double *place = view->place[view->slot[node]];
+        memcpy(x, place, 3 * sizeof *x);
+        if (v) memcpy(v, place + 3, 3 * sizeof *v);
+        return;
+    }
+    const double *rest = contact->surface->rest[node];
+    const double *u = state->u + view->value[node];
+    for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
+    if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
+}
+
+/* Of a node or a point of an edge; v may be NULL. */
+static void place_of(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                     double x[3], double v[3]) {
+    int32_t parent[2];
+    double weight[2], end[2][3], speed[2][3];
+    if (lar_contact_parents(contact->surface, node, parent, weight) == 1) {
+        place_of_node(contact, state, node, x, v);
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        place_of_node(contact, state, parent[k], end[k], v ? speed[k] : NULL);
+    for (int i = 0; i < 3; i++) {
+        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
+        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
+    }
+}
+
+static void corners_of(const lar_body_contact *contact, const lar_state *state, int32_t face,
+                       double x[4][3], double v[4][3]) {
+    for (int a = 0; a < 4; a++)
+        place_of_node(contact, state, contact->surface->face[face].corner[a], x[a],
+                      v ? v[a] : NULL);
+}
+
+/* The face is at least so far away: as far as the box around it. */
+static double nearest_possible(const double x[3], const double corner[4][3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double low = corner[0][i], high = low;
+        for (int a = 1; a < 4; a++) {
+            low = corner[a][i] < low ? corner[a][i] : low;
+            high = corner[a][i] > high ? corner[a][i] : high;
+        }
+        double away = x[i] < low ? low - x[i] : x[i] > high ? x[i] - high : 0;
+        square += away * away;
+    }
+    return sqrt(square);
+}
+
+/* What is known of a group's faces: distances of those that may matter, at least so much. */
+typedef struct survey {
+    double reach; /* of the faces for the node [m] */
+    double fade;  /* by how much others than the closest may be farther away and still count [m] */
+    int32_t count;
+    int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
+    double distance[LAR_GROUP_FACES_MAX];
+    double min;           /* of those within reach; INFINITY: none is */
+    int32_t at;           /* the entry that it belongs to, */
+    lar_face_point point; /* and where */
+    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
+    double next; /* travel at which the first of the others may matter [m] */
+} survey;
+
+static double tie_of(const lar_body_contact *contact, int32_t face) {
+    return LAR_FACE_TIE * contact->surface->face[face].size;
+}
+
+/* Of the contact distance, that part; 0 within a body. */
+static double fade_of(const lar_body_contact *contact, int32_t node, int32_t face) {
+    static const double FADE = 0.25;
+    const lar_contact_surface *surface = contact->surface;
+    return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+}
+
+/* Looks at face f, entry i. Returns its distance, or at least so much. */
+static double survey_face(lar_body_contact *contact, const lar_state *state, const double x[3],
+                          int32_t f, int32_t i, survey *s) {
+    double corner[4][3], tie = tie_of(contact, f);
+    corners_of(contact, state, f, corner, NULL);
+    double distance = nearest_possible(x, (const double(*)[3])corner);
+    if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
+        lar_face_point point;
+        contact->info.tested++;
+        lar_face_closest(x, (const double(*)[3])corner, tie, &point);
+        distance = point.distance;
+        if (distance <= s->reach && distance < s->min) {
+            s->min = distance;
+            s->at = i;
+            s->point = point;
+        }
+    }
+    if (distance - s->reach < s->gap) s->gap = distance - s->reach;
+    return distance;
+}
+
+/* The travel until which a face cannot be the closest one within reach: it is out of reach, or
+ * farther away than the closest, whose distance changes as well. */
+static double away_until(double travel, double distance, double tie, const survey *s) {
+    double reach = (distance - tie - s->reach) / APPROACH;
+    double min = (distance - 8 * tie - s->fade - s->min) / (2 * APPROACH);
+    return travel + 0.999 * (reach > min ? reach : min);
+}
+
+/* The one that was closest the last time goes first: most others then need no more than a look. */
+static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
+                         const double x[3], survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *face = contact->list.face + group->first;
+    double *away = contact->away + group->first;
+    int32_t first = contact->last[g];
+    s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
+                                 &contact->surface->face[face[0]]);
+    s->fade = fade_of(contact, group->node, face[0]);
+    s->min = s->gap = s->next = INFINITY;
+    s->count = 0;
+    double distance_of_first = survey_face(contact, state, x, face[first], first, s);
+    for (int32_t i = 0; i < group->count; i++) {
+        if (i != first && contact->travel < away[i]) {
+            if (away[i] < s->next) s->next = away[i];
+            continue;
+        }
+        s->entry[s->count] = i;
+        s->distance[s->count++] =
+            i == first ? distance_of_first : survey_face(contact, state, x, face[i], i, s);
+    }
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k];
+        away[i] = away_until(contact->travel, s->distance[k], tie_of(contact, face[i]), s);
+    }
+}
+
+/* The closest face of a group, an entry of it. */
+static int32_t choose_face(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                           const double x[3], const survey *s, lar_face_point *point) {
+    const lar_contact_group *group = &contact->list.group[g];
+    int32_t chosen = -1;
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k], f = contact->list.face[group->first + i];
+        double corner[4][3], tie = tie_of(contact, f);
+        lar_face_point other = s->point;
+        if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
+        if (i != s->at) {
+            corners_of(contact, state, f, corner, NULL);
+            lar_face_closest(x, (const double(*)[3])corner, tie, &other);
+        }
+        if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
+        *point = other;
+        chosen = i;
+    }
+    return chosen;
+}
+
+/* ---- offsets --------------------------------------------------------------------------------- */
+
+static bool same_body(const lar_body_contact *contact, int32_t node, int32_t face) {
+    return contact->surface->node[node].body == contact->surface->face[face].body;
+}
+
+static double offset_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
+    const lar_contact_view *view = &contact->view;
+    return view->place ? view->place[view->slot[node]][6] : state->u[view->value[node] + 3];
+}
+
+/* Notes the offset that the node will have when it moves. */
+static void set_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                       double offset) {
+    if (offset == offset_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
+        return;
+    contact->offset[contact->offset_count++] =
+        (lar_penetration_offset){contact->view.value[node] + 3, offset};
+}
+
+/* Who is so deep when it appears behind a face belongs inside. */
+static double deep_of(const lar_body_contact *contact, int32_t node, int32_t face) {
+    const lar_contact_surface *s = contact->surface;
+    return 0.25 * lar_contact_reach(s, &s->node[node], &s->face[face]);
+}
+
+/* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
+ * `rate`. Who was before the face a step ago has come through it. */
+static double follow_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                            int32_t face, double depth, double rate) {
+    double before = offset_of(contact, state, node), offset = depth;
+    double deep = deep_of(contact, node, face);
+    bool returning = before == LAR_OFFSET_OUT || before == LAR_OFFSET_RETURN;
+    if (returning)
+        offset = LAR_OFFSET_RETURN;
+    else if (depth <= contact->time_step * rate)
+        offset = LAR_OFFSET_FRONT;
+    else if (before > 0 && (before < depth || before >= deep))
+        offset = before;
+    set_offset(contact, state, node, offset);
+    return returning ? depth : offset;
+}
+
+/* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
+ * has come out through the back. */
+static void leave_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
+                         int32_t face) {
+    double before = offset_of(contact, state, node), offset = 0;
+    bool inside =
+        before == LAR_OFFSET_RETURN || (face >= 0 && before >= deep_of(contact, node, face));
+    if (before == LAR_OFFSET_OUT || (face >= 0 && inside)) offset = LAR_OFFSET_OUT;
+    set_offset(contact, state, node, offset);
+}
+
+/* ---- one node and one face ------------------------------------------------------------------ */
+
+/* Where the surface is that touches a node, and how that moves. */
+typedef struct contact_point {
+    double at[3], velocity[3]; /* [m], [m/s] */
+    double mass;               /* [kg] */
+} contact_point;
+
+/* The point of t->count faces with the weights of t. */
+static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
+                     contact_point *point) {
+    double compliance = 0;
+    *point = (contact_point){0};
+    for (int32_t f = 0; f < t->count; f++) {
+        const int32_t *corner = contact->surface->face[t->face[f]].corner;
+        double x[4][3], v[4][3], at[3], velocity[3];
+        corners_of(contact, state, t->face[f], x, v);
+        lar_face_mean((const double(*)[3])x, t->weight[f], at);
+        lar_face_mean((const double(*)[3])v, t->weight[f], velocity);
+        for (int i = 0; i < 3; i++) {
+            point->at[i] += at[i];
+            point->velocity[i] += velocity[i];
+        }
+        for (int a = 0; a < 4; a++)
+            compliance += t->weight[f][a] / contact->surface->node[corner[a]].mass;
+    }
+    point->mass = 1 / compliance;
+}
+
+/* Above a hollow the closest point jumps from face to face, and so would the direction of the
+ * force: there the faces that are about as close as the closest one push together. */
+static void blend(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                  const double x[3], const lar_face_point *closest, const survey *s, touching *t) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const lar_contact_surface *surface = contact->surface;
+    /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
+     * smoothly. */
+    double upright = 1 - 50 * (1 - closest->height / closest->distance);
+    double fade = upright > 0 ? fmin(s->fade, 0.5 * s->min) * fmin(upright, 1) : 0, all = 0;
+    touching blended = {.fading = -1};
+    for (int32_t k = 0; k < s->count && fade > 0; k++) {
+        int32_t f = contact->list.face[group->first + s->entry[k]];
+        double corner[4][3], sum[4] = {0};
+        if (!(s->distance[k] < s->min + fade) ||
+            !lar_contact_active(&surface->node[group->node], &surface->face[f]))
+            continue;
+        corners_of(contact, state, f, corner, NULL);
+        double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum);
+        if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
+        all += counts;
+        blended.face[blended.count] = f;
+        memcpy(blended.weight[blended.count++], sum, sizeof sum);
+    }
+    if (!(all > 0)) return;
+    for (int32_t f = 0; f < blended.count; f++)
+        for (int a = 0; a < 4; a++) blended.weight[f][a] /= all;
+    *t = blended;
+}
+
+/* The way out of the body for a node, of unit length, and how deep it is (negative: how far above).
+ * Too close to the surface for a direction of its own it takes that of the face; NAN: there is none
+ * either. */
+static double outward(const double x[3], const contact_point *point, double sign, double tie,
+                      const double corner[4][3], double way[3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) square += (point->at[i] - x[i]) * (point->at[i] - x[i]);
+    double depth = sqrt(square);
+    if (depth > tie) {
+        for (int i = 0; i < 3; i++) way[i] = sign * (point->at[i] - x[i]) / depth;
+        return sign * depth;
+    }
+    lar_face_normal(corner, way);
+    double length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    if (!(length > 0)) return NAN;
+    for (int i = 0; i < 3; i++) way[i] /= length;
+    return sign * depth;
+}
+
+/* What part of its stiffness a spring has: it must not hurl a light node away with what it stores
+ * while it keeps the contact distance. */
+static double softness(const lar_body_contact *contact, double standoff) {
+    static const double SPEED = 3; /* [m/s] */
+    double max = SPEED / standoff;
+    return max * max < contact->law.stiffness ? max * max / contact->law.stiffness : 1;
+}
+
+/* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
+static double full_of(const lar_body_contact *contact, int32_t node, int32_t face) {
+    static const double MIN = 0.25; /* of the reach */
+    const lar_contact_surface *s = contact->surface;
+    double reach = lar_contact_reach(s, &s->node[node], &s->face[face]);
+    return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), MIN * reach);
+}
+
+/* The force of a spring on a sharp edge, and what it stores: it acts later, and is the harder for
+ * it until it has stored as much as others. */
+static double late_force(const lar_contact_law *law, double mass, double full, double depth,
+                         double rate, double *stored) {
+    static const double LATE = 0.1; /* of `full` */
+    double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
+    bool is_full = depth >= full;
+    double force =
+        lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
+    *stored = 0.5 * (is_full ? depth : late) * force;
+    return is_full ? force : steep * force;
+}
+
+/* The part of five forces that is no larger than `max`: of a face that is crushed slopes have no
+ * bound. */
+static double within_force(double max, const double force[5][3]) {
+    double largest = 0;
+    for (int a = 0; a < 5; a++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) square += force[a][i] * force[a][i];
+        largest = fmax(largest, square);
+    }
+    largest = sqrt(largest);
+    return largest <= max ? 1 : max / largest;
+}
+
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
+ * is how far the spring is pressed in. */
+static double fade(const lar_body_contact *contact, const lar_state *state, const double x[3],
+                   int32_t face, const lar_face_point *closest, double full, double mass,
+                   double depth, double rate, touching *t) {
+    const lar_contact_face *f = &contact->surface->face[face];
+    double corner[4][3], value[5], slope[5][3], stored;
+    corners_of(contact, state, face, corner, NULL);
+    for (int a = 0; a < 4; a++) value[a] = contact->surface->node[f->corner[a]].blunt;
+    value[4] = 1;
+    double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
+    part = part * part * (3 - 2 * part);
+    double all = lar_contact_force(&contact->law, mass, depth, rate);
+    double late = late_force(&contact->law, mass, full, depth, rate, &stored);
+    double more = (0.5 * all * depth - stored) * steep;
+    lar_face_slope(x, (const double(*)[3])corner, closest, value, slope);
+    for (int a = 0; a < 5; a++)
+        for (int i = 0; i < 3; i++) slope[a][i] *= -more;
+    double within = within_force(fmax(all, late), (const double(*)[3])slope);
+    t->fading = face;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) t->fade[a][i] = within * slope[a][i];
+    return part * all + (1 - part) * late;
+}
+
+/* The force on the node of group g by a face which it is behind, or before it by less than the
+ * contact distance. False: they do not touch, or no longer push. */
+static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
+                 const lar_face_point *closest, const survey *s, touching *t) {
+    const lar_contact_surface *surface = contact->surface;
+    const lar_contact_face *f = &surface->face[face];
+    int32_t node = contact->list.group[g].node;
+    double x[3], v[3], corner[4][3], way[3], rate = 0;
+    contact_point point;
+    place_of(contact, state, node, x, v);
+    corners_of(contact, state, face, corner, NULL);
+    *t = (touching){.count = 1, .face = {face}, .fading = -1};
+    memcpy(t->weight[0], closest->weight, sizeof closest->weight);
+    bool before = !(closest->height < 0);
+    if (before && lar_contact_active(&surface->node[node], f))
+        blend(contact, state, g, x, closest, s, t);
+    point_of(contact, state, t, &point);
+    double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
+                           (const double(*)[3])corner, way);
+    /* Without a length there is no direction. */
+    if (isnan(depth)) return false;
+    for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
+    double offset =
+        same_body(contact, node, face) ? follow_offset(contact, state, node, face, depth, rate) : 0;
+    if (!lar_contact_active(&surface->node[node], f)) return false;
+    double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
+    double standoff = lar_contact_standoff(surface, &surface->node[node], f);
+    double from = standoff - offset;
+    moved *= softness(contact, standoff);
+    double force = f->fades && !same_body(contact, node, face)
+                       ? fade(contact, state, x, face, closest, full_of(contact, node, face), moved,
+                              depth + from, rate, t)
+                       : lar_contact_force(&contact->law, moved, depth + from, rate);
+    t->depth = fmax(depth, 0);
+    for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
+    return true;
+}
+
+/* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
+static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s,
+                       lar_face_point *point) {
+    const lar_contact_group *group = &contact->list.group[g];
+    double x[3];
+    place_of(contact, state, group->node, x, NULL);
+    survey_group(contact, state, g, x, s);
+    /* A little earlier, for rounding. */
+    contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
+    if (!(s->min < INFINITY)) return -1;
+    int32_t chosen = choose_face(contact, state, g, x, s, point);
+    if (chosen < 0) return -1;
+    contact->last[g] = chosen;
+    return contact->list.face[group->first + chosen];
+}
+
+static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
+                    const lar_face_point *point) {
+    const lar_contact_surface *surface = contact->surface;
+    return point->height < 0 ||
+           point->distance <
+               lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+}
+
+/* Contact of group g. */
+static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_t g, touching *t) {
+    const lar_contact_group *group = &contact->list.group[g];
+    lar_face_point point;
+    survey s;
+    int32_t face = closest(contact, state, g, &s, &point);
+    if (face >= 0 && touches(contact, group->node, face, &point))
+        return push(contact, state, g, face, &point, &s, t);
+    if (same_body(contact, group->node, contact->list.face[group->first]))
+        leave_offset(contact, state, group->node, face);
+    return false;
+}
+
+/* ---- forces --------------------------------------------------------------------------------- */
+
+/* Adds a force, and notes it for its work. */
+static void add_part(lar_body_contact_part *part, lar_state *state, int32_t value,
+                     const int64_t sum[3], double scale) {
+    part->value[part->count] = value;
+    for (int i = 0; i < 3; i++) {
+        state->force[value + i] += sum[i];
+        part->force[part->count][i] = -(double)sum[i] / scale;
+    }
+    part->count++;
+}
+
+/* To the node, or to both ends of the edge that the point is on. */
+static void add_to_node(lar_body_contact *contact, const lar_condition_context *context,
+                        lar_state *state, int32_t node, const int64_t sum[3],
+                        lar_body_contact_part *part) {
+    int32_t parent[2];
+    double weight[2];
+    int64_t share[2][3] = {{0}};
+    int count = lar_contact_parents(contact->surface, node, parent, weight);
+    for (int i = 0; i < 3; i++) {
+        if (count == 2) share[1][i] = llrint(weight[1] * (double)sum[i]);
+        share[0][i] = sum[i] - share[1][i];
+    }
+    for (int k = 0; k < count; k++)
+        if (!contact->adds_node || contact->adds_node[parent[k]])
+            add_part(part, state, contact->view.value[parent[k]], share[k], context->scale);
+}
+
+static void add_to_face(lar_body_contact *contact, const lar_condition_context *context,
+                        lar_state *state, int32_t face, int64_t (*force)[3],
+                        lar_body_contact_part *part) {
+    if (contact->adds_corner && !contact->adds_corner[face]) return;
+    for (int a = 0; a < 4; a++)
+        add_part(part, state, contact->view.value[contact->surface->face[face].corner[a]], force[a],
+                 context->scale);
+}
+
+/* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
+ * numbers as who adds the others. */
+static void add_forces(lar_body_contact *contact, const lar_condition_context *context,
+                       lar_state *state, int32_t node, const touching *t) {
+    static const double MAX = 0x1p58; /* of a force in force units */
+    lar_body_contact_part *part = &contact->part[contact->part_count];
+    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        double force = t->force[i] * context->scale;
+        /* Beyond all reason: the speeds that make such a force stop the run. */
+        if (!(fabs(force) < MAX)) return;
+        for (int a = 0; a < 4 * t->count; a++) {
+            corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
+            sum[i] -= corner[a][i];
+        }
+        for (int a = 0; a < 4 && t->fading >= 0; a++) {
+            double along = t->fade[a][i] * context->scale;
+            if (!(fabs(along) < MAX)) return;
+            slope[a][i] = -llrint(along);
+            sum[i] -= slope[a][i];
+        }
+    }
+    part->count = 0;
+    add_to_node(contact, context, state, node, sum, part);
+    for (int32_t f = 0; f < t->count; f++)
+        add_to_face(contact, context, state, t->face[f], &corner[4 * f], part);
+    if (t->fading >= 0) add_to_face(contact, context, state, t->fading, slope, part);
+    if (part->count) contact->part_count++;
+}
+
+/* The groups that are due within the next part of the way that the list is good for. */
+static void look_ahead(lar_body_contact *contact) {
+    enum { PARTS = 16 };
+    contact->horizon = contact->travel + 0.5 * contact->list.skin / PARTS;
+    contact->near_count = 0;
+    for (int32_t g = 0; g < contact->list.group_count; g++)
+        if (!(contact->due[g] > contact->horizon)) contact->near[contact->near_count++] = g;
+}
+
+void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
+                          lar_state *state) {
+    contact->time_step = context->time_step; /* of a part, where steps are divided */
+    contact->part_count = contact->offset_count = 0;
+    contact->info.touching = 0;
+    contact->info.deepest = 0;
+    if (!(contact->travel < contact->horizon)) look_ahead(contact);
+    for (int32_t i = 0; i < contact->near_count; i++) {
+        int32_t g = contact->near[i], node = contact->list.group[g].node;
+        touching t;
+        if (contact->travel < contact->due[g] || !in_contact(contact, state, g, &t)) continue;
+        add_forces(contact, context, state, node, &t);
+        /* Each node is counted once, by who adds its force. */
+        if (node >= contact->surface->node_count) continue;
+        bool own = !contact->adds_node || contact->adds_node[node];
+        contact->info.touching += own;
+        if (own) contact->info.deepest = fmax(contact->info.deepest, t.depth);
+    }
+}
+
+void lar_body_contact_half_work(const lar_body_contact *contact,
+                                const lar_condition_context *context, lar_state *state) {
+    double power = 0;
+    for (int32_t p = 0; p < contact->part_count; p++) {
+        const lar_body_contact_part *part = &contact->part[p];
+        for (int k = 0; k < part->count; k++) {
+            const double *v = state->v + part->value[k];
+            for (int i = 0; i < 3; i++) power += part->force[k][i] * v[i];
+        }
+    }
+    state->contact -= 0.5 * context->mean_step * power;
+}
+
+void lar_body_contact_restart(lar_body_contact *contact) {
+    contact->travel = contact->horizon = 0;
+    for (int32_t g = 0; g < contact->list.group_count; g++) {
+        /* Along one axis, by both. */
+        double due = 0.5 * (double)contact->list.group[g].gap;
+        contact->due[g] = fmax(due, 0);
+        contact->last[g] = 0;
+    }
+    for (int32_t i = 0; i < contact->list.face_count; i++) {
+        contact->away[i] = 0;
+    }
+}

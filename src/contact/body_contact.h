@@ -1,0 +1,158 @@
+/* Bodies against each other and themselves: what one thread has of it (T 2.2.8, 3.8).
+ *
+ *     search (contact_search.h)     now and then: groups of a node and faces that it may meet
+ *     prediction                    each group: not looked at before it can have come into reach
+ *     contact                       a function of places, velocities and offsets
+ *
+ * Contact of a group. Of all its faces within reach the closest one counts; between equally close
+ * ones the one over or under whose plane the node is farthest, then the one with the lower number.
+ * If the node is behind it, the closest point p pulls it: F along p - x, of the law of
+ * mechanics/contact.h, -w_a F on the corners. The mass is that of the node against that of the
+ * point of the face. Which other pairs are in the list does not matter, nor
+ * when it was made, so searching in every step gives the same bits. Forces are rounded at the
+ * corners, and the node gets minus their sum: momentum is kept to the last bit.
+ *
+ * Different bodies push from a contact distance on, before they touch (contact_surface.h). Above a
+ * hollow several faces are about as close and the closest point jumps: up to LAR_CONTACT_FACES of
+ * them push together, through a mean of their points that does not jump. docs/theory.md, contact.
+ *
+ * Sharp edges (contact_edges.c): towards them springs fade, with a force
+ * along the face; and points of them are pushed by faces of other bodies as nodes are.
+ *
+ * Offsets. A node of a body may come to lie below that body's own faces without having come through
+ * one of them: through its neighbours, which do not push it, or because the body lies in itself at
+ * rest. Pushed from there it would get energy that contact never took. So the depth at which it
+ * appears is its offset, and only what it sinks below that pushes it; coming out, it takes the
+ * offset along. A node that came through the face has the offset 0. One that appears deep belongs
+ * inside, as in a thin part that is squeezed: it keeps its offset, and when it comes out through
+ * the back of the face nothing hinders it on its way in. Offsets are the one thing that contact
+ * remembers: they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is
+ * not inside, and belong to the state like u and v.
+ *
+ * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
+ * kernel that moves the nodes notes the fastest in passing (lar_state.fastest), so `travel` can add
+ * up, step by step, how far any node has moved along any axis at most. A group whose faces are all
+ * farther away than their reach, by a `gap`, is due when travel has grown by gap / (2 sqrt 3): two
+ * nodes, three axes. Groups due beyond a horizon are not even compared until travel gets there. The
+ * list is good until travel since its search is half its skin. Then the real motion is looked at,
+ * and the search is made anew if it is true that something has moved.
+ *
+ * Several threads and processors: contact_exchange.h.
+ */
+#ifndef LAR_CONTACT_BODY_CONTACT_H
+#define LAR_CONTACT_BODY_CONTACT_H
+
+#include <math.h>
+
+#include "contact/conditions.h"
+#include "contact/contact_search.h"
+#include "mechanics/contact.h"
+
+/* The larger of two ways or speeds. What is not a number stays: nothing is larger. */
+static inline double lar_larger(double max, double other) {
+    return other <= max || isnan(max) ? max : other;
+}
+
+/* Of a contact node in the exchange buffer: place, velocity, offset. */
+enum { LAR_PLACE_VALUES = 7 };
+
+/* Where the contact nodes are: in the state of whoever has all of them, or in the exchange buffer.
+ */
+typedef struct lar_contact_view {
+    const int32_t *value;                    /* [contact nodes] 4 * local node, -1: not here */
+    const double (*place)[LAR_PLACE_VALUES]; /* NULL, or by slot */
+    const int32_t *slot;                     /* [contact nodes] with `place` */
+} lar_contact_view;
+
+/* Faces of a body that push a node together, at most, and whom they push. */
+enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1) };
+
+/* What this thread adds in the step under way: forces on its local nodes. */
+typedef struct lar_body_contact_part {
+    int32_t count;
+    int32_t value[LAR_CONTACT_PARTS]; /* 4 * local node */
+    double force[LAR_CONTACT_PARTS][3];
+} lar_body_contact_part;
+
+/* Offsets that cannot be measured, but are not 0: of a node that came through the face; of one that
+ * belongs inside and is outside, having come out through the back of a face; of the same on its way
+ * in again, which nothing hinders. */
+#define LAR_OFFSET_FRONT  1e-300
+#define LAR_OFFSET_OUT    2e-300
+#define LAR_OFFSET_RETURN 3e-300
+
+/* An offset that is another than in the last step. */
+typedef struct lar_penetration_offset {
+    int32_t value; /* 4 * local node + 3 */
+    double depth;  /* [m] */
+} lar_penetration_offset;
+
+/* The list and what has moved since, of whoever has the whole model. */
+typedef struct lar_body_contact_search_state {
+    lar_contact_search *search;
+    double (*x)[3];            /* [contact nodes] places at the search under way [m] */
+    double (*searched)[3];     /* and at the last one */
+    double since;              /* what has moved since the search under way began [m] */
+    double skin_min, skin_max; /* [m] */
+    uint64_t next;             /* the round that follows the last one */
+    bool searching;            /* a search is under way */
+    bool valid;                /* the list belongs to the state */
+    bool always;               /* search in every step */
+} lar_body_contact_search_state;
+
+typedef struct lar_body_contact {
+    const lar_contact_surface *surface; /* NULL: nothing to do */
+    lar_contact_law law;
+    double time_step;
+    lar_contact_view view;
+    lar_contact_list list;                  /* what this thread has to do with */
+    const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
+    double *due;                            /* [list.group_room] travel at which to look */
+    int32_t *last;                          /* [list.group_room] the closest face then, an entry */
+    double *away;                           /* [list.face_room] travel until which the face cannot
+                                               be the closest one within reach */
+    int32_t *near;                          /* [list.group_room] the groups that are due before */
+    int32_t near_count;                     /* travel is at */
+    double travel, horizon;                 /* [m] */
+    double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
+    double way;   /* the same in the last step [m] */
+    int32_t part_count;
+    lar_body_contact_part *part; /* [list.group_room] */
+    const uint8_t *keeps;        /* [contact nodes] those that this thread moves; NULL: all */
+    int32_t offset_count;
+    lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
+    bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
+    lar_contact_info info;
+    lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
+} lar_body_contact;
+
+/* For the whole model. Without contacts of bodies it costs nothing. */
+lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+                                   double time_step, double stable_step, bool search_always,
+                                   lar_body_contact *contact, lar_error *error);
+void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */
+
+/* The state was changed by others: nothing is known of its motion. */
+void lar_body_contact_forget(lar_body_contact *contact);
+
+/* Adds the forces at the state's step to state->force, after a search where that is due. Asks for
+ * no memory. */
+void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_context *context,
+                            lar_state *state);
+
+/* The same for a list that somebody else keeps. */
+void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
+                          lar_state *state);
+
+/* All groups are to be looked at again. */
+void lar_body_contact_restart(lar_body_contact *contact);
+
+/* The nodes have moved, none farther than `way` along any axis [m]; offsets become theirs. */
+void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way);
+
+/* Half the work of these forces in this step, to state->contact: once before and once after the
+ * nodes move. */
+void lar_body_contact_half_work(const lar_body_contact *contact,
+                                const lar_condition_context *context, lar_state *state);
+
+#endif

@@ -1,0 +1,196 @@
+/* Contact of bodies by who has the whole model: the list and when it is made anew. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/body_contact.h"
+
+/* ---- motion and searches, of the whole model ------------------------------------------------ */
+
+/* Steps that a search should last, and those that the next one may take within the last fifth of
+ * the skin. */
+enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
+
+/* Fetches the places; returns how far the farthest has moved since the search. */
+static double fetch_places(lar_body_contact *contact, const lar_state *state) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    double max = 0;
+    for (int32_t n = 0; n < contact->surface->node_count; n++) {
+        const double *u = state->u + contact->view.value[n];
+        for (int i = 0; i < 3; i++) {
+            search_state->x[n][i] = contact->surface->rest[n][i] + u[i];
+            max = lar_larger(max, fabs(search_state->x[n][i] - search_state->searched[n][i]));
+        }
+    }
+    return max;
+}
+
+static double skin_for(const lar_body_contact_search_state *search_state, double way) {
+    return fmin(fmax(2 * way * SEARCH_STEPS, search_state->skin_min), search_state->skin_max);
+}
+
+/* A search is done; `moved` says what has moved since its places. */
+static void take_list(lar_body_contact *contact, double moved) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    contact->list = search_state->search->list;
+    memcpy(search_state->searched, search_state->x,
+           (size_t)contact->surface->node_count * sizeof *search_state->x);
+    contact->info.searches++;
+    contact->info.boxed += (uint64_t)contact->list.face_count;
+    lar_body_contact_restart(contact);
+    contact->moved = contact->travel = moved;
+    search_state->searching = false;
+}
+
+static void search_now(lar_body_contact *contact, const lar_state *state, double way) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    fetch_places(contact, state);
+    if (!lar_contact_search_run(search_state->search, (const double(*)[3])search_state->x,
+                                skin_for(search_state, way)))
+        contact->too_many_pairs = true;
+    take_list(contact, 0);
+    search_state->valid = true;
+}
+
+/* What has really moved? */
+static void look(lar_body_contact *contact, const lar_state *state, double way) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    double moved = fetch_places(contact, state);
+    if (moved < 0.15 * contact->list.skin) {
+        contact->moved = moved;
+        return;
+    }
+    lar_contact_search_begin(search_state->search, (const double(*)[3])search_state->x,
+                             skin_for(search_state, way));
+    search_state->since = 0;
+    search_state->searching = true;
+}
+
+/* The list is good for this step, whatever happens. `way` is what a step takes at present. */
+static void keep_list(lar_body_contact *contact, const lar_state *state, double way) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    if (!search_state->valid || search_state->always) {
+        search_now(contact, state, way);
+        return;
+    }
+    if (!search_state->searching && contact->moved > 0.3 * contact->list.skin)
+        look(contact, state, way);
+    bool last = !(contact->moved < 0.5 * contact->list.skin);
+    if (search_state->searching) {
+        /* As many as must be, when the rest of the way is to be enough for the others. */
+        double steps = way > 0 ? (0.5 * contact->list.skin - contact->moved) / (1.25 * way) : 1e9;
+        int32_t left = lar_contact_search_left(search_state->search);
+        int32_t nodes = (int32_t)(left / fmax(fmin(steps, PART_STEPS), 1)) + 1;
+        lar_contact_progress progress =
+            lar_contact_search_go_on(search_state->search, last ? INT32_MAX : nodes);
+        if (progress == LAR_SEARCH_DONE) take_list(contact, search_state->since);
+        if (progress == LAR_SEARCH_FULL) search_now(contact, state, way);
+    }
+    /* It has become so fast that even the new list is old. */
+    if (!(contact->moved < 0.5 * contact->list.skin)) search_now(contact, state, way);
+}
+
+void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_context *context,
+                            lar_state *state) {
+    if (!contact->surface) return;
+    lar_body_contact_search_state *search_state = contact->search_state;
+    if (state->round != search_state->next) search_state->valid = false;
+    keep_list(contact, state, context->whole_step * state->fastest);
+    search_state->next = state->round + 1;
+    lar_body_contact_add(contact, context, state);
+    contact->info.possible += contact->surface->possible;
+    contact->info.steps++;
+}
+
+void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {
+    for (int32_t i = 0; i < contact->offset_count; i++)
+        state->u[contact->offset[i].value] = contact->offset[i].depth;
+    contact->offset_count = 0;
+    contact->moved += way;
+    contact->way = way;
+    if (!contact->search_state) return;
+    /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
+    contact->travel += way;
+    contact->search_state->since += way;
+}
+
+void lar_body_contact_forget(lar_body_contact *contact) {
+    if (contact->search_state) contact->search_state->valid = false;
+}
+
+/* ---- creation ------------------------------------------------------------------------------- */
+
+static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_error *error) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    const lar_contact_surface *surface = &search_state->search->surface;
+    size_t nodes = (size_t)surface->node_count,
+           groups = (size_t)search_state->search->list.group_room;
+    size_t pairs = (size_t)search_state->search->list.face_room;
+    int32_t *value = lar_calloc(nodes, sizeof *value);
+    contact->view.value = value;
+    search_state->x = lar_calloc(nodes, sizeof *search_state->x);
+    search_state->searched = lar_calloc(nodes, sizeof *search_state->searched);
+    contact->due = lar_calloc(groups, sizeof *contact->due);
+    contact->last = lar_calloc(groups, sizeof *contact->last);
+    contact->near = lar_calloc(groups, sizeof *contact->near);
+    contact->away = lar_calloc(pairs, sizeof *contact->away);
+    contact->part = lar_calloc(groups, sizeof *contact->part);
+    contact->offset = lar_calloc(groups, sizeof *contact->offset);
+    if (!value || !search_state->x || !search_state->searched || !contact->due || !contact->last ||
+        !contact->near || !contact->away || !contact->part || !contact->offset)
+        return lar_fail_memory(error, groups * sizeof *contact->part, "contact of bodies");
+    for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
+    return LAR_OK;
+}
+
+lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+                                   double time_step, double stable_step, bool search_always,
+                                   lar_body_contact *contact, lar_error *error) {
+    *contact = (lar_body_contact){0};
+    lar_body_contact_search_state *search_state = contact->search_state =
+        lar_calloc(1, sizeof *search_state);
+    if (search_state) search_state->search = lar_calloc(1, sizeof *search_state->search);
+    if (!search_state || !search_state->search) {
+        lar_body_contact_destroy(contact);
+        return lar_fail_memory(error, sizeof *search_state->search, "contact of bodies");
+    }
+    lar_status status = lar_contact_search_create(model, mass, local, search_state->search, error);
+    lar_contact_surface *surface = &search_state->search->surface;
+    if (!status && surface->node_count > 0)
+        status = lar_contact_surface_fit(model, time_step, stable_step, surface, error);
+    if (status || surface->node_count == 0) {
+        lar_body_contact_destroy(contact);
+        return status;
+    }
+    contact->law = lar_contact_law_for(time_step, stable_step);
+    contact->time_step = time_step;
+    contact->list = search_state->search->list;
+    search_state->always = search_always;
+    search_state->skin_min = 0.25 * surface->reach;
+    search_state->skin_max = 2 * surface->reach_max;
+    status = allocate(contact, local, error);
+    if (status)
+        lar_body_contact_destroy(contact);
+    else
+        contact->surface = surface;
+    return status;
+}
+
+void lar_body_contact_destroy(lar_body_contact *contact) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    free(contact->due);
+    free(contact->last);
+    free(contact->near);
+    free(contact->away);
+    free(contact->part);
+    free(contact->offset);
+    if (search_state) {
+        free((int32_t *)contact->view.value);
+        if (search_state->search) lar_contact_search_clear(search_state->search);
+        free(search_state->search);
+        free(search_state->x);
+        free(search_state->searched);
+        free(search_state);
+    }
+    *contact = (lar_body_contact){0};
+}

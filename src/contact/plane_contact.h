@@ -1,0 +1,78 @@
+/* Bodies on fixed planes: nodes that stop at them.
+ *
+ *     free to be here        moved freely    stopped
+ *        o  node                o               o
+ *     ---|---------- plane   ---|-----       ---o-----
+ *        v                      o
+ *
+ * A plane cannot move, so nobody else needs to know the force it exerts, and it need not be guessed
+ * before the elements' forces are known: after the nodes have moved freely, those that went through
+ * are put on the plane, with the velocity that takes them there, as supports are. That is the
+ * limit of an infinitely stiff spring without its small time step. It cannot add energy whatever
+ * the step (docs/theory.md, contact), nothing sinks in, and a resting node rests.
+ *
+ * Every processor that has a node stops its copy, with the same bits.
+ *
+ * Prediction (T 3.8.2) from what has really happened instead of a greatest acceleration: no node
+ * is faster than state->fastest, so the nodes that were farther away at the last search than all
+ * have travelled since cannot be at the plane.
+ */
+#ifndef LAR_CONTACT_PLANE_CONTACT_H
+#define LAR_CONTACT_PLANE_CONTACT_H
+
+#include "contact/conditions.h"
+
+/* How nodes with the same supports stop at a plane. */
+typedef struct lar_plane_way {
+    double normal[3]; /* unit, to where bodies may be */
+    double slide[3];  /* the change of velocity per change of its part along the normal: the normal
+                         itself, but for axes that supports hold */
+} lar_plane_way;
+
+/* A node before a plane. */
+typedef struct lar_plane_node {
+    int32_t value; /* 4 * local node */
+    int32_t way;
+    double offset; /* height above the plane at rest [m] */
+} lar_plane_node;
+
+/* One that may touch, with all that a stop needs in one place: the rest of a step leaves nothing of
+ * it in the core's caches. */
+typedef struct lar_plane_near {
+    lar_plane_node node;
+    double weight;    /* as the context has it */
+    double before[3]; /* velocity before it moved [m/s] */
+} lar_plane_near;
+
+typedef struct lar_plane_contact {
+    int32_t count, way_count, near_count;
+    lar_plane_node *node; /* [count] all planes of a node one after the other */
+    lar_plane_way *way;   /* [way_count] */
+    lar_plane_near *near; /* [near_count] in the same order */
+    double travel;        /* at most this far has any node gone since the search [m] */
+    double reach;         /* how far `near` looks [m] */
+    bool known;           /* `near` belongs to the state */
+} lar_plane_contact;
+
+/* `local` and `share` as for lar_conditions_create. */
+lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local,
+                                    const lar_condition_share *share,
+                                    lar_plane_contact *plane_contact, lar_error *error);
+void lar_plane_contact_destroy(lar_plane_contact *plane_contact); /* idempotent */
+
+/* Before the nodes move, and after they have, supports included. The work goes to state->contact.
+ * With `always` the near nodes are searched anew. `seen` counts. */
+void lar_plane_contact_observe(lar_plane_contact *plane_contact,
+                               const lar_condition_context *context, const lar_state *state,
+                               bool always, lar_contact_info *seen);
+void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
+                            lar_state *state, bool always, lar_contact_info *seen);
+
+/* The velocity that nodes would have half a step later: from `ahead` [local nodes][4], what it were
+ * without planes, to what it will be, for one node; `entry` is its first in `node`. Returns the
+ * entry behind its last. (For energies; changes nothing.) */
+int32_t lar_plane_contact_ahead(const lar_plane_contact *plane_contact,
+                                const lar_condition_context *context, const lar_state *state,
+                                int32_t entry, double ahead[3]);
+
+#endif

@@ -1,0 +1,451 @@
+#include "contact/tool_contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "contact/tool_contact_face.h"
+
+/* ---- set-up -------------------------------------------------------------------------------- */
+
+static bool mine(const lar_model *model, const lar_condition_share *share, int32_t face) {
+    return !share || share->presses[model->surface.element[face]] == share->thread;
+}
+
+static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
+                     int32_t face, lar_tool_contact *contact) {
+    lar_tool_contact_face *f = &contact->face[contact->face_count++];
+    *f = (lar_tool_contact_face){.of = face, .loaded = -1};
+    for (int a = 0; a < 4; a++) {
+        int32_t node = model->surface.corner[face][a];
+        f->value[a] = 4 * local[node];
+        f->share[a] = 1.0 / faces_at[node];
+        memcpy(f->rest[a], model->mesh.position[node], sizeof f->rest[a]);
+    }
+    for (int a = 0; a < 4; a++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) {
+            double d = f->rest[(a + 1) % 4][i] - f->rest[a][i];
+            square += d * d;
+        }
+        f->edge = fmax(f->edge, sqrt(square));
+    }
+}
+
+/* Corners of own faces that other threads move. */
+static void list_foreign(const lar_model *model, const int32_t *local,
+                         const lar_condition_share *share, uint8_t *marked,
+                         lar_tool_contact *contact) {
+    memset(marked, 0, (size_t)model->mesh.node_count);
+    for (int32_t f = 0; f < contact->face_count; f++)
+        for (int a = 0; a < 4; a++) {
+            int32_t node = model->surface.corner[contact->face[f].of][a];
+            if (share->holds[node] == share->thread || marked[node]) continue;
+            marked[node] = 1;
+            contact->foreign[contact->foreign_count++] = 4 * local[node];
+        }
+}
+
+static lar_status allocate(const lar_model *model, int32_t faces, int tools,
+                           lar_tool_contact *contact, lar_error *error) {
+    size_t count = (size_t)faces, nodes = (size_t)model->surface.node_count;
+    contact->face = lar_calloc(count, sizeof *contact->face);
+    contact->loaded = lar_calloc(count, sizeof *contact->loaded);
+    contact->foreign = lar_calloc(nodes, sizeof *contact->foreign);
+    contact->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *contact->face_of);
+    contact->weights = lar_calloc(1, sizeof *contact->weights);
+    bool fits = contact->face && contact->loaded && contact->foreign && contact->face_of &&
+                contact->weights;
+    for (int t = 0; t < tools && fits; t++) {
+        lar_tool_vicinity *vicinity = &contact->vicinity[t];
+        vicinity->near = lar_calloc(count, sizeof *vicinity->near);
+        vicinity->look = lar_calloc(count, sizeof *vicinity->look);
+        fits = vicinity->near && vicinity->look;
+    }
+    return fits ? LAR_OK
+                : lar_fail_memory(error, count * sizeof *contact->face, "the faces before tools");
+}
+
+static lar_status create_faces(const lar_model *model, const int32_t *local,
+                               const lar_condition_share *share, lar_tool_contact *contact,
+                               lar_error *error) {
+    const lar_surface *surface = &model->surface;
+    int32_t faces = 0;
+    for (int32_t f = 0; f < surface->face_count; f++) faces += mine(model, share, f);
+    uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
+    if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
+    lar_status status = allocate(model, faces, contact->list->count, contact, error);
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++)
+            for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
+        for (int32_t f = 0; f < surface->face_count; f++)
+            if (mine(model, share, f)) add_face(model, local, marked, f, contact);
+        for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
+            for (int i = 0; i < n * n; i++)
+                lar_tool_contact_weights(i, n, contact->weights->of[n][i]);
+        status = lar_tool_contact_group_faces(contact, error);
+    }
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++) contact->face_of[f] = -1;
+        for (int32_t f = 0; f < faces; f++) contact->face_of[contact->face[f].of] = f;
+        if (share) list_foreign(model, local, share, marked, contact);
+    }
+    free(marked);
+    return status;
+}
+
+lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
+                                   const lar_condition_share *share, const lar_tool_list *list,
+                                   const lar_tools *tools, lar_tool_contact *contact,
+                                   lar_error *error) {
+    *contact = (lar_tool_contact){.list = list, .tools = tools};
+    lar_status status =
+        lar_plane_contact_create(model, local, share, &contact->plane_contact, error);
+    if (!status && list && list->count > 0)
+        status = create_faces(model, local, share, contact, error);
+    if (status) lar_tool_contact_destroy(contact);
+    return status;
+}
+
+void lar_tool_contact_destroy(lar_tool_contact *contact) {
+    lar_plane_contact_destroy(&contact->plane_contact);
+    for (int t = 0; t < LAR_TOOLS_MAX; t++) {
+        free(contact->vicinity[t].near);
+        free(contact->vicinity[t].look);
+    }
+    free(contact->face);
+    free(contact->group);
+    free(contact->loaded);
+    free(contact->foreign);
+    free(contact->face_of);
+    free(contact->weights);
+    *contact = (lar_tool_contact){0};
+}
+
+/* The balls of groups are measured anew when somebody asks. */
+static void forget_groups(lar_tool_contact *contact) {
+    for (int32_t g = 0; g < contact->group_count; g++) contact->group[g].travel = -INFINITY;
+    contact->travel = 0;
+}
+
+void lar_tool_contact_forget(lar_tool_contact *contact) {
+    contact->plane_contact.known = false;
+    contact->moved = UINT64_MAX;
+    forget_groups(contact);
+    for (int t = 0; t < LAR_TOOLS_MAX; t++)
+        contact->vicinity[t].known = contact->vicinity[t].rests = false;
+}
+
+/* ---- where tools are ----------------------------------------------------------------------- */
+
+/* Jaws hang on the tip and open in the plane y = 0. */
+void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
+                    lar_segment segment[2]) {
+    double end[2][3] = {{0, 0, tool->shape == LAR_TOOL_CAPSULE ? tool->length : 0}};
+    body->count = 1;
+    if (tool->shape == LAR_TOOL_GRASPER) {
+        double sine, cosine;
+        lar_sine_cosine(0.5 * tool->spread * pose->opening, &sine, &cosine);
+        for (int s = 0; s < 2; s++) {
+            end[s][0] = (s ? -1 : 1) * tool->length * sine;
+            end[s][2] = -tool->length * cosine;
+        }
+        body->count = 2;
+    }
+    for (int32_t s = 0; s < body->count; s++) {
+        lar_turn(pose->orientation, end[s], segment[s].end[1]);
+        for (int i = 0; i < 3; i++) {
+            segment[s].end[0][i] = pose->position[i];
+            segment[s].end[1][i] += pose->position[i];
+        }
+    }
+    if (tool->shape != LAR_TOOL_GRASPER) return;
+    static const double hinge[3] = {0, 1, 0};
+    double axis[3], jaw[3];
+    lar_turn(pose->orientation, hinge, axis);
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < 3; i++)
+            jaw[i] = (s ? 1 : -1) * (segment[s].end[1][i] - segment[s].end[0][i]) / tool->length;
+        lar_cross(axis, jaw, body->outward[s]);
+    }
+}
+
+double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t count) {
+    double farthest = 0;
+    for (int32_t s = 0; s < count; s++)
+        for (int e = 0; e < 2; e++) {
+            double square = 0;
+            for (int i = 0; i < 3; i++) {
+                double way = to[s].end[e][i] - from[s].end[e][i];
+                square += way * way;
+            }
+            farthest = fmax(farthest, square);
+        }
+    return sqrt(farthest);
+}
+
+/* The pose now, or `ahead` parts of a step later. */
+static void pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                     double time_step, lar_tool_pose *pose) {
+    int32_t part = state->part + ahead;
+    if (part >= state->parts)
+        lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
+    else
+        lar_tool_within(motion, state->step, (double)part / state->parts, time_step, pose, NULL);
+}
+
+/* Brings the tool to the step. Returns how far it has come since the last one. */
+static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
+                     const lar_tool_motion *motion, const lar_state *state, double time_step) {
+    if (vicinity->rests && state->step >= motion->end) return 0;
+    lar_tool_body *body = &vicinity->body, old = *body;
+    lar_tool_pose pose;
+    pose_now(motion, state, 0, time_step, &pose);
+    lar_tool_place(tool, &pose, body, body->now);
+    pose_now(motion, state, 1, time_step, &pose);
+    lar_tool_place(tool, &pose, body, body->next);
+    vicinity->rests = state->step >= motion->end;
+    return vicinity->known ? lar_tool_way(old.now, body->now, body->count) : 0;
+}
+
+/* ---- forces -------------------------------------------------------------------------------- */
+
+/* Gives the corners their forces in whole units, and the tool exactly the opposite: nothing is lost
+ * between them. */
+static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
+                 int32_t tool, const double tip[3], const double x[4][3],
+                 const double force[4][3]) {
+    lar_tool_contact_face *face = &contact->face[f];
+    lar_tool_sum *sum = &contact->sum[tool];
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
+            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) return;
+    if (face->loaded < 0) {
+        face->loaded = contact->loaded_count++;
+        contact->loaded[face->loaded] = (lar_tool_contact_force){.face = f};
+    }
+    lar_tool_contact_force *loaded = &contact->loaded[face->loaded];
+    for (int a = 0; a < 4; a++) {
+        double units[3], arm[3];
+        for (int i = 0; i < 3; i++) {
+            int64_t whole = llrint(force[a][i] * context->scale);
+            loaded->force[a][i] += whole;
+            sum->force[i] -= context->shares * whole;
+            units[i] = (double)whole;
+            arm[i] = x[a][i] - tip[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
+            if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
+            sum->torque[i] += context->shares * llrint(whole);
+            sum->rest[i] += context->shares * llrint((torque - whole) / LAR_TORQUE_REST);
+        }
+    }
+}
+
+/* Nothing of a run that is about to break. */
+static int64_t whole_units(double units) {
+    return fabs(units) < 0x1p56 ? llrint(units) : 0;
+}
+
+static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
+                       const lar_state *state, int32_t tool, const lar_contact_law *law) {
+    lar_tool_vicinity *vicinity = &contact->vicinity[tool];
+    for (int32_t i = 0; i < vicinity->near_count; i++) {
+        if (vicinity->path < vicinity->look[i] && !contact->always) continue;
+        lar_tool_contact_patch patch = {.face = &contact->face[vicinity->near[i]],
+                                        .body = &vicinity->body,
+                                        .radius = contact->list->tool[tool].radius,
+                                        .rate_of = 1 / context->time_step,
+                                        .closest = INFINITY};
+        double center[3];
+        lar_tool_contact_corners(patch.face, state->u, patch.x);
+        double size = lar_tool_contact_ball((const double(*)[3])patch.x, center);
+        double gap = lar_tool_contact_distance(&vicinity->body, patch.radius, center) - size;
+        contact->seen.tested++;
+        vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
+        if (gap > 0) continue;
+        lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->weights);
+        vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
+        if (patch.touching == 0) continue;
+        lar_tool_sum *sum = &contact->sum[tool];
+        sum->touching += patch.touching;
+        sum->depth = fmax(sum->depth, patch.depth);
+        sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
+        for (int s = 0; s < 2; s++)
+            sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
+        give(contact, context, vicinity->near[i], tool, vicinity->body.now[0].end[0],
+             (const double(*)[3])patch.x, (const double(*)[3])patch.force);
+    }
+}
+
+/* ---- grasps -------------------------------------------------------------------------------- */
+
+/* Where the anchors of a tool's grasps go in a step. */
+typedef struct lar_grasp_motion {
+    lar_tool_pose now, next;
+    bool known;
+} lar_grasp_motion;
+
+static void place_anchor(const lar_tool_pose *pose, const double anchor[3], double out[3]) {
+    lar_turn(pose->orientation, anchor, out);
+    for (int i = 0; i < 3; i++) out[i] += pose->position[i];
+}
+
+/* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
+ * radius, so that what is torn away from a tool slips instead of being torn apart. */
+static void grasp_point(lar_tool_contact *contact, const lar_condition_context *context,
+                        const lar_state *state, const lar_grasp *grasp,
+                        const lar_grasp_motion *motion, const lar_contact_law *law) {
+    const lar_tool_contact_face *face = &contact->face[contact->face_of[grasp->face]];
+    const lar_tool *tool = &contact->list->tool[grasp->tool];
+    double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
+    double pull[3], force[4][3], length = 0;
+    place_anchor(&motion->now, grasp->anchor, now);
+    place_anchor(&motion->next, grasp->anchor, next);
+    lar_tool_contact_corners(face, state->u, x);
+    for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
+    lar_face_mean((const double(*)[3])x, grasp->weight, point);
+    lar_face_mean((const double(*)[3])v, grasp->weight, speed);
+    double max = lar_grasp_stiffness_limit(face, tool->radius, law, context->mass);
+    double stiffness = fmin(grasp->stiffness, max), damping = sqrt(stiffness * max) * dt;
+    for (int i = 0; i < 3; i++) {
+        pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
+        length += pull[i] * pull[i];
+    }
+    length = sqrt(length);
+    double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
+    give(contact, context, contact->face_of[grasp->face], grasp->tool, motion->now.position,
+         (const double(*)[3])x, (const double(*)[3])force);
+    contact->sum[grasp->tool].held++;
+}
+
+static void apply_grasps(lar_tool_contact *contact, const lar_condition_context *context,
+                         const lar_state *state, const lar_contact_law *law) {
+    lar_grasp_motion motion[LAR_TOOLS_MAX];
+    for (int t = 0; t < LAR_TOOLS_MAX; t++) motion[t].known = false;
+    for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
+        const lar_grasp *grasp = &contact->tools->grasps[i];
+        if (contact->face_of[grasp->face] < 0) continue;
+        lar_grasp_motion *of = &motion[grasp->tool];
+        const lar_tool_motion *tool = &contact->tools->motion[grasp->tool];
+        if (!of->known) {
+            pose_now(tool, state, 0, context->whole_step, &of->now);
+            pose_now(tool, state, 1, context->whole_step, &of->next);
+            of->known = true;
+        }
+        grasp_point(contact, context, state, grasp, of, law);
+    }
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
+/* How far any corner can have gone since the last step; infinitely far when that is not known. */
+static double step_travel(const lar_tool_contact *contact, const lar_condition_context *context,
+                          const lar_state *state) {
+    if (contact->moved != state->round) return INFINITY;
+    double fastest = state->fastest;
+    for (int32_t i = 0; i < contact->foreign_count; i++)
+        for (int k = 0; k < 3; k++)
+            fastest = fmax(fastest, fabs(state->v[contact->foreign[i] + k]));
+    return 1.7320508075688774 * context->whole_step * fastest;
+}
+
+static void apply_tool(lar_tool_contact *contact, const lar_condition_context *context,
+                       const lar_state *state, int32_t t, double travel,
+                       const lar_contact_law *law) {
+    const lar_tool *tool = &contact->list->tool[t];
+    lar_tool_vicinity *vicinity = &contact->vicinity[t];
+    int32_t serial = lar_spare_serial(contact->list, contact->tools, t);
+    if (vicinity->serial != serial) vicinity->known = vicinity->rests = false;
+    vicinity->serial = serial;
+    double came = follow(vicinity, tool, &contact->tools->motion[t], state, context->whole_step);
+    vicinity->path += travel + came;
+    if (contact->always || !vicinity->known || !(vicinity->path < vicinity->limit))
+        lar_tool_contact_search(
+            contact, t, state,
+            travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
+    touch_near(contact, context, state, t, law);
+    contact->seen.possible += (uint64_t)contact->face_count;
+}
+
+static void clear_loaded(lar_tool_contact *contact) {
+    for (int32_t i = 0; i < contact->loaded_count; i++)
+        contact->face[contact->loaded[i].face].loaded = -1;
+    contact->loaded_count = 0;
+    contact->seen.touching = 0;
+    contact->seen.deepest = 0;
+}
+
+static void add_forces(const lar_tool_contact *contact, int64_t *force) {
+    for (int32_t i = 0; i < contact->loaded_count; i++) {
+        const lar_tool_contact_force *loaded = &contact->loaded[i];
+        for (int a = 0; a < 4; a++)
+            for (int k = 0; k < 3; k++)
+                force[contact->face[loaded->face].value[a] + k] -= loaded->force[a][k];
+    }
+}
+
+void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_context *context,
+                            lar_state *state) {
+    clear_loaded(contact);
+    if (contact->face_count == 0) return;
+    lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
+    lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
+    tool_law.stiffness *= context->hardness;
+    tool_law.lead *= context->time_step / context->whole_step;
+    double travel = step_travel(contact, context, state);
+    bool known = isfinite(travel);
+    if (!known) lar_tool_contact_forget(contact);
+    if (known) contact->travel += travel;
+    if (contact->travel > 1) forget_groups(contact); /* short sums keep the smallest steps */
+    for (int32_t t = 0; t < contact->list->count; t++) {
+        contact->sum[t].touching = contact->sum[t].held = 0;
+        if (lar_tool_touches(&contact->list->tool[t]))
+            apply_tool(contact, context, state, t, known ? travel : 0, &tool_law);
+    }
+    apply_grasps(contact, context, state, &law);
+    add_forces(contact, state->force);
+}
+
+void lar_tool_contact_half_work(const lar_tool_contact *contact,
+                                const lar_condition_context *context, lar_state *state) {
+    double work = 0;
+    for (int32_t i = 0; i < contact->loaded_count; i++) {
+        const lar_tool_contact_force *loaded = &contact->loaded[i];
+        for (int a = 0; a < 4; a++)
+            for (int k = 0; k < 3; k++)
+                work += (double)loaded->force[a][k] *
+                        state->v[contact->face[loaded->face].value[a] + k];
+    }
+    state->external += 0.5 * context->mean_step * work / context->scale;
+}
+
+void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_context *context,
+                              const lar_state *state) {
+    lar_plane_contact_observe(&contact->plane_contact, context, state, contact->always,
+                              &contact->seen);
+}
+
+void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_context *context,
+                           lar_state *state) {
+    lar_plane_contact_stop(&contact->plane_contact, context, state, contact->always,
+                           &contact->seen);
+    contact->moved = state->round + 1;
+    bool tools = contact->face_count > 0 && lar_spares_any(contact->list, contact->tools);
+    if (contact->plane_contact.count > 0 || tools) contact->seen.steps++;
+}
+
+void lar_tool_contact_remember(const lar_tool_contact *contact, lar_tool_contact_saved *note) {
+    memcpy(note->sum, contact->sum, sizeof note->sum);
+    note->seen = contact->seen;
+}
+
+void lar_tool_contact_restore(lar_tool_contact *contact, const lar_tool_contact_saved *note) {
+    memcpy(contact->sum, note->sum, sizeof note->sum);
+    contact->seen = note->seen;
+}

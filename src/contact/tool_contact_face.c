@@ -1,0 +1,179 @@
+#include "contact/tool_contact_face.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "mechanics/face_contact.h"
+
+/* ---- points -------------------------------------------------------------------------------- */
+
+int lar_tool_contact_points(const lar_tool_contact_face *face, double radius) {
+    double wanted = ceil(2 * face->edge / radius);
+    return wanted < 2 ? 2 : wanted > LAR_POINTS_ALONG_EDGE ? LAR_POINTS_ALONG_EDGE : (int)wanted;
+}
+
+void lar_tool_contact_weights(int point, int n, double weight[4]) {
+    lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
+}
+
+double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
+    double min = INFINITY;
+    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->value[a] / 4] * face->share[a]);
+    return 4 * min / (n * n);
+}
+
+double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
+                                 const lar_contact_law *law, const double *mass) {
+    return 0.5 * law->stiffness *
+           lar_tool_contact_point_mass(face, mass, lar_tool_contact_points(face, radius));
+}
+
+/* Where the wall begins, in radii of the tool. */
+static const double WALL = 0.2;
+
+/* A point that has been passed by the middle of the tool sees a normal that would push it on, out
+ * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
+ * goes along the face. */
+static double facing(const lar_tool_contact_patch *patch, const double normal[3]) {
+    double against =
+        -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
+    return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
+}
+
+/* A face that comes into a hard tool from the side, or turns round in it, is deep in it at once.
+ * What leaves the tool faster than any hand moves is pushed no further: contact brings out, and
+ * does not throw [m/s]. */
+static const double LEAVES = 0.5, THROWN = 1.5;
+
+static double not_thrown(double rate) {
+    double away = -rate - LEAVES;
+    return away <= 0 ? 1 : fmax(0, 1 - away / (THROWN - LEAVES));
+}
+
+/* A point of the face is pushed along the normal of segment s. */
+static void push_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
+                       double along, const double weight[4], const double normal[3], double mass,
+                       double depth) {
+    const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
+    double v[3], rate = 0;
+    lar_face_mean((const double(*)[3])patch->v, weight, v);
+    for (int i = 0; i < 3; i++) {
+        double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
+        rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
+    }
+    double force = not_thrown(rate) * lar_contact_force(law, mass, depth, rate);
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
+    if (patch->body->count == 2) {
+        double outwards = lar_dot(normal, patch->body->outward[s]);
+        patch->squeeze -= force * along * outwards;
+        patch->jaw[s] -= force * outwards;
+    }
+    patch->touching++;
+}
+
+/* A point of the grid against the tool's segments. */
+static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                        const lar_segment_axis *axis, const double weight[4]) {
+    /* More than what rounding could bring in; whether a point is in the tool its depth says. */
+    const double within = patch->radius * patch->radius * (1 + 1e-9);
+    double x[3], normal[3], along;
+    lar_face_mean((const double(*)[3])patch->x, weight, x);
+    for (int32_t s = 0; s < patch->body->count; s++) {
+        const lar_segment *segment = &patch->body->now[s];
+        double square = lar_segment_away(segment, &axis[s], x, normal, &along);
+        if (square < patch->min[s]) patch->min[s] = square;
+        if (!(square < within)) continue;
+        double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
+        if (!(depth > 0)) continue;
+        double share = facing(patch, normal);
+        if (share == 0) continue;
+        patch->depth = fmax(patch->depth, share * depth);
+        patch->covered += fmin(1, depth / (WALL * patch->radius));
+        push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
+    }
+}
+
+/* ---- the wall ------------------------------------------------------------------------------ */
+
+/* What a point with these weights may count as, so that the stiffness at each corner stays within
+ * its mass: the row sums of theory.md, with one point instead of many. */
+static double wall_mass(const lar_tool_contact_face *face, const double *mass,
+                        const double weight[4]) {
+    double max = INFINITY;
+    for (int a = 0; a < 4; a++)
+        if (weight[a] > 0) max = fmin(max, mass[face->value[a] / 4] * face->share[a] / weight[a]);
+    return max;
+}
+
+/* The wall of one segment. Returns how far the face is from where it begins. */
+static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                         const double *mass, int32_t s, double free_share) {
+    lar_face_segment at;
+    lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
+    double depth = patch->radius - at.distance;
+    if (!(depth > WALL * patch->radius)) return WALL * patch->radius - depth;
+    if (!(at.distance > 0)) /* the middle line goes through the face: out the way it came */
+        for (int i = 0; i < 3; i++) at.normal[i] = -patch->out[i];
+    double share = facing(patch, at.normal);
+    if (share == 0) return WALL * patch->radius - depth;
+    patch->depth = fmax(patch->depth, share * depth);
+    push_point(patch, law, s, at.along, at.weight, at.normal,
+               free_share * share * wall_mass(patch->face, mass, at.weight),
+               depth - WALL * patch->radius);
+    return WALL * patch->radius - depth;
+}
+
+/* How far a point of the face can be from the closest point of the grid: half of the diagonal
+ * between two of these. */
+static double spacing(const lar_tool_contact_patch *patch, int n) {
+    double longest = 0;
+    for (int a = 0; a < 4; a++) {
+        double edge[3];
+        lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
+        longest = fmax(longest, lar_dot(edge, edge));
+    }
+    return sqrt(0.5 * longest) / n;
+}
+
+/* Of a tool that is small beside a face few points of the grid touch, or none, and they bear what
+ * so few may. What the others could bear belongs to the closest point of the face, when that is
+ * deep in the tool: as much as its corners bear, at whatever size of tool and face. Returns how far
+ * the face is at least from where the wall begins. */
+static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                          const double *mass, int n) {
+    double free_share = 1 - patch->covered / (n * n), between = spacing(patch, n), gap = INFINITY;
+    for (int32_t s = 0; s < patch->body->count; s++) {
+        double distance = sqrt(patch->min[s]) - patch->radius;
+        double own = distance - between + WALL * patch->radius;
+        if (own < 0)
+            own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
+        gap = fmin(gap, own);
+    }
+    return gap;
+}
+
+/* ---- the face ------------------------------------------------------------------------------ */
+
+void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                                const double *v, const double *mass,
+                                const lar_point_weights *weights) {
+    const lar_tool_contact_face *face = patch->face;
+    const lar_tool_body *body = patch->body;
+    int n = lar_tool_contact_points(face, patch->radius);
+    lar_segment_axis axis[2];
+    patch->mass = lar_tool_contact_point_mass(face, mass, n);
+    for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
+    lar_face_normal((const double(*)[3])patch->x, patch->out);
+    double size = lar_length(patch->out);
+    for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
+    for (int32_t s = 0; s < body->count; s++) {
+        axis[s] = lar_segment_axis_of(&body->now[s]);
+        patch->min[s] = INFINITY;
+    }
+    for (int i = 0; i < n * n; i++) touch_point(patch, law, axis, weights->of[n][i]);
+    patch->closest = touch_walls(patch, law, mass, n);
+    for (int32_t s = 0; s < body->count; s++)
+        patch->closest = fmin(patch->closest, sqrt(patch->min[s]) - patch->radius);
+}

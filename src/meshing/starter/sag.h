@@ -1,0 +1,26 @@
+/* How a meshed body will move, from its stiffness at rest: enough to choose what carries it, a
+ * damping, a pull that it bears and how long to watch.
+ *
+ * One solution for four loads: the weight along each axis, and the pull. Under its weight a body
+ * takes a shape u much like its slowest motions, and Rayleigh's quotient of that shape,
+ *     w^2 = u K u / u M u,
+ * is never below the slowest motion's and mostly a tenth or two above it (Rayleigh 1877; Temple and
+ * Bickley 1933). The least of the four is taken. */
+#ifndef LAR_MESHING_STARTER_SAG_H
+#define LAR_MESHING_STARTER_SAG_H
+
+#include "meshing/meshing.h"
+
+typedef struct lar_sag {
+    double slowest;    /* [1/s] angular frequency of the slowest natural motion; 0: nothing moves */
+    double compliance; /* [m/N] how far a force at the handle moves it, in the mean */
+} lar_sag;
+
+/* held, handle: [nodes]; the handle is pulled along this axis of the world. What hangs together
+ * with nothing that is held is left out. sag: [nodes], or NULL: how far the weight would move each
+ * node, the worst of three directions [m], were it that stiff all the way. The regions' information
+ * must be there. */
+lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
+                            int axis, lar_sag *motion, double *sag, lar_error *error);
+
+#endif

@@ -1,0 +1,209 @@
+/* Tools, status and snapshots of a session, from any thread. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "session/session.h"
+
+/* ---- tools --------------------------------------------------------------------------------- */
+
+lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_error *error) {
+    if (!session)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "a call of a session needs one, not NULL");
+    if (tool >= 0 && tool < session->tools) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "there is no tool %ld; the session has %ld, counted from 0", (long)tool,
+                    (long)session->tools);
+}
+
+/* Reading takes over the newest view, which changes nothing that callers see. */
+static const lar_session_view *look_at_view(const lar_session *session) {
+    lar_triple_buffer *box = &((lar_session *)session)->view;
+    lar_triple_buffer_lock(box);
+    return lar_triple_buffer_newest(box, NULL);
+}
+
+static void end_look(const lar_session *session) {
+    lar_triple_buffer_unlock(&((lar_session *)session)->view);
+}
+
+int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info) {
+    const lar_session_view *view = look_at_view(session);
+    int32_t serial = view->tool[tool].serial;
+    *info = view->tool[tool].info;
+    end_look(session);
+    return serial;
+}
+
+/* Spares are, once they have been added. */
+static lar_status check_there(const lar_session *session, int32_t tool, lar_error *error) {
+    lar_tool_info info;
+    if (lar_spare_of(&session->simulation->list, tool) < 0) return LAR_OK;
+    lar_session_look_at_tool(session, tool, &info);
+    if (info.shape != LAR_TOOL_NONE) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "tool %ld is not there; add one with lar_session_add_tool", (long)tool);
+}
+
+/* A pose as a device gives it: the quaternion may be off unit length by rounding. */
+static lar_status clean_pose(const lar_tool_pose *pose, lar_tool_pose *clean, lar_error *error) {
+    double square = 0, sum = pose->opening;
+    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
+    for (int i = 0; i < 3; i++) sum += fabs(pose->position[i]);
+    if (!(sum < 1e9) || !(fabs(square - 1) < 0.01) || !(pose->opening >= 0 && pose->opening <= 1))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "this is no pose of a tool: position %g %g %g m, orientation %g %g %g %g, "
+                        "opening %g; give finite numbers, a unit quaternion, an opening from 0 "
+                        "to 1",
+                        pose->position[0], pose->position[1], pose->position[2],
+                        pose->orientation[0], pose->orientation[1], pose->orientation[2],
+                        pose->orientation[3], pose->opening);
+    *clean = *pose;
+    for (int i = 0; i < 4; i++) clean->orientation[i] /= sqrt(square);
+    return LAR_OK;
+}
+
+lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_tool_pose *pose,
+                                 lar_error *error) {
+    lar_tool_pose clean;
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !pose)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_tool_move needs a pose");
+    if (!status) status = clean_pose(pose, &clean, error);
+    if (!status) status = check_there(session, tool, error);
+    if (status) return status;
+    lar_triple_buffer *box = &session->tool[tool].hand;
+    lar_triple_buffer_lock(box);
+    *(lar_tool_pose *)lar_triple_buffer_back(box) = clean;
+    lar_triple_buffer_publish(box);
+    lar_triple_buffer_unlock(box);
+    return LAR_OK;
+}
+
+lar_status lar_session_tool_info(const lar_session *session, int32_t tool, lar_tool_info *info,
+                                 lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !info)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_tool_info needs a place for the answer");
+    if (!status) lar_session_look_at_tool(session, tool, info);
+    return status;
+}
+
+lar_status lar_session_tool_force(const lar_session *session, int32_t tool, lar_tool_pose *pose,
+                                  lar_tool_force *force, lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (status) return status;
+    const lar_session_view *view = look_at_view(session);
+    if (pose) *pose = view->tool[tool].pose;
+    if (force) *force = view->tool[tool].force;
+    end_look(session);
+    return LAR_OK;
+}
+
+lar_status lar_session_tool_load(const lar_session *session, int32_t tool, lar_tool_load *load,
+                                 lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !load)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_tool_load needs a place for the answer");
+    if (status) return status;
+    *load = look_at_view(session)->tool[tool].load;
+    end_look(session);
+    return LAR_OK;
+}
+
+lar_status lar_session_device(const lar_session *session, int32_t tool, lar_device_status *out,
+                              lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !out)
+        status =
+            lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_device needs a place for the answer");
+    if (status) return status;
+    *out = look_at_view(session)->tool[tool].device;
+    end_look(session);
+    return LAR_OK;
+}
+
+void lar_session_status_get(const lar_session *session, lar_session_status *status) {
+    if (!session || !status) return;
+    *status = look_at_view(session)->status;
+    end_look(session);
+}
+
+void lar_session_gravity(const lar_session *session, double gravity[3]) {
+    if (!gravity) return;
+    for (int i = 0; i < 3; i++) gravity[i] = 0;
+    if (!session) return;
+    memcpy(gravity, look_at_view(session)->gravity, 3 * sizeof *gravity);
+    end_look(session);
+}
+
+double lar_session_damping(const lar_session *session) {
+    if (!session) return 0;
+    double damping = look_at_view(session)->damping;
+    end_look(session);
+    return damping;
+}
+
+double lar_session_stiffness(const lar_session *session, int32_t material) {
+    if (!session || material < 0 || material >= session->simulation->domain.model->material_count)
+        return 0;
+    double factor = look_at_view(session)->factor[lar_factor_of(material)];
+    end_look(session);
+    return factor;
+}
+
+int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
+                                  int32_t max, float (*force)[3], uint64_t *last) {
+    uint64_t ignored;
+    if (last) *last = after;
+    if (lar_session_check_tool(session, tool, NULL) || !force) return 0;
+    return lar_history_copy(&session->history, tool, after, max, force, last ? last : &ignored);
+}
+
+/* ---- snapshots ----------------------------------------------------------------------------- */
+
+lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **out, lar_error *error) {
+    if (!session || !out)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_snapshot_create needs a session and a place for the snapshot");
+    int32_t nodes = session->simulation->domain.model->mesh.node_count;
+    lar_snapshot *snapshot = lar_calloc(1, sizeof *snapshot);
+    if (snapshot) snapshot->u = lar_calloc((size_t)nodes, sizeof *snapshot->u);
+    if (!snapshot || !snapshot->u) {
+        free(snapshot);
+        return lar_fail_memory(error, (size_t)nodes * sizeof *snapshot->u, "a snapshot");
+    }
+    snapshot->nodes = nodes;
+    *out = snapshot;
+    return LAR_OK;
+}
+
+void lar_snapshot_destroy(lar_snapshot *snapshot) {
+    if (!snapshot) return;
+    free(snapshot->u);
+    free(snapshot);
+}
+
+lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot, double seconds,
+                                lar_error *error) {
+    if (!session || !snapshot)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_session_snapshot needs a session and a snapshot; neither may be NULL");
+    int64_t limit = lar_clock_ns() + (int64_t)(1e9 * fmin(fmax(seconds, 0), 1e6));
+    uint64_t number = lar_snapshots_ask(&session->snapshots);
+    bool in_time = true;
+    pthread_mutex_lock(&session->requests.lock);
+    if (!session->started) lar_snapshots_serve(&session->snapshots, session->simulation);
+    pthread_cond_signal(&session->requests.work);
+    while (in_time && !lar_snapshots_ready(&session->snapshots, number))
+        in_time = lar_requests_wait(&session->requests, limit);
+    in_time = lar_snapshots_ready(&session->snapshots, number);
+    pthread_mutex_unlock(&session->requests.lock);
+    if (!in_time)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "no snapshot came within %g s: a tick takes longer; wait longer", seconds);
+    return lar_snapshots_take(&session->snapshots, session->simulation, snapshot, error);
+}

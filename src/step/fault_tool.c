@@ -1,0 +1,101 @@
+/* Which tool an unstable run has to do with: people can move it slower, when they are told. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "step/step.h"
+
+/* A tool that is no farther from a broken element than so many of its edges had a part in it. One
+ * that moves, or has just come to rest, may be farther off: what it has bent springs back when it
+ * slips off, and what it pulls may break some layers below. */
+static const double TOUCHING = 1.5, MOVING = 8, PULLING = 6;
+enum { JUST = 1000 };
+
+/* The middle of an element at rest, and about how long its edges are. */
+static double element_at_rest(const lar_domain *domain, lar_gid e, double place[3]) {
+    double corner[8][3];
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    for (int i = 0; i < 3; i++) {
+        place[i] = 0;
+        for (int a = 0; a < 8; a++) place[i] += corner[a][i] / 8;
+    }
+    return cbrt(lar_hexahedron_volume(corner));
+}
+
+static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
+                                const double place[3]) {
+    lar_tool_body body;
+    lar_tool_place(tool, pose, &body, body.now);
+    return lar_tool_contact_distance(&body, tool->radius, place);
+}
+
+static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
+    const lar_tool_contact *contact = &domain->interactions.tool_contact;
+    double nearest = INFINITY;
+    for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
+        const lar_grasp *grasp = &contact->tools->grasps[i];
+        if (grasp->tool != tool) continue;
+        double point[3], square = 0;
+        lar_face_mean(contact->face[contact->face_of[grasp->face]].rest, grasp->weight, point);
+        for (int k = 0; k < 3; k++) square += (point[k] - rest[k]) * (point[k] - rest[k]);
+        nearest = fmin(nearest, sqrt(square));
+    }
+    return nearest;
+}
+
+void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
+    const lar_tool_contact *contact = &domain->interactions.tool_contact;
+    bool moves = fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST;
+    bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
+    if (fault->attributed || !(moves || of_element)) return;
+    fault->attributed = true;
+    if (contact->face_count == 0 || fault->element < 0) return;
+    double rest[3], edge = 0, closest = 1;
+    if (of_element) {
+        edge = element_at_rest(domain, fault->element, rest);
+    } else {
+        memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
+        edge = contact->face[0].edge;
+    }
+    for (int32_t t = 0; t < contact->list->count; t++) {
+        const lar_tool *tool = &contact->list->tool[t];
+        lar_tool_pose pose;
+        double velocity[3];
+        if (tool->shape == LAR_TOOL_NONE) continue;
+        lar_tool_at(&contact->tools->motion[t], fault->step, domain->time_step, &pose, velocity);
+        double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
+        const lar_tool_motion *motion = &contact->tools->motion[t];
+        bool moving = motion->end > 0 && fault->step < motion->end + JUST;
+        if (tool->shape != LAR_TOOL_HAND)
+            touching = touching_distance(tool, &pose, fault->place) /
+                       ((moving ? MOVING : TOUCHING) * edge);
+        if (!(fmin(holding, touching) < closest)) continue;
+        closest = fmin(holding, touching);
+        fault->tool = t + 1;
+        fault->tool_pulls = holding < touching;
+        fault->tool_speed =
+            sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]);
+    }
+}
+
+lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
+                                 const char *what_it_does, lar_error *error) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    const lar_tool *tool = &domain->interactions.tool_contact.list->tool[fault->tool - 1];
+    bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
+    long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
+    char motion[80];
+    if (fault->tool_speed > 0)
+        snprintf(motion, sizeof motion, "moves at %.3g m/s and", fault->tool_speed);
+    else
+        snprintf(motion, sizeof motion,
+                 fault->tool_pulls ? "holds the tissue there and" : "is pressed in there and");
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): tool %s %s %s %s %lld near "
+                    "(%.4g, %.4g, %.4g) m; move it slower or %s, or use a smaller time step or a "
+                    "finer mesh there",
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    tool->name, motion, what_it_does, element ? "element" : "node", number,
+                    fault->place[0], fault->place[1], fault->place[2],
+                    fault->tool_pulls ? "pull less far" : "less deep");
+}

@@ -1,0 +1,95 @@
+/* Every item is done once, whoever does it. */
+#include <sched.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/parallel_for.h"
+
+enum { MAX = 1000 };
+
+typedef struct work {
+    int done[MAX]; /* written by whoever has the item */
+    int32_t count, portion;
+    int bad; /* atomic: portions that are none */
+    int calls;
+} work;
+
+static void count_up(void *context, int32_t first, int32_t end) {
+    work *w = context;
+    if (first % w->portion != 0 || end <= first || end - first > w->portion || end > w->count)
+        __atomic_fetch_add(&w->bad, 1, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&w->calls, 1, __ATOMIC_RELAXED);
+    for (int32_t i = first; i < end; i++) w->done[i]++;
+}
+
+static void every_item_is_done_once(void **state) {
+    (void)state;
+    const int32_t counts[] = {0, 1, 2, 7, 999, 1000}, portions[] = {1, 3, 64, 1000, INT32_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        for (size_t k = 0; k < sizeof portions / sizeof *portions; k++) {
+            work w = {.count = counts[i], .portion = portions[k]};
+            lar_parallel_for(w.count, w.portion, count_up, &w);
+            assert_int_equal(w.bad, 0);
+            assert_int_equal(w.calls, ((int64_t)w.count + w.portion - 1) / w.portion);
+            for (int32_t n = 0; n < MAX; n++) assert_int_equal(w.done[n], n < w.count);
+        }
+}
+
+typedef struct nest {
+    work row[8];
+} nest;
+
+static void share_rows(void *context, int32_t first, int32_t end) {
+    nest *all = context;
+    for (int32_t r = first; r < end; r++) {
+        all->row[r] = (work){.count = MAX, .portion = 10};
+        lar_parallel_for(MAX, 10, count_up, &all->row[r]);
+    }
+}
+
+static void calls_can_be_nested(void **state) {
+    (void)state;
+    static nest all;
+    memset(&all, 0, sizeof all);
+    lar_parallel_for(8, 1, share_rows, &all);
+    for (int r = 0; r < 8; r++)
+        for (int32_t n = 0; n < MAX; n++) assert_int_equal(all.row[r].done[n], 1);
+}
+
+/* Waits for another one who is at work at the same time, and no longer than ten seconds. */
+static void meet(void *context, int32_t first, int32_t end) {
+    int *here = context;
+    (void)first, (void)end;
+    __atomic_fetch_add(here, 1, __ATOMIC_SEQ_CST);
+    for (int waits = 0; waits < 10000 && __atomic_load_n(here, __ATOMIC_SEQ_CST) < 2; waits++)
+        usleep(1000);
+    if (__atomic_load_n(here, __ATOMIC_SEQ_CST) == 2) return;
+    __atomic_fetch_add(here, 100, __ATOMIC_SEQ_CST);
+}
+
+static void two_cores_are_at_work_at_once(void **state) {
+    (void)state;
+    cpu_set_t allowed;
+    int here = 0;
+    if (sched_getaffinity(0, sizeof allowed, &allowed) || CPU_COUNT(&allowed) < 2) {
+        print_message("skipped: one core\n");
+        return;
+    }
+    lar_parallel_for(2, 1, meet, &here);
+    assert_int_equal(here, 2);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_item_is_done_once),
+        cmocka_unit_test(calls_can_be_nested),
+        cmocka_unit_test(two_cores_are_at_work_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

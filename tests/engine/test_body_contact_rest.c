@@ -1,0 +1,195 @@
+/* Bodies that lie on each other: they come to rest, where there is a place to rest. */
+#include "engine/body_contact_test.h"
+#include "engine/tool_contact_test.h"
+
+static const brick lower_brick = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+static const brick upper_brick = {{3, 3, 3}, 0.008, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+
+/* How a brick lies on another: where its side is, whether it is kept from sliding, and how deep the
+ * hollow is that it lies in. */
+typedef struct laid {
+    double y; /* [m] */
+    bool kept;
+    double hollow; /* [m] */
+} laid;
+
+static lar_model *laid_model(const brick *lower, const brick *upper, const laid *how) {
+    lar_model *model = empty_model(lower);
+    add_brick(model, lower, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    double top = lower->edge * lower->cells[2];
+    int32_t first = add_brick(model, upper, (double[]){0.013, how->y, top});
+    for (int32_t n = 0; n < first; n++) {
+        double *x = model->mesh.position[n], side[2];
+        if (x[2] < top - 0.5 * lower->edge) continue;
+        for (int i = 0; i < 2; i++) side[i] = 2 * x[i] / (lower->edge * lower->cells[i]) - 1;
+        x[2] -= how->hollow * (2 - side[0] * side[0] - side[1] * side[1]);
+    }
+    fix_nodes(model, brick_side(lower, 2, 0), LAR_AXIS_ALL);
+    if (how->kept) {
+        lar_node_list held = brick_side(upper, 2, -1);
+        for (int32_t i = 0; i < held.count; i++) held.node[i] += first;
+        fix_nodes(model, held, LAR_AXIS_X | LAR_AXIS_Y);
+    }
+    touch_between(model, split);
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->damping = 60;
+    return model;
+}
+
+/* Mean velocity of the nodes from `first` on. */
+static void slide(const lar_simulation *s, int32_t first, double velocity[3]) {
+    double mass = 0;
+    for (int i = 0; i < 3; i++) velocity[i] = 0;
+    for (int32_t n = first; n < s->domain.model->mesh.node_count; n++) {
+        double m = s->domain.mass[s->domain.layout.local[n]];
+        for (int i = 0; i < 3; i++) velocity[i] += m * node_v(s, n)[i];
+        mass += m;
+    }
+    for (int i = 0; i < 3; i++) velocity[i] /= mass;
+}
+
+/* Kinetic energy half a step back, where nothing hides that goes to and fro in every step; of the
+ * nodes from `first` on relative to a velocity. */
+static double trembling(const lar_simulation *s, int32_t first, const double velocity[3]) {
+    double energy = 0;
+    for (int32_t n = 0; n < s->domain.model->mesh.node_count; n++)
+        for (int i = 0; i < 3; i++) {
+            double v = node_v(s, n)[i] - (n >= first ? velocity[i] : 0);
+            energy += 0.5 * s->domain.mass[s->domain.layout.local[n]] * v * v;
+        }
+    return energy;
+}
+
+static void come_to_rest(const brick *lower, const brick *upper, const laid *how, double seconds) {
+    lar_model *model = laid_model(lower, upper, how);
+    lar_simulation *s = start(model);
+    advance(s, (uint64_t)(seconds / lar_simulation_time_step(s)));
+    lar_energy e;
+    lar_contact_info info;
+    lar_simulation_energy(s, &e);
+    lar_simulation_contact(s, &info);
+    print_message("at rest: %d nodes touch, %.2g of an element deep, kinetic %.2g of %.2g J\n",
+                  (int)info.touching, info.deepest / upper->edge, e.kinetic, e.strain);
+    assert_true(info.touching >= 16);
+    assert_below(info.deepest, (how->hollow > 0 ? 0.04 : 0.02) * upper->edge);
+    assert_below(trembling(s, 0, (double[]){0, 0, 0}), 1e-9 * e.strain);
+    finish(s, model);
+}
+
+static const double middle = 0.008, beside = 0.0071;
+
+/* In the middle nothing drives it to one side, kept in its place it cannot go, and in a hollow it
+ * finds the deepest place. */
+static void a_body_comes_to_rest_on_another(void **unused) {
+    (void)unused;
+    const laid balanced = {.y = middle}, kept = {.y = beside, .kept = true},
+               hollow = {.y = beside, .hollow = 0.001};
+    brick lower = lower_brick, upper = upper_brick;
+    for (int soft = 0; soft < 2; soft++) {
+        if (soft) {
+            lower.shear = upper.shear = 4e3;
+            lower.bulk = upper.bulk = 4e4;
+        }
+        come_to_rest(&lower, &upper, &balanced, 1.5);
+        come_to_rest(&lower, &upper, &kept, 1.5);
+        if (soft) come_to_rest(&lower, &upper, &hollow, 4);
+    }
+}
+
+/* Beside the middle the lower one sags askew, and without friction there is no rest: as one piece,
+ * and only so, the upper one goes down the slope, as slowly as the damping has it. */
+static void a_body_beside_the_middle_slides_and_does_not_tremble(void **unused) {
+    (void)unused;
+    brick lower = lower_brick, upper = upper_brick;
+    lower.shear = upper.shear = 4e3;
+    lower.bulk = upper.bulk = 4e4;
+    double way[2][3];
+    for (int side = 0; side < 2; side++) {
+        const laid how = {.y = side ? 2 * middle - beside : beside};
+        lar_model *model = laid_model(&lower, &upper, &how);
+        int32_t first = brick_node(&lower, lower.cells[0], lower.cells[1], lower.cells[2]) + 1;
+        lar_simulation *s = start(model);
+        lar_energy before, e;
+        advance(s, (uint64_t)(1.5 / lar_simulation_time_step(s)));
+        lar_simulation_energy(s, &before);
+        advance(s, (uint64_t)(1.5 / lar_simulation_time_step(s)));
+        lar_simulation_energy(s, &e);
+        slide(s, first, way[side]);
+        double left = trembling(s, first, way[side]);
+        print_message("beside the middle: %.2g mm/s, kinetic %.3g of %.2g J, but for the slide "
+                      "%.2g J\n",
+                      1e3 * way[side][1], e.kinetic, e.strain, left);
+        assert_below(left, 1e-8 * e.strain);
+        /* Downhill: what it has of weight's and strain's energy falls. */
+        assert_below(e.strain + e.hourglass - e.external,
+                     before.strain + before.hourglass - before.external);
+        finish(s, model);
+    }
+    assert_true(way[0][1] < -1e-5); /* away from the middle */
+    assert_below(fabs(way[0][1] + way[1][1]), 1e-4 * fabs(way[0][1]));
+}
+
+/* ---- with a tool between ----------------------------------------------------------------------
+ */
+
+/* A rod between two slabs of one layer, which are pressed onto each other around it: springs of
+ * tools and of bodies side by side, where elements need all of their part of the step. */
+static void press_around_a_rod(double share_of_stable) {
+    static const double radius = 0.006, down = 0.0145;
+    brick slab = {{6, 6, 1}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 2e4, 1000};
+    lar_model *model = empty_model(&slab);
+    add_brick(model, &slab, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    int32_t first = add_brick(model, &slab, (double[]){0.003, 0.004, 0.01 + 2 * radius + 0.001});
+    fix_nodes(model, brick_side(&slab, 2, 0), LAR_AXIS_ALL);
+    for (int axis = 0; axis < 2; axis++) {
+        lar_node_list top = brick_side(&slab, 2, -1);
+        for (int32_t i = 0; i < top.count; i++) top.node[i] += first;
+        if (axis)
+            fix_nodes(model, top, LAR_AXIS_X | LAR_AXIS_Y);
+        else
+            move_nodes(model, top, LAR_AXIS_Z, -down, add_ramp(model, 0.3));
+    }
+    touch_between(model, split);
+    model->damping = 40;
+    double half = sqrt(0.5), along[4] = {half, 0, half, 0}, height = 0.01 + radius + 0.0005;
+    touch_tool(model, "rod",
+               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.04},
+               (double[]){0.01, 0.03, height});
+    memcpy(model->tool[0].rest.orientation, along, sizeof along);
+    lar_options options = lar_options_default();
+    options.time_step = share_of_stable * stable_step_of(model);
+    lar_simulation *s = start_with(model, options);
+    uint64_t steps = (uint64_t)(0.3 / options.time_step);
+    place(s, 0, (double[]){0.01, 0.03, height - 0.5 * down}, along, 1, steps);
+    advance(s, 5 * steps);
+    lar_energy e;
+    lar_contact_info info;
+    lar_tool_force force;
+    lar_simulation_energy(s, &e);
+    lar_simulation_contact(s, &info);
+    assert_int_equal(lar_simulation_tool_force(s, 0, &force, NULL), LAR_OK);
+    double left = trembling(s, 0, (double[]){0, 0, 0});
+    print_message("%.2f of the stable step: %d nodes and %d points of the rod touch, kinetic %.2g "
+                  "of %.2g J\n",
+                  share_of_stable, (int)info.touching, (int)force.touching, left, e.strain);
+    assert_true(info.touching > 20 && force.touching > 20);
+    assert_below(left, 1e-9 * e.strain);
+    finish(s, model);
+}
+
+static void bodies_come_to_rest_around_a_tool(void **unused) {
+    (void)unused;
+    press_around_a_rod(0.5);
+    press_around_a_rod(0.8);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_body_comes_to_rest_on_another),
+        cmocka_unit_test(a_body_beside_the_middle_slides_and_does_not_tremble),
+        cmocka_unit_test(bodies_come_to_rest_around_a_tool),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
