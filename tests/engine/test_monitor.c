@@ -101,6 +101,23 @@ static void an_element_turned_inside_out_is_named(void **unused) {
     }
 }
 
+/* A law that stiffens a hundredfold and more as it is stretched: the step follows. */
+static void a_law_that_stiffens_is_followed(void **unused) {
+    (void)unused;
+    brick b = {{4, 4, 4}, 0.005, 0, LAR_LAW_yeoh, 1e3, 5e3, 1000};
+    lar_model *model = brick_model(&b);
+    double *p = model->material[0].parameter;
+    p[1] = 0;
+    p[2] = 5e3;
+    model->damping = 30;
+    for (int axis = 0; axis < 3; axis++) fix_nodes(model, brick_side(&b, axis, 0), 1U << axis);
+    move_nodes(model, brick_side(&b, 0, -1), LAR_AXIS_X, 0.03, add_ramp(model, 0.3));
+    lar_simulation *simulation = start(model);
+    advance(simulation, (uint64_t)(0.6 / lar_simulation_time_step(simulation)));
+    assert_true(lar_simulation_time(simulation) > 0.5);
+    finish(simulation, model);
+}
+
 static void a_node_that_is_too_fast_is_named(void **unused) {
     (void)unused;
     brick b = soft_brick;
@@ -173,6 +190,7 @@ int main(void) {
         cmocka_unit_test(a_step_above_the_bound_is_refused),
         cmocka_unit_test(the_bound_is_stable),
         cmocka_unit_test(an_element_turned_inside_out_is_named),
+        cmocka_unit_test(a_law_that_stiffens_is_followed),
         cmocka_unit_test(a_node_that_is_too_fast_is_named),
         cmocka_unit_test(a_support_that_is_too_fast_is_caught),
         cmocka_unit_test(violence_never_makes_nan),
