@@ -162,7 +162,8 @@ static lar_status refuse_thread(const lar_session *session, int cause, lar_error
                         "raise the limit (ulimit -r), run as root, or leave the priority out",
                         session->options.priority, strerror(cause));
     return lar_fail(error, LAR_ERROR_MEMORY,
-                    "the system gives no thread for the session: %s; raise the limit (ulimit -u)",
+                    "the system gives no thread for the session: %s; free memory, or raise the limit "
+                    "(ulimit -u)",
                     strerror(cause));
 }
 

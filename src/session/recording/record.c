@@ -93,7 +93,8 @@ static lar_status start_thread(lar_recorder *recorder, lar_error *error) {
     int cause = lar_thread_start(&recorder->thread, write_records, recorder);
     if (!cause) return LAR_OK;
     return lar_fail(error, LAR_ERROR_MEMORY,
-                    "the system gives no thread for a recording: %s; raise the limit (ulimit -u)",
+                    "the system gives no thread for a recording: %s; free memory, or raise the limit "
+                    "(ulimit -u)",
                     strerror(cause));
 }
 
