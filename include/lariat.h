@@ -352,7 +352,8 @@ typedef struct lar_options {
     /* The parallel computer: processors in a grid, each with its part of the model. The state and
      * its hash are the same with all of these (docs/parallel.md). Strings are read by
      * lar_simulation_create only. */
-    const char *grid;         /* processors along x, y and z, "2x2x3"; NULL: no division */
+    const char *grid;         /* processors along x, y and z, "2x2x3"; "auto": lar_grid_choose;
+                                 NULL: no division */
     int32_t threads;          /* of every processor; 0: one */
     const char *scheme;       /* who sends to whom: "all" (NULL), "local", "one", "two" */
     const char *channels;     /* of scheme local: "sequential" (NULL) or "concurrent" */
@@ -379,6 +380,37 @@ typedef struct lar_options {
 /* hex8, the widest instruction set, the model's time step, one processor. Start from these: options
  * may grow. */
 LAR_API lar_options lar_options_default(void);
+
+/* What a division is chosen for. All 0: as fast as it goes, for a long time. */
+typedef struct lar_grid_aim {
+    double tick;    /* a clock that the simulation keeps up with: its ticks [s]; 0: none */
+    double seconds; /* that will be simulated [s], or */
+    uint64_t steps; /* that will be done; both 0: not known */
+} lar_grid_aim;
+
+typedef struct lar_grid_choice {
+    char grid[40];        /* "1x1x1": no division */
+    int32_t processors;   /* in it */
+    int32_t cores, tried; /* that this process may use; divisions that were measured */
+    double alone, chosen; /* a step with one processor, and so divided [s]; 0: not measured */
+    char reason[240];     /* in words */
+} lar_grid_choice;
+
+/* Which division of the model is best on this machine, as busy as it is now: some hundred steps
+ * with one processor, and with two, four, ... threads up to the cores that this process may use,
+ * are measured side by side; with a tick beside a thread that wakes as often as devices do, and by
+ * the slowest twentieth. More processors have to be a tenth faster to be taken. Takes a second at
+ * most and the memory of the simulations that are tried; what is too small to gain, too large to
+ * try, or done within a second is not measured, and the reason says so. The environment variable
+ * LARIAT_GRID ("2x1x1") is taken as it is. Who only wants a simulation that is divided so gives
+ * grid "auto" in the options. `aim` may be NULL. Fails only for a LARIAT_GRID that is none, for
+ * options that name processes or schedule files besides, and out of memory. */
+LAR_API lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
+                                   const lar_grid_aim *aim, lar_grid_choice *choice,
+                                   lar_error *error);
+/* Into the options: its grid, which lives as long as the choice does, or none for one processor.
+ * NULL is fine. */
+LAR_API void lar_grid_take(const lar_grid_choice *choice, lar_options *options);
 
 /* Compiles the model for this processor and sets the state to rest. `options` may be NULL. The
  * model must outlive the simulation. */

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/mesh_real_time.h"
 #include "cli/report/mesh.h"
 #include "cli/stop.h"
 
@@ -21,7 +22,7 @@ typedef struct mesh_settings {
     int64_t elements; /* 0: not given */
     double size, scale;
     int fix; /* index into fix_names; 0: not given */
-    bool fuse, principal, voxel, force, list, json;
+    bool fuse, principal, voxel, force, list, json, real_time;
 } mesh_settings;
 
 static const char *const fix_names[] = {"auto",   "left", "right", "back", "front",
@@ -212,12 +213,20 @@ static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double s
 
 /* ---- the command ---------------------------------------------------------------------------- */
 
-static int mesh(const mesh_settings *s) {
-    progress p = {.start = now()};
+typedef struct making {
+    const mesh_settings *settings;
+    progress progress;
+} making;
+
+/* cli_make_mesh. `elements` 0: as the settings say. */
+static lar_status make(void *context, int32_t elements, lar_meshing **meshing, lar_error *error) {
+    making *m = context;
+    const mesh_settings *s = m->settings;
     lar_meshing_options options = lar_meshing_options_default();
     options.size = s->size;
     options.elements = s->size > 0 || (s->voxel && s->elements == 0) ? 0 : options.elements;
     if (s->elements > 0) options.elements = (int32_t)s->elements;
+    if (elements > 0) options.elements = elements;
     if (s->scale > 0) options.scale = s->scale;
     options.labels = s->labels.text;
     options.label_count = s->labels.count;
@@ -228,12 +237,30 @@ static int mesh(const mesh_settings *s) {
     options.title = s->title;
     options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
     options.watch = show_progress;
-    options.context = &p;
+    options.context = &m->progress;
+    lar_status status = lar_meshing_create(s->input, s->inputs, &options, meshing, error);
+    clear_progress(&m->progress);
+    m->progress.shown = 0;
+    return status;
+}
+
+static lar_status make_real_time(making *m, lar_meshing **meshing, lar_error *error) {
+    int holds = 0;
+    lar_status status = cli_mesh_real_time(make, m, meshing, &holds, error);
+    if (!status && !holds)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: no mesh of this body keeps the clock on this machine, as busy as it is "
+                     "now; softer tissue, or one of smaller bulk modulus, allows longer steps");
+    return status;
+}
+
+static int mesh(const mesh_settings *s) {
+    making m = {.settings = s, .progress = {.start = now()}};
     lar_meshing *meshing = NULL;
     lar_error error;
     cli_catch_stop();
-    lar_status failed = lar_meshing_create(s->input, s->inputs, &options, &meshing, &error);
-    clear_progress(&p);
+    lar_status failed =
+        s->real_time ? make_real_time(&m, &meshing, &error) : make(&m, 0, &meshing, &error);
     if (failed && cli_stop_asked)
         return cli_complain(&cli_mesh, CLI_INTERRUPTED, "interrupted; nothing is written");
     if (failed) {
@@ -241,7 +268,7 @@ static int mesh(const mesh_settings *s) {
         show_what_there_is(s);
         return CLI_FAILED;
     }
-    int status = write_and_tell(s, meshing, now() - p.start);
+    int status = write_and_tell(s, meshing, now() - m.progress.start);
     lar_meshing_destroy(meshing);
     return status;
 }
@@ -250,6 +277,10 @@ static int check_settings(const mesh_settings *s) {
     if (s->size > 0 && s->elements > 0)
         return cli_complain(&cli_mesh, CLI_USAGE,
                             "--elements and --size both say how fine the mesh is; give one");
+    if (s->real_time && (s->size > 0 || s->elements > 0))
+        return cli_complain(&cli_mesh, CLI_USAGE,
+                            "--real-time finds out how fine the mesh can be; leave --%s out",
+                            s->size > 0 ? "size" : "elements");
     return CLI_DONE;
 }
 
@@ -266,6 +297,10 @@ static int mesh_main(int argc, char **argv) {
         CLI_COUNT("--elements", "N", "about so many elements (5000)", &s.elements, 1, 1e7),
         CLI_REAL("--size", "M", "edge of an element in metres, instead of --elements", &s.size,
                  1e-6, 10),
+        CLI_FLAG("--real-time",
+                 "as many elements as keep the clock on this machine,\nwith a third in reserve: "
+                 "meshes are made and measured",
+                 &s.real_time),
         CLI_REAL("--scale", "S",
                  "surfaces and meshes: metres per unit of the file,\n0.001 for millimetres (1)",
                  &s.scale, 1e-9, 1e9),

@@ -73,6 +73,26 @@ void cli_parallel_set(const cli_parallel *p, lar_options *options) {
     options->pin = p->pin ? 1 : p->no_pin ? 0 : 2;
 }
 
+int cli_choose_grid(const cli_command *command, const cli_parallel *p, const lar_model *model,
+                    const lar_grid_aim *aim, lar_options *options, lar_grid_choice *choice) {
+    bool asked = p->grid && strcmp(p->grid, "auto") == 0;
+    lar_error error;
+    choice->reason[0] = '\0';
+    if (!asked && (is_divided(p) || p->comm >= 0)) return CLI_DONE;
+    options->grid = NULL;
+    if (lar_grid_choose(model, options, aim, choice, &error))
+        return cli_complain(command, error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED,
+                            "%s", error.message);
+    lar_grid_take(choice, options);
+    return CLI_DONE;
+}
+
+void cli_print_reason(const lar_parallel *parallel, FILE *out) {
+    if (parallel->reason[0])
+        fprintf(out, "%-17s%s: %s\n", parallel->divided ? "" : "grid",
+                parallel->divided ? "chosen" : parallel->grid, parallel->reason);
+}
+
 /* ---- processes ------------------------------------------------------------------------------ */
 
 int cli_processes_begin(const cli_command *command, const cli_parallel *p, int argc, char **argv,

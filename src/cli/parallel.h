@@ -22,7 +22,9 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
 
 /* Rows of the table of options. */
 #define CLI_PARALLEL(p)                                                                            \
-    CLI_TEXT("--grid", "AxBxC", "divide the model among so many processors, e.g. 2x2x3",           \
+    CLI_TEXT("--grid", "AxBxC",                                                                    \
+             "divide the model among so many processors, e.g. 2x2x3;\nauto: measured, which "      \
+             "is best here",                                                                       \
              &(p).grid),                                                                           \
         CLI_COUNT("--threads", "N", "of each processor (1)", &(p).threads, 1, 16),                 \
         CLI_CHOICE("--scheme", "NAME", "who sends to whom: all (default), local, one, two",        \
@@ -56,6 +58,15 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
 
 /* CLI_USAGE with a message when they do not belong together. */
 int cli_parallel_check(const cli_command *command, const cli_parallel *parallel);
+
+/* Where no division was asked for, or --grid auto, one is chosen by measuring, into *choice and
+ * the options; otherwise choice->reason is empty. */
+int cli_choose_grid(const cli_command *command, const cli_parallel *parallel,
+                    const lar_model *model, const lar_grid_aim *aim, lar_options *options,
+                    lar_grid_choice *choice);
+/* Why, where one was chosen. */
+
+void cli_print_reason(const lar_parallel *parallel, FILE *out);
 
 /* Into the parallel part of the library's options. */
 void cli_parallel_set(const cli_parallel *parallel, lar_options *options);

@@ -29,6 +29,7 @@ typedef struct replay {
     lar_model *model;
     lar_model_info info;
     lar_processes *processes;
+    lar_grid_choice choice;
     lar_parallel parallel;
     lar_simulation *simulation;
     lar_replay_report report;
@@ -107,6 +108,7 @@ static void write_json(const replay *r) {
     json_integer(&json, "steps", (int64_t)r->report.steps);
     json_number(&json, "time_step", r->recorded.time_step);
     json_text(&json, "grid", r->parallel.grid);
+    json_text(&json, "grid_reason", r->parallel.reason);
     json_integer(&json, "processors", r->parallel.processors);
     json_integer(&json, "threads", r->parallel.threads);
     json_text(&json, "scheme", r->parallel.scheme);
@@ -190,9 +192,12 @@ static int prepare(replay *r) {
     options.spares = r->recorded.spares;
     cli_parallel_set(&s->parallel, &options);
     status = cli_open_model(&cli_replay, s->scene, &r->model);
+    if (!status && s->parallel.grid) /* auto; by default one processor: most are short */
+        status = cli_choose_grid(&cli_replay, &s->parallel, r->model, NULL, &options, &r->choice);
     if (!status)
         status = cli_processes_start(&cli_replay, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
+    r->parallel.reason = r->choice.reason;
     if (!lar_model_inspect(r->model, &r->info, &error) &&
         !lar_processes_create(r->processes, r->model, &options, &r->simulation, &error))
         return CLI_DONE;

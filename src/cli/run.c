@@ -31,6 +31,7 @@ typedef struct run {
     lar_model *model;
     lar_model_info info;
     lar_processes *processes;
+    lar_grid_choice choice;
     lar_parallel parallel;
     lar_simulation *simulation;
     lar_status failure;   /* of the library, LAR_OK: none */
@@ -310,6 +311,21 @@ static lar_options options_of(const run_settings *settings) {
     return options;
 }
 
+/* By default as many processors as make it fastest, where it takes longer than to find out. */
+static int choose_grid(run *r, lar_options *options) {
+    const run_settings *s = &r->settings;
+    double duration = lar_model_duration(r->model);
+    const lar_grid_aim aim = {.steps = (uint64_t)s->steps,
+                              .seconds = s->steps > 0   ? 0
+                                         : s->time > 0  ? s->time
+                                         : duration > 0 ? duration
+                                                        : 1};
+    const lar_grid_aim open = {0}; /* until rest: who knows */
+    bool follows = s->until_rest || lar_model_until_rest(r->model);
+    return cli_choose_grid(&cli_run, &s->parallel, r->model, follows ? &open : &aim, options,
+                           &r->choice);
+}
+
 /* The model, the processes, and this one's share of the simulation. */
 static int prepare(run *r) {
     const run_settings *s = &r->settings;
@@ -318,9 +334,11 @@ static int prepare(run *r) {
     int status = cli_processes_begin(&cli_run, &s->parallel, s->argc, s->argv, &r->processes);
     if (!status) status = cli_open_model(&cli_run, s->scene, &r->model);
     if (!status) status = cli_resume_options(&cli_run, s->resume, r->model, &options);
+    if (!status) status = choose_grid(r, &options);
     if (!status)
         status = cli_processes_start(&cli_run, r->processes, r->model, &options, &r->parallel);
     if (status) return status;
+    r->parallel.reason = r->choice.reason;
     if (!lar_model_inspect(r->model, &r->info, &error) &&
         !lar_processes_create(r->processes, r->model, &options, &r->simulation, &error))
         return CLI_DONE;

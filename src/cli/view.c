@@ -32,6 +32,7 @@ typedef struct view {
     view_settings settings;
     lar_model *model;
     lar_processes *processes;
+    lar_grid_choice choice;
     lar_parallel parallel;
     lar_simulation *simulation;
     lar_session *session;
@@ -48,6 +49,8 @@ typedef struct view {
     double lost_at; /* when a processor was found lost [s]; 0: never */
     lar_status failure;
 } view;
+
+static const double TICK = 1e-3; /* of devices [s] */
 
 static double now(void) {
     struct timespec at;
@@ -82,8 +85,12 @@ static int prepare(view *v) {
             "note: %s has no hands, nobody can pull; states that lariat view saves have some",
             s->resume);
     if (!status)
+        status = cli_choose_grid(&cli_view, &s->parallel, v->model,
+                                 &(lar_grid_aim){.tick = TICK * s->pace}, &options, &v->choice);
+    if (!status)
         status = cli_processes_start(&cli_view, v->processes, v->model, &options, &v->parallel);
     if (status) return status;
+    v->parallel.reason = v->choice.reason;
     if (!lar_model_inspect(v->model, &v->report.info, &error) &&
         !lar_processes_create(v->processes, v->model, &options, &v->simulation, &error))
         return CLI_DONE;

@@ -175,6 +175,7 @@ void lar_comm_complete(lar_comm *comm, uint64_t steps) {
     comm->completed = steps;
     comm->completed_known = true;
 }
+
 const char *lar_comm_backend_name(const lar_comm *comm) {
     return comm->backend->name;
 }

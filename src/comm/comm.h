@@ -16,7 +16,7 @@
  * No acknowledgement. A half is written again two steps later. That is safe when the two sides
  * hear from each other in every step (T 6.4): who has received the peer's packet of step n + 1
  * knows that the peer is done with step n. An edge with data in one direction only needs an empty
- * packet (bytes = 0: a tail alone) in the other; channel.h sends it.
+ * packet (bytes = 0: a tail alone) in the other.
  *
  * Waiting. About 50 polls, then the processor is yielded, so that 12 processors on 2 cores make
  * progress. Every poll lets the backend work where it must (sockets). Every wait has a deadline.

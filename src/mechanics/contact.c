@@ -30,12 +30,6 @@ lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = LEAD * time_step};
 }
 
-double lar_contact_face_mass(const double mass[4], const double weight[4]) {
-    double sum = 0;
-    for (int a = 0; a < 4; a++) sum += weight[a] / mass[a];
-    return 1 / sum;
-}
-
 void lar_face_weights(double r, double s, double weight[4]) {
     weight[0] = 0.25 * (1 - r) * (1 - s);
     weight[1] = 0.25 * (1 + r) * (1 - s);

@@ -38,11 +38,6 @@ static inline double lar_contact_force(const lar_contact_law *law, double mass, 
     return depth > 0 && ahead > 0 ? law->stiffness * mass * ahead : 0;
 }
 
-/* What a point of a face counts as, 1 / sum(w_a / m_a): between the masses of its corners, without
- * a jump from face to face, and w_a times it is never more than m_a. A force there moves more,
- * 1 / sum(w_a^2 / m_a), but several points share the corners. */
-double lar_contact_face_mass(const double mass[4], const double weight[4]);
-
 /* The mass that a force between two points moves. */
 static inline double lar_contact_pair_mass(double a, double b) {
     return a * b / (a + b);

@@ -45,8 +45,8 @@ typedef struct lar_face_point {
 /* The distance alone. `corner` counter-clockwise seen from outside. */
 double lar_face_distance(const double x[3], const double corner[4][3]);
 
-/* All of it. Triangles whose distance exceeds the smallest by no more than `tie` [m] count as
- * equally close. Faces without area are as good as any, at height 0. */
+/* The closest point of a face to x. Triangles whose distance exceeds the smallest by no more than
+ * `tie` [m] count as equally close. Faces without area are as good as any, at height 0. */
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point);
 

@@ -153,7 +153,3 @@ void lar_tool_script_at(lar_tool_script *script, double time, lar_tool_pose *pos
     lar_quaternion_blend(row->pose.orientation, row[1].pose.orientation, share, pose->orientation);
     pose->opening = (1 - share) * row->pose.opening + share * row[1].pose.opening;
 }
-
-double lar_tool_script_end(const lar_tool_script *script) {
-    return script->row[script->count - 1].time;
-}

@@ -33,7 +33,4 @@ void lar_tool_script_destroy(lar_tool_script *script);
 /* The pose at a time [s]. Fast for times that grow; it does not ask for memory. */
 void lar_tool_script_at(lar_tool_script *script, double time, lar_tool_pose *pose);
 
-/* Time of the last row [s]. */
-double lar_tool_script_end(const lar_tool_script *script);
-
 #endif

@@ -162,15 +162,27 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     return LAR_OK;
 }
 
+/* Grid "auto" becomes a grid, or none. */
+static lar_status settle_grid(const lar_model *model, lar_options *options, lar_grid_choice *choice,
+                              lar_error *error) {
+    if (!options->grid || strcmp(options->grid, "auto") != 0) return LAR_OK;
+    options->grid = NULL;
+    lar_status status = lar_grid_choose(model, options, NULL, choice, error);
+    if (!status) lar_grid_take(choice, options);
+    return status;
+}
+
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
                                  lar_simulation **simulation, lar_error *error) {
     lar_options chosen = options ? *options : lar_options_default();
+    lar_grid_choice choice;
     lar_simulation *made = NULL;
     lar_status status = LAR_OK;
     if (!model || !simulation)
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
                           "lar_simulation_create needs a model and a place for the simulation");
     if (!status) status = check_options(&chosen, error);
+    if (!status) status = settle_grid(model, &chosen, &choice, error);
     if (!status && !(made = lar_calloc(1, sizeof *made)))
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);

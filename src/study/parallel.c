@@ -64,7 +64,8 @@ lar_status lar_parallel_find(const lar_model *model, const lar_options *options,
                           .grid = "1x1x1",
                           .scheme = "none",
                           .channels = "none",
-                          .comm = "none"};
+                          .comm = "none",
+                          .reason = ""};
     found.divided = lar_division_asked(options);
     lar_status status = LAR_OK;
     if (found.divided) {

@@ -16,7 +16,8 @@ typedef struct lar_parallel {
     int32_t processors, threads;
     const char *scheme; /* "all", ...; "none" when not divided */
     const char *channels;
-    const char *comm; /* "threads", ...; "none" when not divided */
+    const char *comm;   /* "threads", ...; "none" when not divided */
+    const char *reason; /* why this grid was chosen; empty: it was asked for */
 } lar_parallel;
 
 /* Fails for a grid that is none or has more processors than the model elements, for files that

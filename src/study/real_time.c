@@ -1,12 +1,27 @@
 #include "study/real_time.h"
 
+#include <math.h>
+
+#include "model/model.h"
 #include "study/bench/step_clock.h"
 
 /* Steps that warm the caches, and those that are the least to be measured. */
 enum { WARM = 5, LEAST = 10 };
 
-lar_status lar_real_time_measure(const lar_model *model, double seconds, lar_real_time *found,
-                                 lar_error *error) {
+/* Steps of one processor were measured one by one, which says more than batches of them. */
+static lar_status look_at_divisions(const lar_model *model, lar_real_time *found,
+                                    lar_error *error) {
+    lar_status status = lar_grid_choose(model, NULL, NULL, &found->choice, error);
+    if (status) return status;
+    double step = found->choice.processors > 1 && found->choice.chosen > 0 ? found->choice.chosen
+                                                                           : found->step;
+    found->divided = found->time_step / step;
+    found->holds = model->mesh.element_count * pow(found->divided / LAR_REAL_TIME_RESERVE, 0.75);
+    return LAR_OK;
+}
+
+static lar_status measure_alone(const lar_model *model, double seconds, lar_real_time *found,
+                                lar_error *error) {
     lar_simulation *simulation = NULL;
     lar_status status = lar_simulation_create(model, NULL, &simulation, error);
     if (!status) status = lar_simulation_advance(simulation, WARM, error);
@@ -27,4 +42,10 @@ lar_status lar_real_time_measure(const lar_model *model, double seconds, lar_rea
     }
     lar_simulation_destroy(simulation);
     return status;
+}
+
+lar_status lar_real_time_measure(const lar_model *model, double seconds, lar_real_time *found,
+                                 lar_error *error) {
+    lar_status status = measure_alone(model, seconds, found, error);
+    return status ? status : look_at_divisions(model, found, error);
 }

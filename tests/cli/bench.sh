@@ -202,4 +202,18 @@ if "$LARIAT" bench implicit --solver bcgs --step 0.05 >"$SCRATCH/out" 2>"$SCRATC
 else
     grep -q 'install petsc-dev' "$SCRATCH/err" || fail "no PETSc, and no word of it"
 fi
+# The roofline: all shapes and instruction sets, a picture, and what contradicts it.
+expect 0 "$LARIAT" bench kernel --sweep --elements 600 --repeat 1 --svg "$SCRATCH/roof.svg" --json
+has_keys bandwidth sweep left_out
+grep -q '</svg>' "$SCRATCH/roof.svg" || fail "the picture is not whole"
+expect 0 "$LARIAT" bench kernel --sweep --elements 600 --repeat 1
+says '^c  *general  *500 '
+says '^memory: .* GB/s read by one core'
+expect 2 "$LARIAT" bench kernel --sweep --shape box
+complains 'leave --shape out'
+expect 2 "$LARIAT" bench kernel --svg "$SCRATCH/none.svg"
+complains 'picture of --sweep'
+expect 1 "$LARIAT" bench kernel --sweep --elements 600 --repeat 1 --svg /nowhere/roof.svg
+complains 'cannot be written'
+
 finish "benchmark: keys and limits"

@@ -124,6 +124,10 @@ static void simulation_calls(void **unused) {
     lar_simulation *simulation = NULL;
     lar_results *results = NULL;
     assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
+    lar_grid_choice choice;
+    REFUSED(lar_grid_choose(NULL, NULL, NULL, &choice, &error));
+    REFUSED(lar_grid_choose(model, NULL, NULL, NULL, &error));
+    lar_grid_take(NULL, NULL);
     REFUSED(lar_simulation_create(NULL, NULL, &simulation, &error));
     REFUSED(lar_simulation_create(model, NULL, NULL, &error));
     static const double steps[] = {-1, NAN, INFINITY, -INFINITY};

@@ -1,4 +1,7 @@
 """Section 6.10 of the thesis: compilers, instruction sets, and the same bits from all of them."""
+import os
+import shutil
+
 import thesis
 from page import Page, median_of, number, percent
 
@@ -26,6 +29,23 @@ def compiler(runs, build):
     made = runs[kernels(runs, build)[0]]["build"]
     level = [flag for flag in made["flags"].split() if flag.startswith("-O")]
     return " ".join(made["compiler"].split() + level)
+
+
+def roofline(page, runs, folder):
+    page.chapter("What the machine allows")
+    shutil.copy(os.path.join(runs.folder, "..", "roofline.svg"),
+                os.path.join(folder, "program_roofline.svg"))
+    sweep = runs["sweep"]
+    page.say("The same kernel over sizes, shapes and instruction sets: a point lies at 816 "
+             "operations in the time of an element, over the operations for each byte that a "
+             f"simulation keeps for it. Memory gives one core {number(sweep['bandwidth'])} GB/s "
+             "(dashed); what fits into a cache does better.")
+    page.picture("program_roofline.svg", "Roofline of one core", "Measured: " + runs.command("sweep"))
+    rows = [(row["isa"], row["shape"], row["elements"], number(row["ns_per_element"]),
+             percent(row["fraction_of_peak"]), number(round(row["bytes_per_element"])))
+            for row in sweep["sweep"]]
+    page.table(("instructions", "shape", "elements", "ns per element", "of the core's peak",
+                "bytes per element"), rows, "Measured: " + runs.command("sweep"))
 
 
 def write(runs, path):
@@ -65,4 +85,5 @@ def write(runs, path):
     page.say(f"{'All builds and instruction sets come to the same bits' if len(states) == 1 else '**The states differ: this is a bug**'}. "
              "`c` is plain C without vector instructions, and without the processor's fused "
              "multiply-add, so each one is a call of the C library.")
+    roofline(page, runs, os.path.dirname(path))
     page.write(path)

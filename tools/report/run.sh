@@ -47,11 +47,11 @@ mkdir -p "$data"
 # What --quick makes shorter.
 kernel="--repeat 15" step="--repeat 15" comm="" scaling="" many=31 generations=800
 jitter="--seconds 10 --repeat 3" precision="--steps 20000" pulled=0.1 critical=64000
-sizes="100,1000,10000"
+sizes="100,1000,10000" sweep="--elements 1000000 --repeat 5"
 if [ $quick = yes ]; then
     kernel="--elements 200 --repeat 2" step="--steps 20 --repeat 2" comm=--quick scaling=--quick
     many=2 generations=20 jitter="--seconds 0.2 --repeat 2" precision="--steps 200" pulled=0.002
-    critical=27 sizes="10,100"
+    critical=27 sizes="10,100" sweep="--elements 600 --repeat 2"
 fi
 
 # record NAME PROGRAM ARGUMENTS...: keeps what the program prints as NAME.json, and as
@@ -116,6 +116,8 @@ if [ $quick = no ]; then
 fi
 # shellcheck disable=SC2086
 record box "$lariat" bench kernel --shape box $kernel --json
+# shellcheck disable=SC2086
+record sweep "$lariat" bench kernel --sweep $sweep --svg "$work/roofline.svg" --json
 # shellcheck disable=SC2086
 record step "$lariat" bench step "$organ" $step --json
 # shellcheck disable=SC2086

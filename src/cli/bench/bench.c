@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/bench/frame.h"
+#include "cli/bench/sweep.h"
 #include "cli/commands.h"
 #include "study/bench/kernel.h"
 
@@ -49,11 +50,20 @@ static void print_table(const lar_bench_kernel_result *r, bool general) {
 static int kernel_main(int argc, char **argv) {
     static const char *const shapes[] = {"general", "box", NULL};
     static const char *const precisions[] = {"double", NULL};
-    int64_t elements = 1840, repeat = 9;
+    int64_t elements = 0, repeat = 9;
     int shape = 0, isa = 0, precision = 0;
+    bool sweep = false;
+    const char *svg = NULL;
     bench_frame frame = bench_frame_of(&cli_bench_kernel, "kernel");
     const cli_option options[] = {
-        CLI_COUNT("--elements", "N", "about so many elements (1840)", &elements, 1, 2e7),
+        CLI_COUNT("--elements", "N",
+                  "about so many elements (1840); with --sweep at most (1000000)", &elements, 1,
+                  2e7),
+        CLI_FLAG("--sweep",
+                 "all shapes, instruction sets and sizes of 500 and more elements,\nbeside what "
+                 "memory and core allow",
+                 &sweep),
+        CLI_TEXT("--svg", "FILE", "of --sweep: the picture", &svg),
         CLI_CHOICE("--shape", "NAME", "general: each of its own shape (default); or box", &shape,
                    shapes),
         CLI_CHOICE("--precision", "NAME", "double, the only one there is", &precision, precisions),
@@ -64,6 +74,15 @@ static int kernel_main(int argc, char **argv) {
         CLI_END};
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
+    if (sweep) {
+        if (shape > 0 || isa > 0)
+            return cli_complain(&cli_bench_kernel, CLI_USAGE,
+                                "--sweep measures all shapes and instruction sets; leave --%s out",
+                                shape > 0 ? "shape" : "isa");
+        return bench_sweep(&frame, elements > 0 ? (int32_t)elements : 1000000, (int)repeat, svg);
+    }
+    if (svg) return cli_complain(&cli_bench_kernel, CLI_USAGE, "--svg is the picture of --sweep");
+    if (elements == 0) elements = 1840;
     lar_bench_set_number(&frame.report, "elements", (double)elements);
     lar_bench_set_text(&frame.report, "shape", shapes[shape]);
     lar_bench_set_text(&frame.report, "precision", precisions[precision]);
@@ -99,7 +118,8 @@ const cli_command cli_bench_kernel = {
         "sample stand beside them. For quiet figures run nothing else on the machine.",
     .examples = "  lariat bench kernel\n"
                 "  lariat bench kernel --elements 100000 --shape box --json\n"
-                "  lariat bench kernel --isa avx2 --repeat 31\n",
+                "  lariat bench kernel --isa avx2 --repeat 31\n"
+                "  lariat bench kernel --sweep --svg roofline.svg\n",
     .main = kernel_main};
 
 /* ---- lariat bench ----------------------------------------------------------------------- */

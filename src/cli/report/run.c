@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/parallel.h"
 #include "cli/report/json.h"
 
 /* Wall time that the simulated time is compared with: the steps, and the waiting between them when
@@ -115,6 +116,7 @@ void run_report_json(const run_report *report, FILE *out) {
     json_number(&json, "time_step", lar_simulation_time_step(simulation));
     json_number(&json, "stable_step", report->info.stable_step);
     json_text(&json, "grid", report->parallel->grid);
+    json_text(&json, "grid_reason", report->parallel->reason);
     json_integer(&json, "processors", report->parallel->processors);
     json_integer(&json, "threads", report->parallel->threads);
     json_text(&json, "scheme", report->parallel->scheme);
@@ -241,6 +243,7 @@ void run_report_table(const run_report *report, FILE *out) {
             titled ? report->info.title : report->scene, (int)report->info.elements,
             (int)report->info.nodes, report->element, lar_simulation_isa(simulation));
     if (report->parallel->divided) print_division(report->parallel, out);
+    cli_print_reason(report->parallel, out);
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
             lar_simulation_time(simulation), lar_simulation_steps(simulation),
             lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");

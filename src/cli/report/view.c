@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cli/parallel.h"
 #include "cli/report/json.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
@@ -99,6 +100,7 @@ void view_report_json(const view_report *report, FILE *out) {
     json_integer(&json, "elements", report->info.elements);
     json_integer(&json, "nodes", report->info.nodes);
     json_text(&json, "grid", report->parallel->grid);
+    json_text(&json, "grid_reason", report->parallel->reason);
     json_integer(&json, "processors", report->parallel->processors);
     json_integer(&json, "threads", report->parallel->threads);
     json_text(&json, "scheme", report->parallel->scheme);
@@ -154,6 +156,7 @@ void view_report_table(const view_report *report, FILE *out) {
         fprintf(out, "%-17s%s: %d processors, scheme %s, by %s\n", "grid", report->parallel->grid,
                 (int)report->parallel->processors, report->parallel->scheme,
                 report->parallel->comm);
+    cli_print_reason(report->parallel, out);
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s\n", "simulated", s->time, s->step,
             lar_simulation_time_step(report->simulation));
     print_pace(report, out);

@@ -7,45 +7,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "study/output.h"
 
 enum { BARS_MOST = 256, BINS = 100 };
 
-/* ---- files ---------------------------------------------------------------------------------- */
-
-typedef struct output {
-    FILE *file;
-    char *part; /* the file until it is whole */
-} output;
-
-static lar_status begin(const char *path, output *o, lar_error *error) {
-    size_t length = strlen(path) + 6;
-    o->part = lar_calloc(length, 1);
-    if (!o->part) return lar_fail_memory(error, length, "a path");
-    snprintf(o->part, length, "%s.part", path);
-    o->file = fopen(o->part, "w");
-    if (o->file) return LAR_OK;
-    lar_status status =
-        lar_fail(error, LAR_ERROR_IO, "%s: cannot be written: %s", path, strerror(errno));
-    free(o->part);
-    return status;
-}
-
-static lar_status end(const char *path, output *o, lar_error *error) {
-    bool good = !ferror(o->file);
-    good = fclose(o->file) == 0 && good;
-    good = good && rename(o->part, path) == 0;
-    lar_status status = LAR_OK;
-    if (!good) {
-        status = lar_fail(error, LAR_ERROR_IO, "%s: cannot be written: %s", path, strerror(errno));
-        remove(o->part);
-    }
-    free(o->part);
-    return status;
-}
-
 lar_status lar_network_write_csv(const char *path, const lar_network_result *r, lar_error *error) {
-    output o;
-    lar_status status = begin(path, &o, error);
+    lar_output o;
+    lar_status status = lar_output_begin(path, &o, error);
     if (status) return status;
     fprintf(o.file, "kind,processor,thread,peer,begin_us,end_us\n");
     for (size_t i = 0; i < r->span_count; i++) {
@@ -53,7 +21,7 @@ lar_status lar_network_write_csv(const char *path, const lar_network_result *r, 
         fprintf(o.file, "%s,%d,%d,%d,%.6g,%.6g\n", lar_span_kind_name[s->kind], (int)s->processor,
                 (int)s->thread, (int)s->peer, 1e6 * s->begin, 1e6 * s->end);
     }
-    return end(path, &o, error);
+    return lar_output_end(path, &o, error);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------- */
@@ -168,10 +136,10 @@ static void bars(const picture *p) {
 
 lar_status lar_network_write_svg(const char *path, const lar_network_result *r, const char *title,
                                  lar_error *error) {
-    output o;
+    lar_output o;
     if (!(r->step > 0) || !isfinite(r->step))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s: the step takes no time", path);
-    lar_status status = begin(path, &o, error);
+    lar_status status = lar_output_begin(path, &o, error);
     if (status) return status;
     picture p = {.out = o.file,
                  .result = r,
@@ -193,5 +161,5 @@ lar_status lar_network_write_svg(const char *path, const lar_network_result *r, 
     occupation(&p);
     bars(&p);
     fprintf(o.file, "</svg>\n");
-    return end(path, &o, error);
+    return lar_output_end(path, &o, error);
 }
