@@ -103,7 +103,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
                               "the system gives no thread %d of %d: %s; use fewer processors or "
-                              "threads, or raise the limit (ulimit -u)",
+                              "threads, free memory, or raise the limit (ulimit -u)",
                               (int)i, (int)count, strerror(cause));
         else
             pool->started++;

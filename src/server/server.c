@@ -351,8 +351,8 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
         server->started = cause == 0;
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
-                              "the system gives no thread for the viewers' server: %s; raise the "
-                              "limit (ulimit -u)",
+                              "the system gives no thread for the viewers' server: %s; free "
+                              "memory, or raise the limit (ulimit -u)",
                               strerror(cause));
     }
     if (status)

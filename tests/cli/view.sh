@@ -204,6 +204,7 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording --f
 mkdir small
 if mount -t tmpfs -o size=64k none small 2>/dev/null; then
     expect 1 "$LARIAT" view $scene --port 0 --seconds 2 --record small/way.recording
+    [ ! -e small/way.recording ] || fail "what is not even a whole state was left"
     umount small
     complains '^lariat view: note: recording has ended: small/way.recording: .*No space left'
 else

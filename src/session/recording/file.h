@@ -54,7 +54,8 @@ typedef struct lar_recording_writer {
     const char *path; /* borrowed */
     FILE *file;
     uint64_t checksum;
-    int cause; /* errno of the first failure; 0: none */
+    uint64_t words, begun; /* put so far, and when the first state was complete; 0: not yet */
+    int cause;             /* errno of the first failure; 0: none */
 } lar_recording_writer;
 
 /* Creates the file. One that is there is written over when it is a recording, or empty, and refused
@@ -69,7 +70,8 @@ void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, const 
 void lar_recording_flush(lar_recording_writer *writer);
 /* LAR_ERROR_IO, and what `cause` (an errno) means for the recording. */
 lar_status lar_recording_incomplete(const char *path, int cause, lar_error *error);
-/* Closes; LAR_ERROR_IO when something could not be written. Twice is fine. */
+/* Closes; LAR_ERROR_IO when something could not be written, and when that was not even a whole
+ * first state the file is removed. Twice is fine. */
 lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error);
 
 /* ---- reading ------------------------------------------------------------------------------- */

@@ -92,9 +92,11 @@ static lar_recorder *make(const char *path) {
 static lar_status start_thread(lar_recorder *recorder, lar_error *error) {
     int cause = lar_thread_start(&recorder->thread, write_records, recorder);
     if (!cause) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_MEMORY,
-                    "the system gives no thread for a recording: %s; raise the limit (ulimit -u)",
-                    strerror(cause));
+    return lar_fail(
+        error, LAR_ERROR_MEMORY,
+        "the system gives no thread for a recording: %s; free memory, or raise the limit "
+        "(ulimit -u)",
+        strerror(cause));
 }
 
 lar_status lar_recorder_create(const char *path, const lar_recording_header *header,

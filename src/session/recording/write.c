@@ -1,6 +1,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/folder.h"
@@ -13,6 +14,7 @@ static void put_words(lar_recording_writer *writer, const uint64_t *word, size_t
         if (fwrite(&out, sizeof out, 1, writer->file) != 1) writer->cause = errno;
     }
     writer->checksum = lar_chain(writer->checksum, word, count);
+    writer->words += count;
 }
 
 static void put_checksum(lar_recording_writer *writer) {
@@ -98,6 +100,7 @@ void lar_recording_put_state(lar_recording_writer *writer, uint64_t step, const 
         put_words(writer, &word, 1);
     }
     put_checksum(writer);
+    if (!writer->begun) writer->begun = writer->words;
 }
 
 void lar_recording_flush(lar_recording_writer *writer) {
@@ -111,9 +114,20 @@ lar_status lar_recording_incomplete(const char *path, int cause, lar_error *erro
                     path, strerror(cause));
 }
 
+/* What ends before its first state is complete is no recording, and would lie in the way. */
+static void remove_stump(const lar_recording_writer *writer, const struct stat *ours) {
+    struct stat there;
+    bool whole = writer->begun && (uint64_t)ours->st_size >= 8 * writer->begun;
+    if (!whole && lstat(writer->path, &there) == 0 && S_ISREG(there.st_mode) &&
+        there.st_dev == ours->st_dev && there.st_ino == ours->st_ino)
+        unlink(writer->path);
+}
+
 lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error) {
     if (!writer->file) return LAR_OK;
     lar_recording_flush(writer);
+    struct stat ours;
+    if (writer->cause && fstat(fileno(writer->file), &ours) == 0) remove_stump(writer, &ours);
     if (fclose(writer->file) && !writer->cause) writer->cause = errno;
     writer->file = NULL;
     return writer->cause ? lar_recording_incomplete(writer->path, writer->cause, error) : LAR_OK;
