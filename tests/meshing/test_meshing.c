@@ -8,6 +8,7 @@
 #define ELLIPSOID LAR_TEST_BUILD "/meshing_ellipsoid.nrrd"
 #define BALLS     LAR_TEST_BUILD "/meshing_balls.nrrd"
 #define SPECK     LAR_TEST_BUILD "/meshing_speck.nrrd"
+#define BLOCKS    LAR_TEST_BUILD "/meshing_blocks.nrrd"
 #define TORUS     LAR_TEST_BUILD "/meshing_torus.vtp"
 #define NUT       LAR_TEST_BUILD "/meshing_nut.vtp"
 
@@ -15,6 +16,16 @@ static lar_error error;
 
 static int speck_label(const double x[3]) {
     return fabs(x[0]) < 1e-3 && fabs(x[1]) < 1e-3 && fabs(x[2]) < 1e-3;
+}
+
+/* A ball with three furrows, in more than a hundred blocks of 7 voxels. */
+static int block_label(const double x[3]) {
+    const double furrow = fmin(fabs(x[0]), fmin(fabs(x[1] + 4e-3), fabs(x[2] - 6e-3)));
+    const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    if (r > 19.3e-3 || (r > 6e-3 && furrow < 1.1e-3)) return 0;
+    int at[3];
+    for (int i = 0; i < 3; i++) at[i] = (int)floor((x[i] + 21.5e-3) / 7e-3);
+    return 1 + at[0] + 7 * at[1] + 49 * at[2];
 }
 
 static void write_surface(lar_triangles *surface, const char *path) {
@@ -37,6 +48,11 @@ static int write_files(void **state) {
     const double spacing[3] = {2e-3, 2e-3, 2e-3};
     shape_image_of(&image, speck_label, size, spacing, SHAPE_STRAIGHT);
     image_file(&image, SPECK, NULL, 0);
+    lar_image_clear(&image);
+    const int32_t many[3] = {44, 44, 44};
+    const double voxel[3] = {1e-3, 1e-3, 1e-3};
+    shape_image_of(&image, block_label, many, voxel, SHAPE_STRAIGHT);
+    image_file(&image, BLOCKS, NULL, 0);
     lar_image_clear(&image);
     const double centre[3] = {0, 0, 0}, half[3] = {30, 24, 18};
     shape_torus_surface(&surface, 22, 8, centre, 24);
@@ -269,12 +285,29 @@ static void it_can_be_stopped(void **state) {
     }
 }
 
+/* Where regions are hardly larger than elements, outer faces that lie where a neighbour's boundary
+ * is are drawn to that one. */
+static void small_regions_follow_the_body(void **state) {
+    (void)state;
+    lar_meshing_options options = lar_meshing_options_default();
+    options.elements = 800;
+    lar_meshing *meshing = made(BLOCKS, &options);
+    lar_meshing_info info;
+    lar_meshing_inspect(meshing, &info);
+    assert_true(info.regions > 100);
+    assert_int_equal(info.quality.crossings, 0);
+    if (!(info.quality.deviation_mean < 0.1 * info.quality.mean_edge))
+        fail_msg("%.3f of an edge", info.quality.deviation_mean / info.quality.mean_edge);
+    lar_meshing_destroy(meshing);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(an_image_becomes_a_mesh),
                                        cmocka_unit_test(regions_may_be_chosen_and_fused),
                                        cmocka_unit_test(surfaces_become_meshes),
                                        cmocka_unit_test(cubes_stay_cubes),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
+                                       cmocka_unit_test(small_regions_follow_the_body),
                                        cmocka_unit_test(it_can_be_stopped)};
     return cmocka_run_group_tests(tests, write_files, NULL);
 }

@@ -131,8 +131,8 @@ static bool ask_tree(const lar_fit_work *work, const lar_fit_pair *pair, const d
 
 /* Where the mesh is about as thin as a cell, the nearest triangle may be one of the other side,
  * which looks the other way; then those beyond are asked, half a cell in front and behind. */
-static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
-                        double reach, const double facing[3], target *found) {
+static bool find_own(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
+                     double reach, const double facing[3], target *found) {
     if (ask_tree(work, pair, x, reach, x, facing, found)) return true;
     target other[2];
     bool any[2];
@@ -144,6 +144,40 @@ static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, cons
     if (!any[0] && !any[1]) return false;
     *found = other[!any[0] || (any[1] && lar_dot(other[1].away, other[1].away) <
                                              lar_dot(other[0].away, other[0].away))];
+    return true;
+}
+
+/* The nearest of what is outer boundary of any region. */
+static bool find_outer(const lar_fit_work *work, const double x[3], const double facing[3],
+                       target *found) {
+    double reach = REACH;
+    bool any = false;
+    for (int32_t p = 0; p < work->pair_count; p++) {
+        const lar_fit_pair *pair = &work->pair[p];
+        target other;
+        if (!pair->tree || pair->region[0] != 0) continue;
+        if (!ask_tree(work, pair, x, reach, x, facing, &other)) continue;
+        if (any && !(lar_length(other.away) < reach)) continue;
+        *found = other;
+        reach = lar_length(other.away);
+        any = true;
+    }
+    return any;
+}
+
+/* Of small regions many cells lie where the true boundary is a neighbour's. Their outer faces are
+ * drawn to that one where their own is so much farther, or there is none: it is the body's boundary
+ * all the same, and the interface beside it shows whose it is. */
+static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, const double x[3],
+                        double reach, const double facing[3], target *found) {
+    const double MORE = 0.3; /* cells */
+    const bool own = find_own(work, pair, x, reach, facing, found);
+    if (pair->region[0] != 0 || work->boundary->region_count == 1) return own;
+    const double far = own ? lar_length(found->away) - MORE : INFINITY;
+    target other;
+    if (!(far > 0) || !find_outer(work, x, facing, &other)) return own;
+    if (!(lar_length(other.away) < far)) return own;
+    *found = other;
     return true;
 }
 
