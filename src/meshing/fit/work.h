@@ -82,8 +82,8 @@ typedef struct lar_fit_apart {
     int tries;               /* of this round */
     int32_t *near_start;     /* per face with a watched node: the faces that it may meet */
     lar_fit_near *near;
-    double (*from)[3]; /* per node: where it was before this round, */
-    bool *awake;       /* and whether it was worth moving */
+    double (*from)[3];      /* per node: where it was before this round, */
+    bool *awake;            /* and whether it was worth moving */
     lar_fit_extent *extent; /* per face */
 } lar_fit_apart;
 
