@@ -309,8 +309,8 @@ static double outward(const double x[3], const contact_point *point, double sign
     return sign * depth;
 }
 
-/* What part of its stiffness a spring has: it must not hurl a light node away with what it stores
- * while it keeps the contact distance. */
+/* What part of its stiffness a spring has: what it stores while it keeps the contact distance must
+ * not throw a light node. */
 static double softness(const lar_body_contact *contact, double standoff) {
     static const double SPEED = 3; /* [m/s] */
     double max = SPEED / standoff;
