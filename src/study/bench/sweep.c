@@ -167,12 +167,15 @@ static const char *color_of(const char *isa) {
 /* Memory's slope up to the peak of the set, and the peak from there. */
 static void draw_roof(const axes *a, const lar_sweep_result *r, const lar_sweep_row *row) {
     char style[80];
-    double peak = row->kernel.peak_gflops.median, knee = fmin(a->x1, peak / r->bandwidth);
+    double peak = row->kernel.peak_gflops.median;
+    double begin = fmax(a->x0, a->y0 / r->bandwidth); /* where memory's slope comes into sight */
+    double knee = fmax(a->x0, fmin(a->x1, peak / r->bandwidth));
     snprintf(style, sizeof style, "stroke=\"%s\"", color_of(row->kernel.isa));
-    draw_line(a, fmax(a->x0, a->y0 / r->bandwidth), fmax(a->y0, a->x0 * r->bandwidth), knee,
-              knee * r->bandwidth, "stroke=\"#222\" stroke-dasharray=\"4 3\"");
-    draw_line(a, fmin(knee, a->x1), peak, a->x1, peak, style);
-    draw_line(a, a->x0, peak, fmin(knee, a->x1), peak, "stroke=\"#ccc\"");
+    if (begin < knee)
+        draw_line(a, begin, begin * r->bandwidth, knee, knee * r->bandwidth,
+                  "stroke=\"#222\" stroke-dasharray=\"4 3\"");
+    draw_line(a, knee, peak, a->x1, peak, style);
+    draw_line(a, a->x0, peak, knee, peak, "stroke=\"#ccc\"");
     fprintf(a->out, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">%s, peak %.0f</text>\n",
             (double)(LEFT + WIDTH + 8), y_of(a, peak) + 4, color_of(row->kernel.isa),
             row->kernel.isa, peak);
