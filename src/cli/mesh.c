@@ -100,10 +100,9 @@ static void show_what_there_is(const mesh_settings *s) {
 /* A scene that is there may have been changed by hand, a mesh or surface may be somebody's own or
  * even what is being meshed: they stay, unless --force says otherwise. */
 static int check_free(const mesh_settings *s, const char *folder, const char *stem) {
-    static const char *const endings[] = {".yaml", ".vtu", "_surface.vtp"};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+    for (int i = 0; cli_mesh_endings[i]; i++) {
         char path[4096];
-        int length = snprintf(path, sizeof path, "%s/%s%s", folder, stem, endings[i]);
+        int length = snprintf(path, sizeof path, "%s/%s%s", folder, stem, cli_mesh_endings[i]);
         if (length < 0 || (size_t)length >= sizeof path)
             return cli_complain(&cli_mesh, CLI_FAILED, "the name of the folder is too long");
         if (s->force || access(path, F_OK) != 0) continue;

@@ -15,13 +15,15 @@ static const double AIM = 0.9;    /* of what holds: the estimate is one */
 static const double ENOUGH = 0.8; /* of what holds */
 static const double LONG = 0.1;   /* a measurement on one core [s] */
 
+const char *const cli_mesh_endings[] = {".yaml", ".vtu", "_surface.vtp", NULL};
+
 /* ---- a mesh, measured ------------------------------------------------------------------------ */
 
 static void remove_files(const char *folder, const char *stem) {
-    static const char *const endings[] = {".yaml", ".vtu", "_surface.vtp"};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+    for (int i = 0; cli_mesh_endings[i]; i++) {
         char path[4096];
-        if (snprintf(path, sizeof path, "%s/%s%s", folder, stem, endings[i]) < (int)sizeof path)
+        if (snprintf(path, sizeof path, "%s/%s%s", folder, stem, cli_mesh_endings[i]) <
+            (int)sizeof path)
             unlink(path);
     }
     rmdir(folder);

@@ -5,6 +5,9 @@
 
 #include "lariat.h"
 
+/* What the files of a mesh end with, behind FOLDER/NAME; NULL at the end. */
+extern const char *const cli_mesh_endings[];
+
 /* Makes the body with about so many elements: what lar_meshing_create does for a command. */
 typedef lar_status cli_make_mesh(void *context, int32_t elements, lar_meshing **meshing,
                                  lar_error *error);

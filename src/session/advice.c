@@ -22,8 +22,7 @@ static void name_grid(int32_t processors, char text[32]) {
     snprintf(text, 32, "%dx%dx%d", (int)best[0], (int)best[1], (int)best[2]);
 }
 
-/* Two digits, rounded down. */
-static double rounded(double count) {
+double lar_two_digits(double count) {
     if (count < 1) return 1;
     double unit = pow(10, fmax(0, floor(log10(count)) - 1));
     return floor(count / unit) * unit;
@@ -41,7 +40,7 @@ static void advise_smaller(const lar_advice *a, double ratio, double min, double
     snprintf(status->slow_advice, sizeof status->slow_advice,
              "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %sa mesh "
              "of about %.0f elements, or a slower pace",
-             1e6 * min, 1e6 * allowed / ROOM, way, rounded(a->elements / ratio));
+             1e6 * min, 1e6 * allowed / ROOM, way, lar_two_digits(a->elements / ratio));
 }
 
 void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {

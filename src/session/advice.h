@@ -23,6 +23,9 @@ typedef struct lar_advice {
     int32_t stiffer;     /* not constant: parts of a step that stiffer materials take; 0, 1: none */
 } lar_advice;
 
+/* A number of elements that is an estimate: two digits, rounded down; at least 1. */
+double lar_two_digits(double count);
+
 /* Fills in slow_cause and slow_advice, from slow_motion, step_min and step_parts. `pace`: as
  * asked for. */
 void lar_advise(const lar_advice *advice, double pace, lar_session_status *status);

@@ -98,26 +98,13 @@ static bool may_be_urgent(void) {
     return true;
 }
 
-/* A line of /proc/meminfo, in bytes; 0: there is none. */
-static double memory_line(const char *name) {
-    char line[256];
-    double kilobytes = 0;
-    FILE *file = fopen("/proc/meminfo", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, name, strlen(name)) == 0 &&
-            sscanf(line + strlen(name), ": %lf", &kilobytes) == 1)
-            break;
-    if (file) fclose(file);
-    return 1024 * kilobytes;
-}
-
 void lar_doctor_look(lar_doctor_machine *machine) {
     struct timespec tick = {0};
     clock_getres(CLOCK_MONOTONIC, &tick);
     *machine =
         (lar_doctor_machine){.usable_cores = lar_usable_cores(),
-                             .memory = memory_line("MemTotal"),
-                             .free = memory_line("MemAvailable"),
+                             .memory = lar_machine_memory("MemTotal"),
+                             .free = lar_machine_memory("MemAvailable"),
                              .priority = may_be_urgent(),
                              .clock_tick = (double)tick.tv_sec + 1e-9 * (double)tick.tv_nsec};
     lar_machine_look(&machine->machine);

@@ -25,6 +25,18 @@ static void find_cpu(char *cpu, size_t size) {
     if (file) fclose(file);
 }
 
+double lar_machine_memory(const char *name) {
+    char line[256];
+    double kilobytes = 0;
+    FILE *file = fopen("/proc/meminfo", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (strncmp(line, name, strlen(name)) == 0 &&
+            sscanf(line + strlen(name), ": %lf", &kilobytes) == 1)
+            break;
+    if (file) fclose(file);
+    return 1024 * kilobytes;
+}
+
 void lar_machine_look(lar_machine *machine) {
     const lar_kernels *kernels = NULL;
     struct tm parts;

@@ -12,6 +12,10 @@ typedef struct lar_machine {
     char date[24];   /* 2026-11-20T15:04:05Z */
 } lar_machine;
 
+/* A line of /proc/meminfo, such as "MemAvailable", what a new program may have [bytes]; 0: there is
+ * none. */
+double lar_machine_memory(const char *name);
+
 /* Now. What cannot be found out says "unknown". */
 void lar_machine_look(lar_machine *machine);
 

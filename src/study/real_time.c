@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "model/model.h"
+#include "session/advice.h"
 #include "study/bench/step_clock.h"
 
 /* Steps that warm the caches, and those that are the least to be measured. */
@@ -16,7 +17,8 @@ static lar_status look_at_divisions(const lar_model *model, lar_real_time *found
     double step = found->choice.processors > 1 && found->choice.chosen > 0 ? found->choice.chosen
                                                                            : found->step;
     found->divided = found->time_step / step;
-    found->holds = model->mesh.element_count * pow(found->divided / LAR_REAL_TIME_RESERVE, 0.75);
+    found->holds = lar_two_digits(model->mesh.element_count *
+                                  pow(found->divided / LAR_REAL_TIME_RESERVE, 0.75));
     return LAR_OK;
 }
 

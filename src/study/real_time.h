@@ -21,7 +21,7 @@ typedef struct lar_real_time {
     uint64_t steps;   /* measured */
     lar_grid_choice choice; /* the fastest division now, by the median of a step */
     double divided;         /* its factor */
-    double holds;           /* elements of this body with which that is LAR_REAL_TIME_RESERVE */
+    double holds; /* elements of this body with which that is LAR_REAL_TIME_RESERVE, about */
 } lar_real_time;
 
 /* Steps a simulation of the model from rest for about `seconds` of the clock, at least ten steps,

@@ -123,12 +123,6 @@ cli_speed cli_measure_speed(const lar_model *model) {
     return speed;
 }
 
-/* Rounded down. */
-static double two_digits(double count) {
-    double unit = pow(10, fmax(0, floor(log10(fmax(1, count))) - 1));
-    return floor(count / unit) * unit;
-}
-
 void cli_print_speed(const cli_speed *speed) {
     const lar_real_time *found = &speed->found;
     if (!speed->measured) {
@@ -141,7 +135,7 @@ void cli_print_speed(const cli_speed *speed) {
     if (found->choice.processors > 1)
         printf("%-17s%.3g times on the grid %s\n", "", found->divided, found->choice.grid);
     printf("%-17sabout %.0f elements of this body keep the clock with a third in reserve\n", "",
-           two_digits(found->holds));
+           found->holds);
 }
 
 void cli_write_speed(json_writer *json, const cli_speed *speed) {
@@ -150,7 +144,7 @@ void cli_write_speed(json_writer *json, const cli_speed *speed) {
     json_number(json, "wall_per_step_us", speed->measured ? 1e6 * speed->found.step : NAN);
     json_text(json, "grid", speed->measured ? speed->found.choice.grid : "");
     json_number(json, "divided_factor", speed->measured ? speed->found.divided : NAN);
-    json_number(json, "real_time_elements", speed->measured ? floor(speed->found.holds) : NAN);
+    json_number(json, "real_time_elements", speed->measured ? speed->found.holds : NAN);
     json_text(json, "why_not", speed->measured ? "" : speed->why.message);
     json_close(json);
 }

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "study/bench/fma_peak.h"
+#include "study/machine.h"
 #include "study/output.h"
 
 /* ---- memory --------------------------------------------------------------------------------- */
@@ -41,15 +42,10 @@ static lar_status measure_bandwidth(double *gigabytes, lar_error *error) {
     return LAR_OK;
 }
 
-/* Half of what the system says is free; infinite: it does not say. */
+/* Half of what is free; infinite where the system does not say. */
 static double room(void) {
-    char line[256];
-    double kilobytes = INFINITY;
-    FILE *file = fopen("/proc/meminfo", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (sscanf(line, "MemAvailable: %lf", &kilobytes) == 1) break;
-    if (file) fclose(file);
-    return 512 * kilobytes;
+    double memory = lar_machine_memory("MemAvailable");
+    return memory > 0 ? 0.5 * memory : INFINITY;
 }
 
 /* ---- rows ----------------------------------------------------------------------------------- */
