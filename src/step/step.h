@@ -128,7 +128,7 @@ void lar_fault_attribute(const lar_domain *domain, lar_fault *fault);
 
 /* The sentence for an examined fault: element or node, place, time, cause and remedy. */
 lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error);
-/* The same where fault->tool is to blame: it does what to the element or node. */
+/* The same where fault->tool has caused it: it does what to the element or node. */
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error);
 

@@ -30,7 +30,7 @@ export function tornDemo({ folder, scene }) {
     return torn;
 }
 
-/* A coarse block with a ball riding on it that stands off its faces: 4 x 4 x 4 elements of 20 mm, held
+/* A coarse block with an embedded ball that stands off its faces: 4 x 4 x 4 elements of 20 mm, held
  * below, and 2 n (n - 1) triangles. */
 export function rider(n = 40) {
     const folder = mkdtempSync(join(OUT, 'rider-'));

@@ -3,7 +3,7 @@
  *   *ELASTIC E, nu     neo-Hookean with the same G and K: equal at small strain
  *   *HYPERELASTIC      which of them are read, by which constants, and what becomes of them stands
  * in the rows of the laws (law/law.h). Of a law's terms only those count that are not zero:
- * Mooney-Rivlin without C01 is neo-Hookean, to the letter.
+ * Mooney-Rivlin without C01 is exactly neo-Hookean.
  */
 #include <math.h>
 #include <stdio.h>
