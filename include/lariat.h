@@ -403,12 +403,13 @@ typedef struct lar_grid_choice {
 /* Which division of the model is best on this machine, as busy as it is now: some hundred steps
  * with one processor, and with two, four, ... threads up to the cores that this process may use,
  * are measured side by side; with a tick beside a thread that wakes as often as devices do, and
- * half by the slowest twentieth. More processors have to be a tenth faster to be taken. Takes a
- * second at most and the memory of the simulations that are tried; what is too small to gain, too
- * large to try, or done within a second is not measured, and the reason says so. The environment
- * variable LARIAT_GRID ("2x1x1") is taken as it is. Who only wants a simulation that is divided so
- * gives grid "auto" in the options. `aim` may be NULL. Fails only for a LARIAT_GRID that is none,
- * for options that name processes or schedule files besides, and out of memory. */
+ * half by the slowest twentieth. More processors have to be a tenth faster to be taken. Takes half
+ * a second and what it takes to create the simulations that are tried, some seconds for a hundred
+ * thousand elements, and their memory. What is too small to gain, too large to try, or over before
+ * this would be, is not measured, and the reason says so. The environment variable LARIAT_GRID
+ * ("2x1x1") is taken as it is. Who only wants a simulation that is divided so gives grid "auto" in
+ * the options. `aim` may be NULL. Fails only for a LARIAT_GRID that is none, for options that name
+ * processes or schedule files besides, and as creating a simulation fails. */
 LAR_API lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
                                    const lar_grid_aim *aim, lar_grid_choice *choice,
                                    lar_error *error);

@@ -23,8 +23,8 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
 /* Rows of the table of options. */
 #define CLI_PARALLEL(p)                                                                            \
     CLI_TEXT("--grid", "AxBxC",                                                                    \
-             "divide the model among so many processors, e.g. 2x2x3;\nauto: measured, which "      \
-             "is best here",                                                                       \
+             "divide the model among so many processors, e.g. 2x2x3;\n"                            \
+             "auto, the default of run and view: measured, which is\nbest here",                   \
              &(p).grid),                                                                           \
         CLI_COUNT("--threads", "N", "of each processor (1)", &(p).threads, 1, 16),                 \
         CLI_CHOICE("--scheme", "NAME", "who sends to whom: all (default), local, one, two",        \
@@ -58,6 +58,8 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
 
 /* CLI_USAGE with a message when they do not belong together. */
 int cli_parallel_check(const cli_command *command, const cli_parallel *parallel);
+
+#define CLI_TICK 1e-3 /* of the clock that deadlines are kept by [s] */
 
 /* Where no division was asked for, or --grid auto, one is chosen by measuring, into *choice and
  * the options; otherwise choice->reason is empty. */

@@ -315,12 +315,13 @@ static lar_options options_of(const run_settings *settings) {
 static int choose_grid(run *r, lar_options *options) {
     const run_settings *s = &r->settings;
     double duration = lar_model_duration(r->model);
-    const lar_grid_aim aim = {.steps = (uint64_t)s->steps,
+    const lar_grid_aim aim = {.tick = s->realtime ? CLI_TICK : 0,
+                              .steps = (uint64_t)s->steps,
                               .seconds = s->steps > 0   ? 0
                                          : s->time > 0  ? s->time
                                          : duration > 0 ? duration
                                                         : 1};
-    const lar_grid_aim open = {0}; /* until rest: who knows */
+    const lar_grid_aim open = {.tick = aim.tick}; /* until rest: who knows */
     bool follows = s->until_rest || lar_model_until_rest(r->model);
     return cli_choose_grid(&cli_run, &s->parallel, r->model, follows ? &open : &aim, options,
                            &r->choice);

@@ -50,8 +50,6 @@ typedef struct view {
     lar_status failure;
 } view;
 
-static const double TICK = 1e-3; /* of devices [s] */
-
 static double now(void) {
     struct timespec at;
     clock_gettime(CLOCK_MONOTONIC, &at);
@@ -86,7 +84,7 @@ static int prepare(view *v) {
             s->resume);
     if (!status)
         status = cli_choose_grid(&cli_view, &s->parallel, v->model,
-                                 &(lar_grid_aim){.tick = TICK * s->pace}, &options, &v->choice);
+                                 &(lar_grid_aim){.tick = CLI_TICK * s->pace}, &options, &v->choice);
     if (!status)
         status = cli_processes_start(&cli_view, v->processes, v->model, &options, &v->parallel);
     if (status) return status;

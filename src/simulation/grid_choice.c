@@ -31,7 +31,8 @@ static const double GAIN = 1.1;   /* times as fast: what more processors must be
 static const double ROUND = 0.03; /* of one simulation [s] */
 /* Cores that were idle need a while until they run at their pace (study/bench/scaling.c). */
 static const double WARM_UP = 0.15;    /* [s] */
-static const double WORTH_TRYING = 1;  /* of the clock [s]: what is over before is not tried */
+static const double WORTH_TRYING = 1;  /* of the clock [s]: what is over before is not tried, */
+static const double SETUPS = 4;        /* nor what is over before so many could be created */
 static const int64_t BATCH = 3000000;  /* without ticks [ns] */
 static const double COMPANION = 100e3; /* what devices and viewers take of a millisecond [ns] */
 
@@ -48,7 +49,8 @@ typedef struct choosing {
     lar_grid_aim aim;
     trial *trial; /* [TRIALS] */
     int trials;
-    bool beside; /* a companion works */
+    double setup; /* what creating the first of them took [s] */
+    bool beside;  /* a companion works */
     _Atomic bool over;
     pthread_t companion;
 } choosing;
@@ -82,7 +84,9 @@ static lar_status begin_trial(choosing *c, const char *grid, lar_error *error) {
     lar_options options = c->options;
     options.grid = grid;
     if (!grid) options.distribution = options.scheme = options.channels = NULL;
+    int64_t begin = lar_clock_ns();
     lar_status status = lar_simulation_create(c->model, &options, &t->simulation, error);
+    if (c->trials == 0) c->setup = 1e-9 * (double)(lar_clock_ns() - begin);
     if (!status) c->trials++;
     if (!status) status = work(c, t, WARM_UP, error);
     lar_histogram warm = t->times;
@@ -182,6 +186,18 @@ static double length_of(const choosing *c) {
     return steps > 0 ? 1e-9 * alone->score * steps : INFINITY;
 }
 
+/* "52.3 us", "8.77 ms". */
+typedef struct time_text {
+    char text[24];
+} time_text;
+
+static time_text text_of(double ns) {
+    time_text out;
+    bool large = ns >= 1e6;
+    snprintf(out.text, sizeof out.text, "%.3g %s", ns / (large ? 1e6 : 1e3), large ? "ms" : "us");
+    return out;
+}
+
 static void say(lar_grid_choice *choice, const choosing *c, int best) {
     const trial *alone = &c->trial[0], *chosen = &c->trial[best];
     const char *by = c->aim.tick > 0 ? ", by ticks and their slowest twentieth" : "";
@@ -190,24 +206,24 @@ static void say(lar_grid_choice *choice, const choosing *c, int best) {
     choice->tried = c->trials;
     choice->alone = 1e-9 * alone->score;
     choice->chosen = 1e-9 * chosen->score;
+    time_text first = text_of(alone->score);
     if (best > 0)
         snprintf(choice->reason, sizeof choice->reason,
-                 "a step takes %.3g us instead of %.3g us with one processor%s",
-                 1e-3 * chosen->score, 1e-3 * alone->score, by);
+                 "a step takes %s instead of %s with one processor%s", text_of(chosen->score).text,
+                 first.text, by);
     else if (c->trials > 1)
         snprintf(choice->reason, sizeof choice->reason,
-                 "a step takes %.3g us, and %.3g us with %d processors%s", 1e-3 * alone->score,
-                 1e-3 * c->trial[1].score, (int)c->trial[1].grid.count, by);
+                 "a step takes %s, and %s with %d processors%s", first.text,
+                 text_of(c->trial[1].score).text, (int)c->trial[1].grid.count, by);
     else
-        snprintf(choice->reason, sizeof choice->reason, "a step takes %.3g us",
-                 1e-3 * alone->score);
+        snprintf(choice->reason, sizeof choice->reason, "a step takes %s", first.text);
 }
 
 static lar_status try_all(choosing *c, lar_grid_choice *choice, lar_error *error) {
     begin_company(c);
     lar_status status = begin_trial(c, NULL, error);
     c->trial[0].grid = (lar_grid){.edge = {1, 1, 1}, .count = 1};
-    bool is_short = !status && length_of(c) < WORTH_TRYING;
+    bool is_short = !status && length_of(c) < WORTH_TRYING + SETUPS * c->setup;
     if (!status && !is_short) status = begin_trials(c, choice->cores, error);
     if (!status && c->trials > 1) status = compare(c, error);
     end_company(c);
