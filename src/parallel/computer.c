@@ -391,7 +391,7 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t 
     return lar_contact_until(computer, interval < end ? interval : end);
 }
 
-/* Without contact of bodies and tools one stretch. */
+/* Stretch by stretch: intervals (step/interval.h), and where contact needs a new list. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
                                 lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error) {

@@ -246,6 +246,7 @@ static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
 }
 
 enum { STEPS_BETWEEN_LOOKS = 32 }; /* at what contact has given */
+_Static_assert(STEPS_BETWEEN_LOOKS % LAR_INTERVAL_MAX == 0, "nobody stops only for a look");
 
 /* Contact may keep or lose energy, but must not have given more than it took: then the bodies would
  * have more than they began with. Surfaces that fold over themselves do that to it. What counts as
