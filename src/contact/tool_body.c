@@ -108,28 +108,36 @@ typedef struct follow_law {
     double farthest;      /* way in the interval [m] */
 } follow_law;
 
-static double length_of(int count, const double *v) {
-    double square = 0;
-    for (int i = 0; i < count; i++) square += v[i] * v[i];
-    return sqrt(square);
+static double dot(int count, const double *a, const double *b) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* Shortens a way to the farthest of an interval. True when it was no longer. */
+static bool shorten(const follow_law *law, int count, double *way) {
+    double far = sqrt(dot(count, way, way));
+    for (int i = 0; i < count && far > law->farthest; i++) way[i] *= law->farthest / far;
+    return far <= law->farthest;
 }
 
 /* The way along `count` coordinates: `gap` is what is left to go, `pushed` what the tissue pushes
- * with, `max` what the hand may. True when all of it is gone. */
+ * with, `max` what the hand may. True when all of it is gone. Where tissue pushes the way that the
+ * hand wants to go nothing holds the tool back: drag keeps it from swinging against tissue, and in
+ * what opens would only make it late. */
 static bool go(const follow_law *law, int count, const double *gap, const double *pushed,
                double max, double *way) {
     double drawn[3];
+    if (dot(count, gap, pushed) > 0) {
+        for (int i = 0; i < count; i++) way[i] = gap[i];
+        return shorten(law, count, way);
+    }
     for (int i = 0; i < count; i++) drawn[i] = law->drag * gap[i] / law->seconds - pushed[i];
-    double length = length_of(count, drawn);
+    double length = sqrt(dot(count, drawn, drawn));
     double share = length > max ? max / length : 1;
     for (int i = 0; i < count; i++)
         way[i] = law->seconds / law->drag * (drawn[i] * share + pushed[i]);
-    if (share < 1 || length_of(count, gap) > law->farthest) {
-        double far = length_of(count, way);
-        for (int i = 0; i < count && far > law->farthest; i++) way[i] *= law->farthest / far;
-        return false;
-    }
-    return true;
+    return shorten(law, count, way) && share == 1 && sqrt(dot(count, gap, gap)) <= law->farthest;
 }
 
 /* Turns `from` by a small rotation vector. */

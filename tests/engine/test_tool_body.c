@@ -151,11 +151,48 @@ static void hardness_grows_with_time(void **unused) {
     lar_model_destroy(model);
 }
 
+/* A hard tool goes as its hand leads where the tissue pushes that way, and not where it resists: a
+ * ball of 3 mm in a coarse liver came out of its own fold at 4 mm/s, while the hand was gone. */
+static void nothing_holds_what_leaves_the_tissue(void **unused) {
+    (void)unused;
+    static const double SECONDS = 4e-4, UNIT = 1e-12;
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    const lar_tool_list *list = simulation->domain.interactions.tool_contact.list;
+    const double limit = list->limits[0].force, inside[3] = {0.016, 0.014, 0.010};
+    double went[2];
+    for (int g = 0; g < 2; g++) {
+        lar_tools tools = simulation->tools;
+        tools.division.hardness = LAR_HARDNESS_MAX;
+        lar_tool_motion *tool = &tools.motion[0];
+        tool->from = tool->to = (lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1};
+        memcpy(tool->from.position, inside, sizeof inside);
+        memcpy(tool->to.position, inside, sizeof inside);
+        tools.follower[0].hand = *tool;
+        memcpy(tools.follower[0].hand.to.position, g ? below : above, sizeof above);
+        memcpy(tools.follower[0].hand.from.position, g ? below : above, sizeof above);
+        tools.follower[0].lagging = 1;
+        tools.follower[0].felt = (lar_tool_felt){
+            .depth = 0.6 * ball.radius,
+            .steps = 1,
+            .force = {0, 0, (int64_t)(0.2 * limit * LAR_STEP_SHARES / UNIT)}};
+        lar_tools_follow(list, &tools, 0, 8, SECONDS / 8, UNIT);
+        went[g] = tools.motion[0].to.position[2] - inside[2];
+    }
+    print_message("outwards %.3g m/s, inwards %.3g m/s\n", went[0] / SECONDS, -went[1] / SECONDS);
+    assert_below(0.49 * SECONDS, went[0]);
+    assert_below(went[0], 0.51 * SECONDS);
+    assert_below(-went[1], 0.1 * SECONDS);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
         cmocka_unit_test(hardness_grows_with_time),
+        cmocka_unit_test(nothing_holds_what_leaves_the_tissue),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
