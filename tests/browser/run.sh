@@ -33,19 +33,29 @@ fi
 export LARIAT=$lariat CHROMIUM=$chromium LARIAT_TEST_OUT
 LARIAT_TEST_OUT=$(realpath "$out")
 cd "$web" || exit 1
-# A browser that draws in software on two busy cores misses a moment now and then: what fails is tried
-# once more, and said. What fails twice has failed.
+# A browser that draws in software on two busy cores misses a moment now and then: tests that fail are
+# tried once more, by themselves, and it is said. What fails twice has failed.
 try_part() {
-    timeout 400 node --test --test-concurrency=1 "test/$1.test.mjs" >"$2" 2>&1
+    local name=$1 said=$2
+    shift 2
+    timeout 400 node --test --test-concurrency=1 "$@" "test/$name.test.mjs" >"$said" 2>&1
     local status=$?
-    grep -E '^(not )?ok |^# (pass|fail) ' "$2"
+    grep -E '^(not )?ok |^# (pass|fail) ' "$said" | grep -v '# SKIP'
     return $status
+}
+# The tests that failed, one pattern each, into `again`; all of them when none was named.
+failed_of() {
+    again=()
+    while IFS= read -r name; do
+        again+=(--test-name-pattern "^$(printf '%s' "$name" | sed 's/[][\\.*^$+?(){}|/]/\\&/g')\$")
+    done < <(sed -n 's/^not ok [0-9]* - //p' "$1")
 }
 [ $# -gt 0 ] || set -- units mock look engine jaws
 for part; do
     try_part "$part" "$out/$part.txt" && continue
+    failed_of "$out/$part.txt"
     echo "$part failed, see $out/$part.txt; once more:"
-    try_part "$part" "$out/$part-again.txt" && continue
+    try_part "$part" "$out/$part-again.txt" "${again[@]}" && continue
     cat "$out/$part.txt" "$out/$part-again.txt"
     exit 1
 done
