@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...) {
     if (error) {
@@ -19,4 +20,11 @@ lar_status lar_fail_memory(lar_error *error, size_t bytes, const char *what) {
                     "out of memory: %zu bytes for %s could not be had; use a smaller model or a "
                     "machine with more memory",
                     bytes, what);
+}
+
+lar_status lar_fail_thread(lar_error *error, int cause, const char *what) {
+    return lar_fail(error, LAR_ERROR_MEMORY,
+                    "the system gives no thread for %s: %s; free memory, or raise the limit "
+                    "(ulimit -u)",
+                    what, strerror(cause));
 }

@@ -23,4 +23,7 @@ lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...
 /* The message for memory that the system refuses. `what` names what it was for. */
 lar_status lar_fail_memory(lar_error *error, size_t bytes, const char *what);
 
+/* The same for a thread: `cause` is what starting it returned. */
+lar_status lar_fail_thread(lar_error *error, int cause, const char *what);
+
 #endif

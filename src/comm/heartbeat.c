@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -240,11 +241,13 @@ lar_status lar_heartbeat_start(lar_comm *comm, lar_error *error) {
     if (!w->links || !w->polled) return lar_fail_memory(error, count * 48, "watched processors");
     double now = lar_comm_now();
     for (size_t p = 0; p < count; p++) w->links[p].heard = now;
-    if (pipe2(w->wake, O_CLOEXEC | O_NONBLOCK) != 0 ||
-        lar_thread_start(&w->thread, run_heartbeat, w) != 0)
+    if (pipe2(w->wake, O_CLOEXEC | O_NONBLOCK) != 0)
         return lar_fail(error, LAR_ERROR_IO,
-                        "the thread that watches the other processors cannot be started; raise the "
-                        "limits on threads and open files");
+                        "no pipe to watch the other processors with: %s; close files, or raise the "
+                        "limit (ulimit -n)",
+                        strerror(errno));
+    int cause = lar_thread_start(&w->thread, run_heartbeat, w);
+    if (cause) return lar_fail_thread(error, cause, "watching the other processors");
     w->runs = true;
     return LAR_OK;
 }

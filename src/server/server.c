@@ -349,11 +349,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     if (!status) {
         int cause = lar_thread_start(&server->thread, run, server);
         server->started = cause == 0;
-        if (cause)
-            status = lar_fail(error, LAR_ERROR_MEMORY,
-                              "the system gives no thread for the viewers' server: %s; free "
-                              "memory, or raise the limit (ulimit -u)",
-                              strerror(cause));
+        if (cause) status = lar_fail_thread(error, cause, "the viewers' server");
     }
     if (status)
         lar_server_close(server);

@@ -139,11 +139,7 @@ lar_status lar_work_start(lar_work *work, lar_session *session, const lar_model 
         pthread_cond_init(&work->bell, NULL);
         int cause = lar_thread_start(&work->thread, run, work);
         work->started = cause == 0;
-        if (cause)
-            status = lar_fail(error, LAR_ERROR_MEMORY,
-                              "the system gives no thread for the viewers' server: %s; free "
-                              "memory, or raise the limit (ulimit -u)",
-                              strerror(cause));
+        if (cause) status = lar_fail_thread(error, cause, "the viewers' server");
     }
     if (status) lar_work_stop(work);
     return status;

@@ -162,11 +162,7 @@ static lar_status refuse_thread(const lar_session *session, int cause, lar_error
                         "the system does not allow the session a real-time priority of %d: %s; "
                         "raise the limit (ulimit -r), run as root, or leave the priority out",
                         session->options.priority, strerror(cause));
-    return lar_fail(
-        error, LAR_ERROR_MEMORY,
-        "the system gives no thread for the session: %s; free memory, or raise the limit "
-        "(ulimit -u)",
-        strerror(cause));
+    return lar_fail_thread(error, cause, "the session");
 }
 
 lar_status lar_session_start(lar_session *session, lar_error *error) {

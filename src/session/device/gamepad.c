@@ -196,11 +196,8 @@ static lar_status gamepad_open(lar_device_spec *spec, void **data, lar_error *er
     lar_status status = open_controller(state, spec, number, error);
     pthread_mutex_unlock(&sdl_lock);
     if (status) return status;
-    if (lar_thread_start(&state->thread, follow_controller, state))
-        return lar_fail(error, LAR_ERROR_MEMORY,
-                        "device '%s': the system gives no thread; free memory, or raise the limit "
-                        "(ulimit -u)",
-                        spec->text);
+    int cause = lar_thread_start(&state->thread, follow_controller, state);
+    if (cause) return lar_fail_thread(error, cause, spec->text);
     state->started = true;
     return LAR_OK;
 }

@@ -91,12 +91,7 @@ static lar_recorder *make(const char *path) {
 
 static lar_status start_thread(lar_recorder *recorder, lar_error *error) {
     int cause = lar_thread_start(&recorder->thread, write_records, recorder);
-    if (!cause) return LAR_OK;
-    return lar_fail(
-        error, LAR_ERROR_MEMORY,
-        "the system gives no thread for a recording: %s; free memory, or raise the limit "
-        "(ulimit -u)",
-        strerror(cause));
+    return cause ? lar_fail_thread(error, cause, "a recording") : LAR_OK;
 }
 
 lar_status lar_recorder_create(const char *path, const lar_recording_header *header,

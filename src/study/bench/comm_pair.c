@@ -55,9 +55,8 @@ lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
         bool open = j->with->comm[self] != NULL; /* not after closing */
         return status || !open ? status : share_time(j, error);
     }
-    if (pthread_create(&thread, NULL, other_end, j) != 0)
-        return lar_fail(error, LAR_ERROR_MEMORY,
-                        "no second thread could be started; raise the limit on threads");
+    int cause = pthread_create(&thread, NULL, other_end, j);
+    if (cause) return lar_fail_thread(error, cause, "the other end");
     j->status[0] = j->run(j, 0, &j->error[0]);
     pthread_join(thread, NULL);
     for (int end = 0; end < 2; end++) {

@@ -103,9 +103,7 @@ static lar_status take_turn(bench *b, int k, lar_error *error) {
                         "no thread goes before ordinary ones with priority %d: %s; allow it "
                         "(ulimit -r, root), or leave --priority out",
                         b->options->priority, strerror(cause));
-    if (cause)
-        return lar_fail(error, LAR_ERROR_MEMORY, "no thread can be started: %s; end other programs",
-                        strerror(cause));
+    if (cause) return lar_fail_thread(error, cause, "the clock");
     pthread_join(thread, NULL);
     lar_histogram_merge(&b->late, &t->late);
     lar_histogram_merge(&b->done, &t->done);
