@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/quaternion.h"
+#include "base/pose.h"
 
 enum { KIND_POSITION = 1, KIND_FORCE = 2 };
 static const unsigned char MAGIC[4] = {'L', 'A', 'R', 'D'};
@@ -83,9 +83,7 @@ bool lar_position_packet_decode(const void *data, size_t size, lar_position_pack
         !get_doubles(bytes + 64, pose->orientation, 4, 1.01) ||
         !get_doubles(bytes + 96, &pose->opening, 1, 1) || pose->opening < 0)
         return false;
-    double square = 0;
-    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
-    return fabs(square - 1) <= 0.02 && lar_quaternion_normalise(pose->orientation);
+    return lar_pose_normalise(pose, NULL, NULL) == LAR_OK;
 }
 
 bool lar_force_packet_decode(const void *data, size_t size, lar_force_packet *packet) {

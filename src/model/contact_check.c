@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/pose.h"
+
 /* What rests exactly on a plane or at a tool may lie this part of the model's size inside, from
  * rounding. */
 static const double ROUNDING = 1e-6;
@@ -138,8 +140,6 @@ bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {
 
 const char *lar_tool_size_problem(const lar_tool *tool) {
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
-    const double *q = tool->rest.orientation;
-    double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     if (tool->shape != LAR_TOOL_SPHERE && !long_one)
         return "the shape must be a sphere, a capsule or a grasper";
     if (!(tool->radius > 0) || !isfinite(tool->radius))
@@ -152,9 +152,10 @@ const char *lar_tool_size_problem(const lar_tool *tool) {
                    ? "the spread must be more than zero and less than 180 degrees"
                    : "only a grasper has a spread";
     if (!finite3(tool->rest.position)) return "its place must be finite";
-    if (!(fabs(square - 1) < 1e-9)) return "its orientation must be a quaternion of length one";
     if (!(tool->rest.opening >= 0 && tool->rest.opening <= 1))
         return "its opening must be between 0 and 1";
+    if (!lar_pose_is_normal(&tool->rest))
+        return "its orientation must be a quaternion of length one";
     return NULL;
 }
 

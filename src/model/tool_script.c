@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/pose.h"
 #include "base/quaternion.h"
 #include "base/text.h"
 
@@ -83,6 +84,12 @@ static lar_status read_values(const script_reader *reader, lar_span line, double
     return LAR_OK;
 }
 
+static lar_status take_pose(const script_reader *reader, lar_tool_pose *pose, lar_error *error) {
+    lar_error why;
+    if (!lar_pose_normalise(pose, NULL, &why)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: %s", reader->path, reader->line, why.message);
+}
+
 static lar_status add_row(script_reader *reader, lar_tool_script *script, lar_span line,
                           lar_error *error) {
     double value[COLUMNS] = {[QW] = 1, [OPENING] = 1};
@@ -98,21 +105,16 @@ static lar_status add_row(script_reader *reader, lar_tool_script *script, lar_sp
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s:%d: %s is %g m; positions are in metres, within 100", path,
                             reader->line, column_name[i], value[i]);
-    if (value[OPENING] < 0 || value[OPENING] > 1)
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s:%d: opening is %g; it goes from 0, closed, to 1, open", path,
-                        reader->line, value[OPENING]);
-    if (!lar_quaternion_normalise(&value[QW]))
-        return lar_fail(error, LAR_ERROR_FORMAT,
-                        "%s:%d: qw to qz are no orientation; a quaternion of length 1 is wanted",
-                        path, reader->line);
+    lar_tool_pose pose = {.opening = value[OPENING]};
+    memcpy(pose.position, &value[X], sizeof pose.position);
+    memcpy(pose.orientation, &value[QW], sizeof pose.orientation);
+    status = take_pose(reader, &pose, error);
+    if (status) return status;
     if (!LAR_GROW(script->row, script->capacity, script->count))
         return lar_fail_memory(error, script->capacity * sizeof *script->row, "a script");
     lar_tool_script_row *row = &script->row[script->count++];
     row->time = value[TIME];
-    memcpy(row->pose.position, &value[X], sizeof row->pose.position);
-    memcpy(row->pose.orientation, &value[QW], sizeof row->pose.orientation);
-    row->pose.opening = value[OPENING];
+    row->pose = pose;
     return LAR_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/pose.h"
 #include "base/text.h"
 #include "server/json.h"
 
@@ -357,13 +358,11 @@ static bool set_tool(reader *r, int32_t tools, lar_command *command) {
     command->opens = r->seen & BIT(OPENING);
     command->opening = r->number[KEY_OPENING][0];
     if (!command->turns) return true;
-    double square = 0;
-    for (int i = 0; i < 4; i++)
-        square += r->number[KEY_ORIENTATION][i] * r->number[KEY_ORIENTATION][i];
-    if (!(fabs(square - 1) < 1e-3))
+    lar_tool_pose pose = {.opening = 1};
+    memcpy(pose.orientation, r->number[KEY_ORIENTATION], sizeof pose.orientation);
+    if (lar_pose_normalise(&pose, NULL, NULL))
         return refuse(r, LAR_CLOSE_POLICY, "orientation must be a unit quaternion w, x, y, z");
-    for (int i = 0; i < 4; i++)
-        command->orientation[i] = r->number[KEY_ORIENTATION][i] / sqrt(square);
+    memcpy(command->orientation, pose.orientation, sizeof command->orientation);
     return true;
 }
 

@@ -1,9 +1,10 @@
 /* Tools, status and snapshots of a session, from any thread. */
-#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/pose.h"
 #include "session/session.h"
 
 /* ---- tools --------------------------------------------------------------------------------- */
@@ -46,31 +47,18 @@ static lar_status check_there(const lar_session *session, int32_t tool, lar_erro
                     "tool %ld is not there; add one with lar_session_add_tool", (long)tool);
 }
 
-/* A pose as a device gives it: the quaternion may be off unit length by rounding. */
-static lar_status clean_pose(const lar_tool_pose *pose, lar_tool_pose *clean, lar_error *error) {
-    double square = 0, sum = pose->opening;
-    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
-    for (int i = 0; i < 3; i++) sum += fabs(pose->position[i]);
-    if (!(sum < 1e9) || !(fabs(square - 1) < 0.01) || !(pose->opening >= 0 && pose->opening <= 1))
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "this is no pose of a tool: position %g %g %g m, orientation %g %g %g %g, "
-                        "opening %g; give finite numbers, a unit quaternion, an opening from 0 "
-                        "to 1",
-                        pose->position[0], pose->position[1], pose->position[2],
-                        pose->orientation[0], pose->orientation[1], pose->orientation[2],
-                        pose->orientation[3], pose->opening);
-    *clean = *pose;
-    for (int i = 0; i < 4; i++) clean->orientation[i] /= sqrt(square);
-    return LAR_OK;
-}
-
 lar_status lar_session_tool_move(lar_session *session, int32_t tool, const lar_tool_pose *pose,
                                  lar_error *error) {
     lar_tool_pose clean;
+    char whose[32];
     lar_status status = lar_session_check_tool(session, tool, error);
     if (!status && !pose)
         status = lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_tool_move needs a pose");
-    if (!status) status = clean_pose(pose, &clean, error);
+    if (!status) {
+        clean = *pose;
+        snprintf(whose, sizeof whose, "tool %d", (int)tool);
+        status = lar_pose_normalise(&clean, whose, error);
+    }
     if (!status) status = check_there(session, tool, error);
     if (status) return status;
     lar_triple_buffer *box = &session->tool[tool].hand;

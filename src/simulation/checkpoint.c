@@ -15,6 +15,7 @@
 
 #include "base/folder.h"
 #include "base/hash.h"
+#include "base/pose.h"
 #include "contact/spares.h"
 #include "contact/tool_body.h"
 #include "step/identity.h"
@@ -432,20 +433,13 @@ static bool none_negative(const double *value, size_t count) {
     return good;
 }
 
-static bool good_pose(const lar_tool_pose *pose) {
-    double square = 0;
-    for (int i = 0; i < 4; i++) square += pose->orientation[i] * pose->orientation[i];
-    return all_finite(pose->position, 3) && fabs(square - 1) <= 1e-5 && pose->opening >= 0 &&
-           pose->opening <= 1;
-}
-
 /* Numbers of steps are far below this: sums of two of them do not overflow. */
 static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
 
 static bool good_motion(const lar_tool_motion *motion) {
-    return good_pose(&motion->from) && good_pose(&motion->to) && motion->start <= motion->end &&
-           motion->end <= STEPS_MAX && (motion->holding == 0 || motion->holding == 1) &&
-           motion->padding == 0;
+    return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
+           motion->start <= motion->end && motion->end <= STEPS_MAX &&
+           (motion->holding == 0 || motion->holding == 1) && motion->padding == 0;
 }
 
 static bool good_grasp(const lar_grasp *grasp, const file_head *head, const lar_model *model) {

@@ -1,7 +1,9 @@
 /* Tools and contact of a simulation, as the public header has them. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "base/pose.h"
 #include "base/vector.h"
 #include "contact/tool_body.h"
 #include "step/grasp.h"
@@ -89,29 +91,6 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
 /* Beyond this a step could not be told from the next as a number. */
 static const double STEPS_MAX = 0x1p53;
 
-/* Finite, and a turn of length one but for rounding, which it then is. */
-static lar_status check_pose(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_pose *clean,
-                             lar_error *error) {
-    const double *q = pose->orientation;
-    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    bool finite = true;
-    for (int i = 0; i < 3; i++) finite = finite && isfinite(pose->position[i]);
-    if (!finite)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "tool %s: a position is three finite numbers, in metres", tool->name);
-    if (!(fabs(length - 1) <= 1e-6))
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "tool %s: the orientation has length %.9g; it is a quaternion w, x, y, z "
-                        "of length 1 (1, 0, 0, 0: as the world)",
-                        tool->name, length);
-    if (!(pose->opening >= 0 && pose->opening <= 1))
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: an opening of %g; it is 0 to 1",
-                        tool->name, pose->opening);
-    *clean = *pose;
-    for (int i = 0; i < 4; i++) clean->orientation[i] = q[i] / length;
-    return LAR_OK;
-}
-
 /* Contact is looked for once in a step: what goes farther could pass through a surface. */
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
@@ -147,7 +126,10 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
                         tool->name, (unsigned long long)steps);
     lar_tool_at(&tools->follower[index].hand, step, time_step, &now, NULL);
-    status = check_pose(tool, pose, &wanted, error);
+    char whose[128];
+    snprintf(whose, sizeof whose, "tool %s", tool->name);
+    wanted = *pose;
+    status = lar_pose_normalise(&wanted, whose, error);
     if (!status && !(tool->shape == LAR_TOOL_HAND && lar_grasp_count(tools, index) == 0))
         status = check_speed(tool, &now, &wanted, steps, time_step, error);
     if (!status && lar_grasp_changes(tool, motion, wanted.opening)) {

@@ -204,8 +204,8 @@ static void senseless_motions_are_refused(void **unused) {
     pose.position[0] = INFINITY;
     refuse(simulation, TEST_BALL, pose, 10, "finite");
     pose = rest;
-    pose.orientation[1] = 2e-3;
-    refuse(simulation, TEST_BALL, pose, 10, "length 1.000002");
+    pose.orientation[1] = 0.2;
+    refuse(simulation, TEST_BALL, pose, 10, "ball: the orientation has length 1.0198039");
     pose.orientation[1] = NAN;
     refuse(simulation, TEST_BALL, pose, 10, "length");
     pose = rest;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "base/pose.h"
 #include "contact/tools.h"
 #include "session/recording/words.h"
 
@@ -125,7 +126,6 @@ void lar_recording_close(lar_recording_reader *reader) {
 
 static lar_status take_move(const lar_recording_reader *reader, const uint64_t *word,
                             lar_record *record, lar_error *error) {
-    double sum = 0, square = 0;
     if (word[1] >= (uint64_t)(reader->header.tools + reader->header.spares))
         return lar_recording_refuse(
             reader, error, "moves a tool that the recording does not have; it was altered");
@@ -134,10 +134,7 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
     for (int i = 0; i < 3; i++) record->pose.position[i] = lar_double_of(word[3 + i]);
     for (int i = 0; i < 4; i++) record->pose.orientation[i] = lar_double_of(word[6 + i]);
     record->pose.opening = lar_double_of(word[10]);
-    for (int i = 0; i < 3; i++) sum += fabs(record->pose.position[i]);
-    for (int i = 0; i < 4; i++) square += record->pose.orientation[i] * record->pose.orientation[i];
-    if (record->steps > 0 && record->steps <= STEPS_MAX && sum < 1e9 && fabs(square - 1) < 0.01 &&
-        record->pose.opening >= 0 && record->pose.opening <= 1)
+    if (record->steps > 0 && record->steps <= STEPS_MAX && lar_pose_is_normal(&record->pose))
         return LAR_OK;
     return lar_recording_refuse(reader, error, "moves a tool to where none can be; it was altered");
 }

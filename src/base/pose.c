@@ -1,0 +1,55 @@
+#include "base/pose.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/error.h"
+#include "base/quaternion.h"
+
+static const double FARTHEST = 1e9;              /* [m] */
+static const double GIVEN = 0.02, NORMAL = 1e-5; /* what the square of the length may be off */
+
+static bool good_position(const double x[3]) {
+    bool good = true;
+    for (int i = 0; i < 3; i++) good = good && fabs(x[i]) <= FARTHEST;
+    return good;
+}
+
+static double square_of(const double q[4]) {
+    return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+}
+
+static bool good_opening(double opening) {
+    return opening >= 0 && opening <= 1;
+}
+
+/* How the sentence begins. */
+static void begin(const char *whose, char text[128]) {
+    snprintf(text, 128, "%s%s", whose ? whose : "", whose ? ": " : "");
+}
+
+lar_status lar_pose_normalise(lar_tool_pose *pose, const char *whose, lar_error *error) {
+    char head[128];
+    double square = square_of(pose->orientation);
+    begin(whose, head);
+    if (!good_position(pose->position))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%sthe position %g %g %g; it is three finite numbers, in metres", head,
+                        pose->position[0], pose->position[1], pose->position[2]);
+    if (!(fabs(square - 1) <= GIVEN))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%sthe orientation has length %.9g; it is a quaternion w, x, y, z of "
+                        "length 1 (1, 0, 0, 0: as the world)",
+                        head, sqrt(square));
+    if (!good_opening(pose->opening))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%san opening of %g; it goes from 0, closed, to 1, open", head,
+                        pose->opening);
+    lar_quaternion_normalise(pose->orientation);
+    return LAR_OK;
+}
+
+bool lar_pose_is_normal(const lar_tool_pose *pose) {
+    return good_position(pose->position) && fabs(square_of(pose->orientation) - 1) <= NORMAL &&
+           good_opening(pose->opening);
+}
