@@ -97,7 +97,7 @@ lar_status lar_model_notice(lar_model *model, lar_error *error, const char *form
 /* ---- small questions -------------------------------------------------------------------- */
 
 const double (*lar_model_positions(const lar_model *model))[3] {
-    return (const double(*)[3])model->mesh.position;
+    return model ? (const double(*)[3])model->mesh.position : NULL;
 }
 
 double lar_model_output_interval(const lar_model *model) {
