@@ -347,6 +347,15 @@ static int prepare(run *r) {
     return cli_complain_as_other(&cli_run, r->processes, &error);
 }
 
+/* The file is somebody's, by its name: it is not removed as results are, so it is said whose it is.
+ */
+static void tell_of_earlier_state(const run *r, int status) {
+    const char *path = r->settings.save;
+    bool resumed = path && r->settings.resume && strcmp(path, r->settings.resume) == 0;
+    if (path && !resumed && access(path, F_OK) == 0)
+        cli_complain(&cli_run, status, "%s stays as it was before this run", path);
+}
+
 static int compute(run *r) {
     lar_error error;
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
@@ -365,6 +374,7 @@ static int compute(run *r) {
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))
         status = fail_by(r, &error);
+    if (status) tell_of_earlier_state(r, status);
     if (!status) status = report(r);
     if (!status && cli_stop_asked) return CLI_INTERRUPTED;
     return !status && r->follows && !r->rest.reached ? complain_restless(r) : status;

@@ -18,6 +18,15 @@ complains 'the last frame in .*results, number 0'
 grep -Eiw 'nan|inf' "$SCRATCH/results/probes.csv" && fail "numbers that are none in probes.csv"
 expect 0 "$LARIAT" info "$SCRATCH/results/violent_000000.vtu"
 
+# A state that was there before is somebody's: it stays, and is not taken for the broken run's.
+expect 0 "$LARIAT" run "$SOURCE/examples/beam.yaml" --steps 2 --save "$SCRATCH/last.checkpoint"
+cp "$SCRATCH/last.checkpoint" "$SCRATCH/before"
+expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --save "$SCRATCH/last.checkpoint"
+complains 'last.checkpoint stays as it was before this run'
+cmp -s "$SCRATCH/last.checkpoint" "$SCRATCH/before" || fail "the state of another run was changed"
+expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --save "$SCRATCH/none.checkpoint"
+grep -q 'none.checkpoint' err && fail "speaks of a state that was never there"
+
 for element in hex8-full hex8-matrix; do
     expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --element $element
     complains 'unstable at step'
