@@ -24,7 +24,7 @@
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
  * use scratch memory inside it, though never change what another call returns. A SESSION takes a
  * simulation over and computes on a thread of its own; all its calls may come from any thread.
- * While it does, calls that change the simulation are refused.
+ * While it does, calls that change the simulation, or write frames of it, are refused.
  *
  * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
  * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:

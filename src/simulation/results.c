@@ -204,8 +204,9 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
     if (!results || !simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_results_add needs results and a simulation; neither may be NULL");
-    lar_simulation_state(simulation);
-    lar_status status = check_finite(simulation, error);
+    lar_status status = lar_simulation_check_zero(simulation, "lar_results_add", error);
+    if (!status) lar_simulation_state(simulation);
+    if (!status) status = check_finite(simulation, error);
     if (!status) status = add_frame(results, simulation, error);
     if (!status) status = lar_surface_results_add(&results->surface, simulation, error);
     /* The force array is scratch between steps: the state that the caller sees stays the same. */

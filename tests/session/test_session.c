@@ -59,6 +59,9 @@ static void has_its_simulation_for_itself(void **unused) {
     refused_by("a session is open", lar_session_open(b.simulation, NULL, &other, &failure));
     assert_null(other);
     DONE(lar_simulation_advance(b.simulation, 1, &failure)); /* it does not compute yet */
+    lar_results *results = NULL;
+    DONE(lar_results_open("session_results", b.simulation, &results, &failure));
+    DONE(lar_results_add(results, b.simulation, &failure));
     DONE(lar_session_start(b.session, &failure));
     await(&b, LAR_SESSION_PLAYING, 20);
     static const char busy[] = "a session computes on this simulation";
@@ -67,9 +70,11 @@ static void has_its_simulation_for_itself(void **unused) {
     refused_by(busy, lar_simulation_reset(b.simulation, &failure));
     refused_by(busy, lar_simulation_tool_move(b.simulation, BALL, &pose, 10, &failure));
     refused_by(busy, lar_simulation_set_damping(b.simulation, 1, &failure));
+    refused_by(busy, lar_results_add(results, b.simulation, &failure));
     DONE(lar_session_reset(b.session, &failure));
     DONE(lar_session_close(b.session, &failure));
     DONE(lar_simulation_advance(b.simulation, 1, &failure));
+    DONE(lar_results_close(results, &failure));
     DONE(lar_session_open(b.simulation, NULL, &b.session, &failure));
     close_bench(&b);
 }
