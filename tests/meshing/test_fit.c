@@ -560,13 +560,14 @@ static void test_energy_and_its_derivatives(void **state) {
 /* One cube, a node of which is at no place: the sweep ends, and nothing has moved. */
 static void test_a_node_at_nan_ends_the_sweep(void **state) {
     (void)state;
-    int32_t element[1][8], start[9], around[8], none[9] = {0};
+    int32_t element[1][8], start[9], around[8], none[9] = {0}, point[8][3];
+    int32_t row[5] = {0, 2, 4, 6, 8}, ahead[4];
     double x[8][3], before[8][3];
     bool awake[8];
     for (int a = 0; a < 8; a++) {
         element[0][a] = around[a] = start[a] = a;
         awake[a] = true;
-        for (int i = 0; i < 3; i++) x[a][i] = lar_node_sign[a][i] > 0;
+        for (int i = 0; i < 3; i++) x[a][i] = point[a][i] = lar_node_sign[a][i] > 0;
     }
     start[8] = 8;
     x[6][1] = NAN;
@@ -580,7 +581,8 @@ static void test_a_node_at_nan_ends_the_sweep(void **state) {
                          .slot_start = none,
                          .point_start = none,
                          .law = {.shape = 1, .steep = 1, .aim = 0.5, .floor = 0.1},
-                         .awake = awake};
+                         .awake = awake,
+                         .rows = {(const int32_t(*)[3])point, 4, row, ahead, {1, 1, 1}, {1, 1, 1}}};
     assert_int_equal(lar_fit_sweep(&work), 0);
     assert_memory_equal(before, x, sizeof x);
 }

@@ -146,6 +146,7 @@ static lar_status list_near(lar_fit_work *work, lar_error *error) {
             status = lar_fail_memory(error, 8 * list.capacity, "the faces near each face");
     }
     lar_face_boxes_clear(&boxes);
+    if (!status) lar_fit_rows_measure(work);
     return status;
 }
 
