@@ -178,9 +178,9 @@ static lar_status list_near(lar_fit_work *work, lar_error *error) {
     listings all = {.work = work, .portions = apart->count / PORTION + 1};
     free(apart->near);
     apart->near = NULL;
-    lar_status status = lar_face_boxes_create((const double(*)[3])work->x,
-                                              (const int32_t(*)[4])apart->face, apart->count,
-                                              &all.boxes, error);
+    lar_status status =
+        lar_face_boxes_create((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
+                              apart->count, &all.boxes, error);
     if (!status) all.portion = lar_calloc((size_t)all.portions, sizeof *all.portion);
     if (all.portion) lar_parallel_for(apart->count, PORTION, list_portion, &all);
     if (!status && !(all.portion && join_lists(&all, apart)))

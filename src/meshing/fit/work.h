@@ -90,9 +90,9 @@ typedef struct lar_fit_apart {
 
 /* Nodes that follow each other along the grid's first axis (rows.c). */
 typedef struct lar_fit_rows {
-    const int32_t (*point)[3]; /* per node: the unfitted mesh's */
-    int32_t count, *start;     /* [count + 1]: the first node */
-    int32_t *ahead;            /* atomic, per row: where on the first axis the next node is */
+    const int32_t (*point)[3];  /* per node: the unfitted mesh's */
+    int32_t count, *start;      /* [count + 1]: the first node */
+    int32_t *ahead;             /* atomic, per row: where on the first axis the next node is */
     int32_t touch[3], reach[3]; /* points between nodes that have a part in each other's moves: by
                                    elements and slots, and by these and faces kept apart */
 } lar_fit_rows;
