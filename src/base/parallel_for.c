@@ -6,6 +6,8 @@
 
 enum { THREADS_MAX = 16 };
 
+static int32_t threads_asked; /* atomic */
+
 typedef struct task {
     lar_parallel_for_work *work;
     void *context;
@@ -36,11 +38,20 @@ int32_t lar_usable_cores(void) {
     return online > 0 ? (int32_t)online : 1;
 }
 
+void lar_parallel_for_threads(int32_t count) {
+    __atomic_store_n(&threads_asked, count, __ATOMIC_RELAXED);
+}
+
+static int32_t threads_at_most(void) {
+    const int32_t asked = __atomic_load_n(&threads_asked, __ATOMIC_RELAXED);
+    return asked > 0 ? asked : lar_usable_cores();
+}
+
 void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context) {
     task shared = {work, context, count, portion, 0};
     pthread_t thread[THREADS_MAX];
     const int64_t portions = ((int64_t)count + portion - 1) / portion;
-    const int32_t max = portions > 1 ? lar_usable_cores() : 1;
+    const int32_t max = portions > 1 ? threads_at_most() : 1;
     int started = 0;
     while (started + 1 < max && started + 1 < portions && started < THREADS_MAX &&
            !lar_thread_start(&thread[started], help, &shared))

@@ -15,15 +15,16 @@
 /* Does the items first..end - 1. */
 typedef void lar_parallel_for_work(void *context, int32_t first, int32_t end);
 
-/* Cores that the calling thread may use, at least 1. */
+/* Cores that the calling thread may use, second threads of cores included; at least 1. */
 int32_t lar_usable_cores(void);
 
-/* Does `count` items, `portion` of them at a time, and returns when all are done. Where the system
+/* Does `count` items, `portion` of them at a time, and returns when all are done. Portions are
+ * taken in ascending order, so that an item may wait for one of lower number. Where the system
  * gives no thread the caller does it alone. Calls may be nested. */
 void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context);
 
-/* Cores that the calling thread may use, second threads of cores included. Not of base/pin.h, which
- * knows none where Lariat was built without hwloc. */
-int32_t lar_usable_cores(void);
+/* For tests of what may not depend on it: all later calls take so many threads, on any number of
+ * cores; 0: one per core. */
+void lar_parallel_for_threads(int32_t count);
 
 #endif

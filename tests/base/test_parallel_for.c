@@ -85,11 +85,32 @@ static void two_cores_are_at_work_at_once(void **state) {
     assert_int_equal(here, 2);
 }
 
+/* Portions are taken in ascending order: each waits for the one before it, or this never ends. */
+static void wait_for_before(void *context, int32_t first, int32_t end) {
+    int32_t *done = context;
+    for (int32_t n = first; n < end; n++) {
+        while (n > 0 && !__atomic_load_n(&done[n - 1], __ATOMIC_ACQUIRE)) usleep(1);
+        __atomic_store_n(&done[n], 1, __ATOMIC_RELEASE);
+    }
+}
+
+static void an_item_may_wait_for_lower_ones(void **state) {
+    (void)state;
+    for (int32_t threads = 1; threads <= 5; threads++) {
+        int32_t done[100] = {0};
+        lar_parallel_for_threads(threads);
+        lar_parallel_for(100, 1, wait_for_before, done);
+        assert_int_equal(done[99], 1);
+    }
+    lar_parallel_for_threads(0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_item_is_done_once),
         cmocka_unit_test(calls_can_be_nested),
         cmocka_unit_test(two_cores_are_at_work_at_once),
+        cmocka_unit_test(an_item_may_wait_for_lower_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

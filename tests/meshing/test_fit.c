@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "meshing/deviation.h"
 #include "meshing/fit/fit.h"
@@ -419,6 +420,30 @@ static void test_same_bits_twice(void **state) {
     end(&two);
 }
 
+/* A slot whose walls are watched: nodes far from each other have a part in each other's moves. */
+static void test_same_bits_on_any_number_of_threads(void **state) {
+    (void)state;
+    const int32_t size[3] = {84, 58, 58};
+    const double spacing[3] = {0.6e-3, 0.6e-3, 0.6e-3};
+    fitted body[4];
+    for (int k = 0; k < 4; k++) {
+        lar_parallel_for_threads(k < 3 ? k + 1 : 7);
+        begin_label(&body[k], slotted_block, size, spacing);
+        make_unfitted(&body[k], 4e-3);
+        body[k].unfitted.slot_count = 0;
+        fit(&body[k]);
+    }
+    lar_parallel_for_threads(0);
+    const lar_mesh *one = &body[0].unfitted.mesh;
+    for (int k = 1; k < 4; k++) {
+        const lar_mesh *mesh = &body[k].unfitted.mesh;
+        assert_int_equal(mesh->node_count, one->node_count);
+        assert_memory_equal(mesh->position, one->position,
+                            (size_t)one->node_count * sizeof *one->position);
+    }
+    for (int k = 0; k < 4; k++) end(&body[k]);
+}
+
 typedef struct witness {
     int calls, stop_at;
     double last;
@@ -560,13 +585,14 @@ static void test_energy_and_its_derivatives(void **state) {
 /* One cube, a node of which is at no place: the sweep ends, and nothing has moved. */
 static void test_a_node_at_nan_ends_the_sweep(void **state) {
     (void)state;
-    int32_t element[1][8], start[9], around[8], none[9] = {0};
+    int32_t element[1][8], start[9], around[8], none[9] = {0}, point[8][3];
+    int32_t row[5] = {0, 2, 4, 6, 8}, ahead[4];
     double x[8][3], before[8][3];
     bool awake[8];
     for (int a = 0; a < 8; a++) {
         element[0][a] = around[a] = start[a] = a;
         awake[a] = true;
-        for (int i = 0; i < 3; i++) x[a][i] = lar_node_sign[a][i] > 0;
+        for (int i = 0; i < 3; i++) x[a][i] = point[a][i] = lar_node_sign[a][i] > 0;
     }
     start[8] = 8;
     x[6][1] = NAN;
@@ -580,7 +606,8 @@ static void test_a_node_at_nan_ends_the_sweep(void **state) {
                          .slot_start = none,
                          .point_start = none,
                          .law = {.shape = 1, .steep = 1, .aim = 0.5, .floor = 0.1},
-                         .awake = awake};
+                         .awake = awake,
+                         .rows = {(const int32_t(*)[3])point, 4, row, ahead, {1, 1, 1}, {1, 1, 1}}};
     assert_int_equal(lar_fit_sweep(&work), 0);
     assert_memory_equal(before, x, sizeof x);
 }
@@ -598,6 +625,7 @@ int main(void) {
         cmocka_unit_test(test_walls_of_a_slot_stay_apart),
         cmocka_unit_test(test_faces_of_real_organs_stay_apart),
         cmocka_unit_test(test_same_bits_twice),
+        cmocka_unit_test(test_same_bits_on_any_number_of_threads),
         cmocka_unit_test(progress_is_told_and_stops),
         cmocka_unit_test(test_floor_and_aim_are_kept),
         cmocka_unit_test(test_inverted_element_is_refused),

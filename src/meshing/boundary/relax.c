@@ -12,16 +12,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel_for.h"
 #include "base/vector.h"
 
 /* Voxels per axis that a corner may move; and where the part is one voxel thick along it, so that
  * it neither vanishes nor turns inside out. */
 static const double LIMIT = 0.7, THIN_LIMIT = 0.25;
 
+enum { PORTION = 4096 }; /* of vertices or quadrilaterals, for one core at a time */
+
+/* Of a quadrilateral, in voxels. */
+typedef struct quad_size {
+    double volume, area;
+} quad_size;
+
 typedef struct relaxation {
     lar_nets *nets;
     double (*next)[3]; /* scratch per vertex */
+    double factor;     /* of a smoothing step */
     double *weight;    /* scratch per vertex */
+    quad_size *quad;   /* scratch per quadrilateral */
     int32_t regions;
     const double *target; /* volumes */
     double *volume;       /* as they are */
@@ -62,6 +72,11 @@ static void step_vertex(const lar_nets *nets, int32_t v, double factor, double n
     }
 }
 
+static void step_some(void *context, int32_t first, int32_t end) {
+    const relaxation *r = context;
+    for (int32_t v = first; v < end; v++) step_vertex(r->nets, v, r->factor, r->next[v]);
+}
+
 /* A wave of length L along one direction of the surface has the value k = (1 - cos(2 pi / L)) / 2
  * and is multiplied by (1 - FORTH k) (1 + BACK k) per pair of steps: of 4 voxels it keeps 6 % after
  * all pairs, of 6 half, and from 21 on (k = 1 / FORTH - 1 / BACK) all of it. */
@@ -70,8 +85,8 @@ static void smooth(relaxation *r) {
     const double FORTH = 0.67, BACK = 0.68;
     lar_nets *nets = r->nets;
     for (int step = 0; step < 2 * PAIRS; step++) {
-        double factor = step % 2 ? -BACK : FORTH;
-        for (int32_t v = 0; v < nets->vertex_count; v++) step_vertex(nets, v, factor, r->next[v]);
+        r->factor = step % 2 ? -BACK : FORTH;
+        lar_parallel_for(nets->vertex_count, PORTION, step_some, r);
         double(*swap)[3] = nets->moved;
         nets->moved = r->next;
         r->next = swap;
@@ -101,8 +116,9 @@ static double flatness(const double a[3], const double b[3]) {
 }
 
 /* The flatter pair of triangles; of equally flat ones the shorter diagonal. */
-static void choose_diagonals(lar_nets *nets) {
-    for (int32_t q = 0; q < nets->quad_count; q++) {
+static void choose_some(void *context, int32_t first, int32_t end) {
+    lar_nets *nets = context;
+    for (int32_t q = first; q < end; q++) {
         double x[4][3], n[4][3], d[2][3];
         for (int c = 0; c < 4; c++) place_of(nets, nets->corner[q][c], x[c]);
         normal_of(x, 0, 1, 2, n[0]);
@@ -117,31 +133,45 @@ static void choose_diagonals(lar_nets *nets) {
     }
 }
 
+static void choose_diagonals(lar_nets *nets) {
+    lar_parallel_for(nets->quad_count, PORTION, choose_some, nets);
+}
+
 /* ---- volumes -------------------------------------------------------------------------------- */
 
-static void measure(relaxation *r) {
+static void measure_some(void *context, int32_t first, int32_t end) {
+    const relaxation *r = context;
     const lar_nets *nets = r->nets;
-    size_t all = (size_t)r->regions + 1;
-    double voxel = nets->spacing[0] * nets->spacing[1] * nets->spacing[2];
-    memset(r->volume, 0, all * sizeof *r->volume);
-    memset(r->area, 0, all * all * sizeof *r->area);
-    for (int32_t q = 0; q < nets->quad_count; q++) {
-        const int32_t *corner = nets->corner[q];
-        int front = lar_boundary_region(nets->side[q][0]),
-            behind = lar_boundary_region(nets->side[q][1]);
+    const double voxel = nets->spacing[0] * nets->spacing[1] * nets->spacing[2];
+    for (int32_t q = first; q < end; q++) {
         double x[4][3], n[2][3], volume = 0, area = 0;
-        for (int c = 0; c < 4; c++) place_of(nets, corner[(c + nets->diagonal[q]) % 4], x[c]);
+        for (int c = 0; c < 4; c++)
+            place_of(nets, nets->corner[q][(c + nets->diagonal[q]) % 4], x[c]);
         normal_of(x, 0, 1, 2, n[0]);
         normal_of(x, 0, 2, 3, n[1]);
         for (int t = 0; t < 2; t++) {
             volume += lar_dot(x[0], n[t]) / (6 * voxel);
             area += lar_length(n[t]) / (2 * voxel);
         }
-        r->volume[behind] += volume;
-        r->volume[front] -= volume;
+        r->quad[q] = (quad_size){volume, area};
+    }
+}
+
+/* Summed up in one order, whatever number of cores measures. */
+static void measure(relaxation *r) {
+    const lar_nets *nets = r->nets;
+    size_t all = (size_t)r->regions + 1;
+    memset(r->volume, 0, all * sizeof *r->volume);
+    memset(r->area, 0, all * all * sizeof *r->area);
+    lar_parallel_for(nets->quad_count, PORTION, measure_some, r);
+    for (int32_t q = 0; q < nets->quad_count; q++) {
+        int front = lar_boundary_region(nets->side[q][0]),
+            behind = lar_boundary_region(nets->side[q][1]);
+        r->volume[behind] += r->quad[q].volume;
+        r->volume[front] -= r->quad[q].volume;
         if (nets->side[q][0] >= LAR_REGION_CUT) continue; /* cuts stay where they are */
-        r->area[(size_t)front * all + (size_t)behind] += area;
-        r->area[(size_t)behind * all + (size_t)front] += area;
+        r->area[(size_t)front * all + (size_t)behind] += r->quad[q].area;
+        r->area[(size_t)behind * all + (size_t)front] += r->quad[q].area;
     }
 }
 
@@ -210,10 +240,11 @@ lar_status lar_nets_relax(lar_nets *nets, int32_t region_count, const double *vo
     relaxation r = {.nets = nets, .regions = region_count, .target = volume};
     r.next = lar_calloc(vertices, sizeof *r.next);
     r.weight = lar_calloc(vertices, sizeof *r.weight);
+    r.quad = lar_calloc((size_t)nets->quad_count, sizeof *r.quad);
     r.volume = lar_calloc(all, sizeof *r.volume);
     r.area = lar_calloc(all * all, sizeof *r.area);
     r.offset = lar_calloc(all, sizeof *r.offset);
-    bool given = r.next && r.weight && r.volume && r.area && r.offset;
+    bool given = r.next && r.weight && r.quad && r.volume && r.area && r.offset;
     if (given) {
         smooth(&r);
         choose_diagonals(nets);
@@ -226,10 +257,11 @@ lar_status lar_nets_relax(lar_nets *nets, int32_t region_count, const double *vo
     }
     free(r.next);
     free(r.weight);
+    free(r.quad);
     free(r.volume);
     free(r.area);
     free(r.offset);
     return given ? LAR_OK
-                 : lar_fail_memory(error, 32 * vertices + 8 * all * (all + 2),
+                 : lar_fail_memory(error, 48 * vertices + 8 * all * (all + 2),
                                    "smoothing the regions' surfaces");
 }

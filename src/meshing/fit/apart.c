@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "meshing/fit/crossing.h"
 #include "meshing/fit/face_boxes.h"
@@ -62,13 +63,22 @@ lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
 
 /* ---- watching ------------------------------------------------------------------------------- */
 
+enum { PORTION = 256 }; /* faces that one core lists at a time */
+
 typedef struct listing {
     const lar_fit_work *work;
-    lar_fit_apart *apart;
+    lar_fit_near *near;
     size_t used, capacity;
     int32_t face;
     bool failed;
 } listing;
+
+typedef struct listings {
+    lar_fit_work *work;
+    lar_face_boxes boxes;
+    listing *portion;
+    int32_t portions;
+} listings;
 
 /* Whether two faces share a node, and all corners of both look the same way. */
 static bool look_alike(const lar_fit_work *work, const int32_t a[4], const int32_t b[4]) {
@@ -94,15 +104,16 @@ static bool look_alike(const lar_fit_work *work, const int32_t a[4], const int32
 
 static bool add_near(void *context, int32_t other) {
     listing *list = context;
+    const lar_fit_apart *apart = &list->work->apart;
     if (other == list->face) return true;
-    if (!list->apart->strict[list->face] && !list->apart->strict[other] &&
-        look_alike(list->work, list->apart->face[list->face], list->apart->face[other]))
+    if (!apart->strict[list->face] && !apart->strict[other] &&
+        look_alike(list->work, apart->face[list->face], apart->face[other]))
         return true;
-    if (list->used == INT32_MAX || !LAR_GROW(list->apart->near, list->capacity, list->used)) {
+    if (list->used == INT32_MAX || !LAR_GROW(list->near, list->capacity, list->used)) {
         list->failed = true;
         return false;
     }
-    list->apart->near[list->used++] = (lar_fit_near){.face = other};
+    list->near[list->used++] = (lar_fit_near){.face = other};
     return true;
 }
 
@@ -126,26 +137,59 @@ static void bound_face(const lar_fit_work *work, int32_t f) {
     }
 }
 
+/* Of one portion of faces; near_start[f + 1] becomes the number of f's. */
+static void list_portion(void *context, int32_t first, int32_t end) {
+    listings *all = context;
+    lar_fit_apart *apart = &all->work->apart;
+    listing *list = &all->portion[first / PORTION];
+    list->work = all->work;
+    for (int32_t f = first; f < end; f++) {
+        const size_t before = list->used;
+        apart->extent[f].way = 0;
+        bound_face(all->work, f);
+        list->face = f;
+        if (is_among(apart->checked, apart->face[f]))
+            lar_face_boxes_near(&all->boxes, f, 2 * LEASH + GAP, add_near, list);
+        apart->near_start[f + 1] = (int32_t)(list->used - before);
+    }
+}
+
+/* The portions' lists, one after the other. */
+static bool join_lists(const listings *all, lar_fit_apart *apart) {
+    size_t count = 0, at = 0;
+    for (int32_t p = 0; p < all->portions; p++) {
+        if (all->portion[p].failed) return false;
+        count += all->portion[p].used;
+    }
+    apart->near = count <= INT32_MAX ? lar_calloc(count + 1, sizeof *apart->near) : NULL;
+    if (!apart->near) return false;
+    for (int32_t p = 0; p < all->portions; p++) {
+        const listing *list = &all->portion[p];
+        if (list->used > 0) memcpy(apart->near + at, list->near, list->used * sizeof *list->near);
+        at += list->used;
+    }
+    for (int32_t f = 0; f < apart->count; f++) apart->near_start[f + 1] += apart->near_start[f];
+    return true;
+}
+
 /* The faces that each face with a watched node may meet in this round. */
 static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
-    lar_face_boxes boxes = {0};
-    listing list = {.work = work, .apart = apart};
+    listings all = {.work = work, .portions = apart->count / PORTION + 1};
     free(apart->near);
     apart->near = NULL;
-    lar_status status = lar_face_boxes_create(
-        (const double(*)[3])work->x, (const int32_t(*)[4])apart->face, apart->count, &boxes, error);
-    for (int32_t f = 0; !status && f < apart->count; f++) {
-        apart->extent[f].way = 0;
-        bound_face(work, f);
-        list.face = f;
-        if (is_among(apart->checked, apart->face[f]))
-            lar_face_boxes_near(&boxes, f, 2 * LEASH + GAP, add_near, &list);
-        apart->near_start[f + 1] = (int32_t)list.used;
-        if (list.failed)
-            status = lar_fail_memory(error, 8 * list.capacity, "the faces near each face");
-    }
-    lar_face_boxes_clear(&boxes);
+    lar_status status =
+        lar_face_boxes_create((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
+                              apart->count, &all.boxes, error);
+    if (!status) all.portion = lar_calloc((size_t)all.portions, sizeof *all.portion);
+    if (all.portion) lar_parallel_for(apart->count, PORTION, list_portion, &all);
+    if (!status && !(all.portion && join_lists(&all, apart)))
+        status = lar_fail_memory(error, 64 * sizeof *apart->near * (size_t)apart->count,
+                                 "the faces near each face");
+    for (int32_t p = 0; all.portion && p < all.portions; p++) free(all.portion[p].near);
+    free(all.portion);
+    lar_face_boxes_clear(&all.boxes);
+    if (!status) lar_fit_rows_measure(work);
     return status;
 }
 

@@ -185,7 +185,8 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_
     if (status == LAR_OK) status = list_faces(work, error);
     if (status == LAR_OK && !list_neighbours(work, (size_t)unfitted->slot_count))
         status = lar_fail_memory(error, nodes * 12 * sizeof(int32_t), "the elements around nodes");
-    return status ? status : lar_fit_apart_create(work, error);
+    if (status == LAR_OK) status = lar_fit_apart_create(work, error);
+    return status ? status : lar_fit_rows_create(work, unfitted, error);
 }
 
 void lar_fit_work_clear(lar_fit_work *work) {
@@ -197,6 +198,7 @@ void lar_fit_work_clear(lar_fit_work *work) {
         work->region};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     lar_fit_apart_clear(&work->apart);
+    lar_fit_rows_clear(&work->rows);
     memset(work, 0, sizeof *work);
 }
 

@@ -23,8 +23,8 @@ static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 
 /* Rounds of some sweeps each. From BALANCE on volumes are balanced; from STAND on the planes stand,
  * so that points of something thin, which are drawn to its one side now and to its other one then,
- * come to rest and volumes with them. */
-enum { SWEEPS = 4, ROUNDS = 15, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
+ * come to rest and volumes with them; several regions take longer. */
+enum { SWEEPS = 4, ROUNDS = 15, ROUNDS_REGIONS = 18, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
@@ -52,9 +52,10 @@ static lar_status sweep_apart(lar_fit_work *work, lar_error *error) {
 
 static lar_status run(lar_fit_work *work, const lar_fit_options *options, lar_error *error) {
     for (int32_t n = 0; n < work->mesh->node_count; n++) work->awake[n] = true;
-    for (int round = 0; round < ROUNDS; round++) {
+    const int rounds = work->boundary->region_count > 1 ? ROUNDS_REGIONS : ROUNDS;
+    for (int round = 0; round < rounds; round++) {
         if (options && options->progress &&
-            !options->progress(options->context, (double)round / ROUNDS))
+            !options->progress(options->context, (double)round / rounds))
             return lar_fail(error, LAR_ERROR_ARGUMENT, "stopped while the mesh was fitted");
         if (round >= BALANCE) {
             lar_status status = lar_fit_volume_balance(work, 0.8, error);

@@ -13,6 +13,8 @@
 typedef struct lar_unfitted_mesh {
     lar_mesh mesh;       /* element_tag = region number until lar_unfitted_finish */
     double size;         /* edge of a cell [m] */
+    int32_t (*point)[3]; /* per node: its point of the grid. Nodes are numbered in the grid's order,
+                            first along the first axis */
     int32_t *meet_start; /* [nodes + 1] into meet */
     uint16_t (*meet)[2]; /* pairs (a, b), a < b, of regions (0 outside, cuts by number) between
                             which a face of the mesh lies that has this node; none: the node is

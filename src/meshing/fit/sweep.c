@@ -5,7 +5,8 @@
 
 /* Newton's method for one node at a time, in the order of their numbers (Gauss-Seidel): the
  * Hessian, made positive definite, has three rows, and a node that cannot go on holds up no other
- * one, which a step of all nodes at once would. */
+ * one, which a step of all nodes at once would. All cores take part, and what comes out is what one
+ * core would find: rows.c keeps the order wherever it matters. */
 
 /* Steps below it [cells] do not wake the neighbours; none is longer than the other. */
 static const double STILL = 5e-3, LONGEST = 0.35;
@@ -172,29 +173,34 @@ static double move(lar_fit_work *work, int32_t n) {
     return 0;
 }
 
+/* Two nodes that have no part in each other's moves may wake a third one at once. */
+static void wake(lar_fit_work *work, int32_t n) {
+    __atomic_store_n(&work->awake[n], true, __ATOMIC_RELAXED);
+}
+
 static void wake_around(lar_fit_work *work, int32_t n) {
     for (int32_t i = work->element_start[n]; i < work->element_start[n + 1]; i++) {
         const int32_t *node = work->mesh->element[work->element_around[i] / 8];
-        for (int a = 0; a < 8; a++) work->awake[node[a]] = true;
+        for (int a = 0; a < 8; a++) wake(work, node[a]);
     }
     for (int32_t i = work->slot_start[n]; i < work->slot_start[n + 1]; i++)
-        for (int a = 0; a < 4; a++) work->awake[work->slot[work->slot_around[i] / 4][a]] = true;
+        for (int a = 0; a < 4; a++) wake(work, work->slot[work->slot_around[i] / 4][a]);
 }
 
 void lar_fit_wake_boundary(lar_fit_work *work) {
     for (int32_t i = 0; i < work->point_count; i++) work->awake[work->point[i].node] = true;
 }
 
+static int32_t sweep_node(lar_fit_work *work, int32_t n) {
+    if (!work->awake[n]) return 0;
+    work->awake[n] = false;
+    if (!(move(work, n) > STILL)) return 0;
+    wake_around(work, n);
+    return 1;
+}
+
 int32_t lar_fit_sweep(lar_fit_work *work) {
-    int32_t moved = 0;
-    for (int32_t n = 0; n < work->mesh->node_count; n++) {
-        if (!work->awake[n]) continue;
-        work->awake[n] = false;
-        if (!(move(work, n) > STILL)) continue;
-        wake_around(work, n);
-        moved++;
-    }
-    return moved;
+    return lar_fit_rows_visit(work, sweep_node);
 }
 
 double lar_fit_min(const lar_fit_work *work, double bar, double *part_above) {

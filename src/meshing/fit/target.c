@@ -19,6 +19,10 @@ static const double NEGLIGIBLE = 0.03;
 /* How much more a flat cut weighs: it is known exactly, and its edge shall be sharp. */
 static const double CUT_WEIGHT = 4;
 
+/* How much more an outer face weighs where it and interfaces draw at the same nodes: it is what is
+ * seen, and where the body ends. */
+static const double OUTER_WEIGHT = 2;
+
 /* ---- trees ---------------------------------------------------------------------------------- */
 
 /* Triangles by the region behind them, so that not all are looked at for each pair. */
@@ -181,6 +185,11 @@ static bool find_target(const lar_fit_work *work, const lar_fit_pair *pair, cons
     return true;
 }
 
+static double pair_weight(const lar_fit_work *work, const lar_fit_pair *pair) {
+    if (pair->region[1] >= LAR_REGION_CUT) return CUT_WEIGHT;
+    return pair->region[0] == 0 && work->boundary->region_count > 1 ? OUTER_WEIGHT : 1;
+}
+
 /* The plane through the nearest point. It stands across the way there, which beyond the rim of an
  * open boundary, and at its edges, is not the triangle's normal; near the boundary the triangle's
  * says it better, and a flat cut has only one. */
@@ -206,7 +215,7 @@ static void renew_plane(const lar_fit_work *work, const lar_fit_pair *pair, cons
     memcpy(plane->point, found.point, sizeof plane->point);
     memcpy(plane->normal, found.normal, sizeof plane->normal);
     plane->level = lar_dot(found.normal, found.point);
-    plane->weight = pair->region[1] < LAR_REGION_CUT ? weight : CUT_WEIGHT * weight;
+    plane->weight = pair_weight(work, pair) * weight;
 }
 
 static void unit_normal(const lar_fit_work *work, const lar_fit_face *face, double normal[3]) {

@@ -5,17 +5,29 @@
 #include "meshing/fit/work.h"
 
 /* Faces of a pair (a, b) that lie `offset` farther towards a take offset * area from a and give it
- * to b. Of all offsets that restore the volumes those are taken that change least: offset =
- * p_b - p_a with a pressure p per region, 0 outside, so that for each region r
+ * to b. Of all offsets that restore the volumes those are taken that change least, where a change
+ * of an outer face, which is seen, counts more than one of an interface: offset = ease *
+ * (p_b - p_a) with a pressure p per region, 0 outside, and an ease of 1 for interfaces, so that for
+ * each region r
  *
- *     sum over its pairs (r, s) of area * (p_r - p_s) = what r misses
+ *     sum over its pairs (r, s) of ease * area * (p_r - p_s) = what r misses
  *
  * a small symmetric positive definite system, solved by damped Jacobi iteration. Flat cuts stay
  * where they are. */
-enum { SWEEPS = 200 };
+enum { SWEEPS = 1000 };
 
-/* Beyond this many cells the mesh cannot follow: a region that misses so much lacks cells. */
-static const double FARTHEST = 0.8;
+/* Of outer faces. A power of two: a body of one region, where it has no meaning, keeps its bits. */
+static const double EASE_OUTER = 0.5;
+
+static double ease(const lar_fit_pair *pair) {
+    return pair->region[0] == 0 ? EASE_OUTER : 1;
+}
+
+/* Beyond this many cells the mesh cannot follow: a region that misses so much lacks cells. Where
+ * interfaces give way to outer faces they stand off farther for the same volume. */
+static double farthest(const lar_fit_pair *pair) {
+    return pair->region[0] == 0 ? 0.8 : 1.2;
+}
 
 static void measure_areas(lar_fit_work *work) {
     for (int32_t p = 0; p < work->pair_count; p++) work->pair[p].area = 0;
@@ -51,10 +63,11 @@ static void solve_pressures(const lar_fit_work *work, const double *missing, dou
             const lar_fit_pair *pair = &work->pair[p];
             const int a = pair->region[0], b = pair->region[1];
             if (b >= LAR_REGION_CUT) continue;
-            area[a] += pair->area;
-            area[b] += pair->area;
-            sum[a] += pair->area * pressure[b];
-            sum[b] += pair->area * pressure[a];
+            const double eased = ease(pair) * pair->area;
+            area[a] += eased;
+            area[b] += eased;
+            sum[a] += eased * pressure[b];
+            sum[b] += eased * pressure[a];
         }
         for (int32_t r = 1; r <= regions; r++)
             if (area[r] > 0) pressure[r] += 0.7 * (sum[r] / area[r] - pressure[r]);
@@ -64,7 +77,7 @@ static void solve_pressures(const lar_fit_work *work, const double *missing, dou
 /* Where the elements' shape holds against an offset, volumes follow only by a part of it: what goes
  * on missing is asked for with more and more weight. */
 static void weigh_missing(lar_fit_region *region, double *missing, size_t regions) {
-    static const double FOLLOWS = 0.6, MORE = 1.5, MAX = 4;
+    const double FOLLOWS = 0.6, MORE = 1.5, MAX = regions > 2 ? 8 : 4;
     for (size_t r = 1; r < regions; r++) {
         const double part = region[r].missing != 0 ? missing[r] / region[r].missing : 0;
         region[r].missing = missing[r];
@@ -85,8 +98,9 @@ lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *e
     for (int32_t p = 0; p < work->pair_count; p++) {
         lar_fit_pair *pair = &work->pair[p];
         if (pair->region[1] >= LAR_REGION_CUT) continue;
-        const double change = pressure[pair->region[1]] - pressure[pair->region[0]];
-        pair->offset = fmax(fmin(pair->offset + share * change, FARTHEST), -FARTHEST);
+        const double change = ease(pair) * (pressure[pair->region[1]] - pressure[pair->region[0]]);
+        const double far = farthest(pair);
+        pair->offset = fmax(fmin(pair->offset + share * change, far), -far);
     }
     free(table);
     return LAR_OK;

@@ -5,7 +5,8 @@
  *     faces.c        which elements and faces are around each node
  *     target.c       where faces and nodes shall lie: planes at the true boundary
  *     volume.c       how far off the boundary they shall lie, so that regions keep their volumes
- *     sweep.c        nodes move, one after the other
+ *     sweep.c        nodes move, as if one after the other
+ *     rows.c         which of them may move at once
  *     apart.c        no outer face goes through another one
  *     quality.c      the energy of a corner
  */
@@ -87,6 +88,15 @@ typedef struct lar_fit_apart {
     lar_fit_extent *extent; /* per face */
 } lar_fit_apart;
 
+/* Nodes that follow each other along the grid's first axis (rows.c). */
+typedef struct lar_fit_rows {
+    const int32_t (*point)[3];  /* per node: the unfitted mesh's */
+    int32_t count, *start;      /* [count + 1]: the first node */
+    int32_t *ahead;             /* atomic, per row: where on the first axis the next node is */
+    int32_t touch[3], reach[3]; /* points between nodes that have a part in each other's moves: by
+                                   elements and slots, and by these and faces kept apart */
+} lar_fit_rows;
+
 typedef struct lar_fit_work {
     const lar_boundary *boundary;
     const lar_mesh *mesh; /* its elements; positions are in `x` */
@@ -107,6 +117,7 @@ typedef struct lar_fit_work {
     lar_fit_law law, slot_law;
     double face_weight, node_weight; /* of a whole face's planes, of a node's with four faces */
     bool *awake;                     /* per node: worth moving */
+    lar_fit_rows rows;
     lar_fit_apart apart;
 } lar_fit_work;
 
@@ -127,8 +138,21 @@ lar_status lar_fit_volume_balance(lar_fit_work *work, double share, lar_error *e
 /* Nodes between regions, whose planes have changed or are to stand elsewhere. */
 void lar_fit_wake_boundary(lar_fit_work *work);
 
-/* Moves every node that is awake once; the number that moved. */
+/* Moves every node that is awake once, in the order of their numbers or so that it comes to the
+ * same; the number that moved. */
 int32_t lar_fit_sweep(lar_fit_work *work);
+
+/* The rows of a mesh; freed with `work`. */
+lar_status lar_fit_rows_create(lar_fit_work *work, const lar_unfitted_mesh *unfitted,
+                               lar_error *error);
+void lar_fit_rows_clear(lar_fit_rows *rows);
+/* How far nodes have a part in each other's moves, anew: after the lists of near faces changed. */
+void lar_fit_rows_measure(lar_fit_work *work);
+/* Calls `visit` for all nodes, on all cores: each after those of lower number within reach, and
+ * before those of higher number. `visit` may look at and change what belongs to nodes within reach.
+ * The sum of what it returned. */
+typedef int32_t lar_fit_visit(lar_fit_work *work, int32_t node);
+int32_t lar_fit_rows_visit(lar_fit_work *work, lar_fit_visit *visit);
 
 /* Makes apart's lists; all are freed with `work`. */
 lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error);

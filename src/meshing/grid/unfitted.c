@@ -124,10 +124,11 @@ static lar_status allocate(lar_unfitted_mesh *unfitted, lar_error *error) {
     mesh->element = lar_calloc(elements, sizeof *mesh->element);
     mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
     mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
+    unfitted->point = lar_calloc(nodes, sizeof *unfitted->point);
     unfitted->meet_start = lar_calloc(nodes + 1, sizeof *unfitted->meet_start);
     if (!mesh->source || !mesh->position || !mesh->node_id || !mesh->element || !mesh->element_id ||
-        !mesh->element_tag || !unfitted->meet_start)
-        return lar_fail_memory(error, nodes * 40 + elements * 48, "the mesh");
+        !mesh->element_tag || !unfitted->point || !unfitted->meet_start)
+        return lar_fail_memory(error, nodes * 52 + elements * 48, "the mesh");
     return LAR_OK;
 }
 
@@ -216,6 +217,7 @@ static lar_status fill_nodes(const point_grid *grid, const lar_unfitted_cuts *cu
                 if (n < 0) continue;
                 const int at[3] = {i, j, k};
                 place_of(grid->voxel_grid, at, unfitted->mesh.position[n]);
+                memcpy(unfitted->point[n], at, sizeof at);
                 unfitted->mesh.node_id[n] = n + 1;
                 uint16_t pair[PAIRS_MAX + 1][2];
                 const int count = pairs_at(grid->voxel_grid, cuts, at, pair);
@@ -231,6 +233,7 @@ static lar_status fill_nodes(const point_grid *grid, const lar_unfitted_cuts *cu
 
 void lar_unfitted_clear(lar_unfitted_mesh *unfitted) {
     lar_mesh_clear(&unfitted->mesh);
+    free(unfitted->point);
     free(unfitted->meet_start);
     free(unfitted->meet);
     free(unfitted->slot);
