@@ -346,6 +346,11 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
             return [...looks.querySelectorAll('*')].filter((part) => part.getBoundingClientRect().right > right + 1).map((part) => part.id || part.outerHTML.slice(0, 80));
         });
         assert.deepEqual(wide, [], `wider than the column at ${width}`);
+        const padding = await v.page.evaluate(() => {
+            const { right } = document.getElementById('panel').getBoundingClientRect();
+            return Math.min(...[...document.querySelectorAll('#panel td')].map((cell) => right - cell.getBoundingClientRect().right));
+        });
+        assert.ok(padding > 6, `the engine's numbers are ${padding} pixels from the edge at ${width}`);
         const place = (part) => v.page.locator(part).evaluate((e) => e.getBoundingClientRect().toJSON());
         const free = (await place('#transport')).top - (await place('#looks')).bottom;
         assert.ok(free < 12, `${free} pixels below the column are not used at ${width}`);

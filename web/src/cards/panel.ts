@@ -109,7 +109,7 @@ export class Panel {
 
     private misses(status: Status): string {
         const share = status.ticks > 0 ? (100 * status.misses) / status.ticks : 0;
-        return `${status.misses} (${share.toFixed(share < 0.1 ? 3 : 1)} %)`;
+        return `${status.misses} (${share.toFixed(share < 0.1 ? 3 : 1)} %)`;
     }
 }
 
