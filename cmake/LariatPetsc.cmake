@@ -10,6 +10,8 @@ if(LARIAT_HAVE_PETSC)
   set_target_properties(lariat-petsc PROPERTIES PREFIX lib SUFFIX .so
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
   install(TARGETS lariat-petsc LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+else() # a module of an earlier configuration, whose PETSc is gone: the command would find it
+  file(REMOVE ${PROJECT_BINARY_DIR}/liblariat-petsc.so)
 endif()
 # From the command's folder to where the module is installed.
 file(RELATIVE_PATH LARIAT_PETSC_FROM_BIN "/root/${CMAKE_INSTALL_BINDIR}"

@@ -334,9 +334,9 @@ const cli_command cli_mesh = {
     .description =
         "Meshes a label image (.nii .nii.gz .nrrd .nhdr), closed surfaces (.stl .obj .vtk .vtp),\n"
         "one region each, or the boundary and regions of a mesh of tetrahedra (.msh .vtu .vtk\n"
-        ".inp .feb) with hexahedra that lie on the true boundary and run in real time. Writes the "
-        "mesh, the embedded surface and a scene with materials, a support and a\n"
-        "pull, which runs as it is and says in comments what to change. Lengths are metres.",
+        ".inp .feb) with hexahedra that lie on the true boundary and run in real time. Writes\n"
+        "the mesh, the embedded surface and a scene with materials, a support and a pull, which\n"
+        "runs as it is and says in comments what to change. Lengths are metres.",
     .examples = "  lariat mesh scan.nii.gz --list\n"
                 "  lariat mesh scan.nii.gz --label liver --names labels.csv\n"
                 "  lariat mesh scan.seg.nrrd --label 3 --label 4 --elements 20000 --out chest\n"

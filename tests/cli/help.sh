@@ -25,6 +25,8 @@ while read -r command; do
     page=share/man/man1/lariat-$(echo "$command" | tr ' ' '-').1
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
+    wide=$(awk 'length($0) > 100' out)
+    [ -z "$wide" ] || fail "$command --help has a line that no terminal shows whole: $wide"
     grep -o '^  --[a-z-]*' out | tr -d ' ' >options
     grep -q -x -e --help options || fail "$command --help lists no options"
     # shellcheck disable=SC2086

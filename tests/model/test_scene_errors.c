@@ -55,6 +55,11 @@ static void test_root(void **state) {
         {"", "1:1", "there is nothing in this file"},
         {"# nothing\n", "1:1", "there is nothing in this file"},
         {"- lariat\n", "1:1", "this is no scene"},
+        {"lariat: 1\nmesh: bare.vtu\nmaterials: [{cells: all, law: neo-hookean, density: 1, "
+         "shear_modulus: 1, bulk_modulus: 9}]\nfix: [{nodes: base, axes: x}]\n",
+         "4:15",
+         "the set \"base\" is unknown, the mesh has no sets; define it, for example "
+         "sets: [ { name: base, nodes: { box: "},
         {"hello\n", "1:1", "this is no scene"},
         {"mesh: a.vtu\n", "1:1", "needs the key \"lariat\"; add it, for example lariat: 1"},
         {"lariat: 2\n", "1:9", "expected 1, the version of the scene format"},

@@ -311,7 +311,13 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     const v = await openPage(browser, own.url);
     Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'] });
     await v.page.locator('#slow').waitFor({ state: 'visible', timeout: 3000 });
-    await laidOut(v, [...always, '#hint'], 'hint');
+    await v.page.evaluate(() => {
+        const line = document.createElement('p');
+        line.textContent = 'Saved: checkpoint abdomen_pelvis_of_a_long_name-1.checkpoint';
+        document.getElementById('notes').append(line);
+    });
+    await laidOut(v, [...always, '#hint', '#notes p'], 'hint');
+    await v.page.evaluate(() => document.getElementById('notes').replaceChildren());
     own.state.replay = { name: 'pear-1.recording', time: 0.4, length: 2 };
     await v.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
     await laidOut(v, [...always, '#replay'], 'replay');
@@ -321,6 +327,7 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     await v.page.evaluate(() => document.querySelectorAll('#looks details').forEach((card) => (card.open = true)));
     await v.page.getByLabel('cut open').check();
     await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('2');
     await v.page.keyboard.press('i');
     await v.page.keyboard.press('Enter');
     await v.page.keyboard.press('d');
@@ -339,12 +346,32 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
             return [...looks.querySelectorAll('*')].filter((part) => part.getBoundingClientRect().right > right + 1).map((part) => part.id || part.outerHTML.slice(0, 80));
         });
         assert.deepEqual(wide, [], `wider than the column at ${width}`);
+        const padding = await v.page.evaluate(() => {
+            const { right } = document.getElementById('panel').getBoundingClientRect();
+            return Math.min(...[...document.querySelectorAll('#panel td')].map((cell) => right - cell.getBoundingClientRect().right));
+        });
+        assert.ok(padding > 6, `the engine's numbers are ${padding} pixels from the edge at ${width}`);
+        const place = (part) => v.page.locator(part).evaluate((e) => e.getBoundingClientRect().toJSON());
+        const free = (await place('#transport')).top - (await place('#looks')).bottom;
+        assert.ok(free < 12, `${free} pixels below the column are not used at ${width}`);
+        const legend = (await place('#legend-map + .row')).height;
+        assert.ok(legend < 24, `the legend's numbers are broken at ${width}: ${legend} pixels high`);
         await v.page.locator('#cut-across').scrollIntoViewIfNeeded();
         await v.shot(`layout-inside-${width}`);
         await v.page.locator('#steps').scrollIntoViewIfNeeded();
         await v.shot(`layout-plots-${width}`);
     }
     await Promise.all([v.page.waitForEvent('download'), v.page.keyboard.press('w')]);
+    // The keys are read from the top, and the way out is in sight.
+    for (const [width, height] of [[390, 780], [800, 600]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.keyboard.press('?');
+        assert.equal(await v.page.locator('#help').evaluate((help) => help.scrollTop), 0, `scrolled at ${width}`);
+        const close = await v.page.getByRole('button', { name: 'Close' }).boundingBox();
+        assert.ok(close.y + close.height < height, `Close is out of sight at ${width}`);
+        await v.shot(`layout-help-${width}`);
+        await v.page.keyboard.press('Escape');
+    }
     await v.close();
 });
 

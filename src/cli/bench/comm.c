@@ -194,7 +194,7 @@ const cli_command cli_bench_comm = {
         "beside\n"
         "them by a hand-written copy and poll and by a single word from core to core; and "
         "computes\n"
-        "while they travel. Samples of all take turns; medians count. For quiet figures run "
+        "while they travel. Samples of all take turns; medians count. For quiet figures run\n"
         "nothing else on the machine.",
     .examples = "  lariat bench comm\n"
                 "  mpirun -n 2 lariat bench comm\n"

@@ -126,7 +126,7 @@ static void put_head(const lar_meshing *m, FILE *f) {
     put(f, m->title, true);
     fprintf(f,
             "\nmesh: \"%s.vtu\"\n"
-            "surface: \"%s_surface.vtp\"   # the true surface rides on the mesh, to be looked at\n",
+            "surface: \"%s_surface.vtp\"   # the true surface, embedded in the mesh\n",
             m->stem, m->stem);
     fputs(m->image
               ? "view: [0.15, 1, 0.35]   # looked at from the patient's front, the head is up\n\n"
@@ -190,9 +190,11 @@ static void put_fix(const lar_meshing *m, FILE *f) {
             "# Nothing holds it: hold it by { nodes: support, axes: xyz } and a set of your own.\n",
             f);
     if (support->extra_supports > 0)
-        fputs("# Pads: small places of its underside, where its neighbours carry it in the patient "
-              "and\n"
-              "# without which it could not bear its weight. Without that line it hangs free.\n",
+        fputs("# Extra supports (pads): small places of its underside, where its neighbours carry "
+              "it\n"
+              "# in the patient and without which it could not bear its weight. Without that line "
+              "it\n"
+              "# hangs free.\n",
               f);
     if (support->held) fputs("fix:\n  - { nodes: support, axes: xyz }\n", f);
     any = support->held;

@@ -122,6 +122,12 @@ static lar_status unknown_set(const lar_scene *scene, const lar_yaml *name) {
                                   "the set \"%.60s\" is defined only in line %d; move it up",
                                   name->text, set->line);
     }
+    if (mesh->set_count == 0)
+        return lar_scene_fail(scene, name, LAR_ERROR_MODEL,
+                              "the set \"%.60s\" is unknown, the mesh has no sets; define it, for "
+                              "example sets: [ { name: %.60s, nodes: { box: [[-1, -1, 0], "
+                              "[1, 1, 0.01]] } } ], in metres",
+                              name->text, name->text);
     const char **names = lar_calloc((size_t)mesh->set_count, sizeof *names);
     if (!names) return lar_scene_no_memory(scene, sizeof *names * (size_t)mesh->set_count);
     for (int32_t i = 0; i < mesh->set_count; i++) names[i] = mesh->set[i].name;

@@ -41,10 +41,10 @@ export class Panel {
             (s) => number(s.real_time_factor_now, 2), (s) => s.slow_motion],
         ['since the start', 'The same since the engine was started, pauses left out.', (s) => number(s.real_time_factor, 3)],
         ['step, median', 'What a step takes to compute: half of them take less.', (s) => span(s.step_us.p50)],
-        ['step, 99 %', 'What a step takes: 99 of 100 take less.', (s) => span(s.step_us.p99)],
+        ['step, 99 %', 'What a step takes: 99 of 100 take less.', (s) => span(s.step_us.p99)],
         ['step, longest', 'The longest that a step has taken.', (s) => span(s.step_us.max)],
         ['answer, median', ANSWER + 'Half of all answers come sooner.', (s) => span(s.tick_us.p50)],
-        ['answer, 99.9 %', ANSWER + '999 of 1000 answers come sooner.', (s) => span(s.tick_us.p999), (s) => this.late(s)],
+        ['answer, 99.9 %', ANSWER + '999 of 1000 answers come sooner.', (s) => span(s.tick_us.p999), (s) => this.late(s)],
         ['missed', 'Exchanges with the tools whose forces came after the next exchange was due. Those of slow motion are counted below.',
             (s) => this.misses(s), (s) => s.misses > 0.001 * s.ticks],
         ['late, slow motion', 'Exchanges that were late because the run is in slow motion: each had to wait for the one before it.',
@@ -109,7 +109,7 @@ export class Panel {
 
     private misses(status: Status): string {
         const share = status.ticks > 0 ? (100 * status.misses) / status.ticks : 0;
-        return `${status.misses} (${share.toFixed(share < 0.1 ? 3 : 1)} %)`;
+        return `${status.misses} (${share.toFixed(share < 0.1 ? 3 : 1)} %)`;
     }
 }
 
