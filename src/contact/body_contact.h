@@ -126,8 +126,9 @@ typedef struct lar_body_contact {
     lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
 } lar_body_contact;
 
-/* For the whole model. Without contacts of bodies it costs nothing. */
-lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+/* For the whole model; `tree`, fitted to the time step, outlives it. Without contacts of bodies it
+ * costs nothing. */
+lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *local,
                                    double time_step, double stable_step, bool search_always,
                                    lar_body_contact *contact, lar_error *error);
 void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */

@@ -20,6 +20,8 @@
     X(double, v, 4, 1)      /* velocities half a step before it [m/s] */                           \
     X(int64_t, force, 4, 0) /* internal minus external forces [force units] */
 
+typedef struct lar_strained lar_strained; /* step/guard.h */
+
 typedef struct lar_state {
     uint64_t step;   /* steps done */
     int32_t part;    /* parts of a divided step done; 0 between advances */
@@ -32,6 +34,7 @@ typedef struct lar_state {
     double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
     bool close;      /* they are looked at in this step: lar_division_is_close */
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
+    lar_strained *strained; /* the list, lent; no state */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)

@@ -100,12 +100,14 @@ static lar_status gather_others(lar_computer *computer, lar_error *error) {
 }
 
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
+    if (computer->gathered) return LAR_OK;
     if (computer->broken) return lar_computer_refuse(error);
     lar_state *state = computer->state;
     state->step = computer->processor[0].worker[0].state.step;
     state->external = state->damped = state->contact = 0;
     gather_here(computer);
     lar_status status = computer->control ? gather_others(computer, error) : LAR_OK;
+    computer->gathered = !status;
     if (status) computer->broken = true;
     return status;
 }
@@ -188,6 +190,7 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     first->external = computer->state->external;
     first->damped = computer->state->damped;
     first->contact = computer->state->contact;
+    computer->gathered = true;
     computer->tools_sent = false;
     computer->contact.valid = false;
     computer->contact.info = (lar_contact_info){0};

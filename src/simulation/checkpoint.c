@@ -117,7 +117,7 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 
 /* What a file has of the tools: spares up to the last one that is there. */
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
@@ -506,7 +506,7 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
 /* What fill_tools writes; *at moves behind it. */
 static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     *tools =
         (lar_tools){.count = head->tools, .grasp_count = head->grasps, .division = {.base = 1}};
     size_t count = (size_t)tools->count, grasps = (size_t)tools->grasp_count;
@@ -537,7 +537,7 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
 lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
                                 lar_checkpoint *checkpoint, lar_error *error) {
     const lar_model *model = whole->model;
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     size_t nodes = (size_t)model->mesh.node_count;
     file_head head;
     lar_status status = check_file(path, bytes, &head, error);

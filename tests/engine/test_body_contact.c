@@ -90,9 +90,9 @@ static void forces_come_in_pairs(void **unused) {
     for (int32_t n = first; n < model->mesh.node_count; n++)
         s->state.u[4 * layout->local[n] + 2] = -0.002;
     lar_condition_context context = lar_domain_context(domain);
-    lar_body_contact_forget(&domain->interactions.body_contact);
-    lar_body_contact_apply(&domain->interactions.body_contact, &context, &s->state);
-    assert_true(domain->interactions.body_contact.info.touching > 10);
+    lar_body_contact_forget(&s->interactions.body_contact);
+    lar_body_contact_apply(&s->interactions.body_contact, &context, &s->state);
+    assert_true(s->interactions.body_contact.info.touching > 10);
     int64_t sum[3] = {0};
     double moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {

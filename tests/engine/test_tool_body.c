@@ -131,7 +131,7 @@ static void hardness_grows_with_time(void **unused) {
     const lar_step_room room = {.max = 0.9};
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.interactions.tool_contact.list;
+    const lar_tool_list *list = simulation->domain.surroundings.list;
     lar_tools tools = simulation->tools;
     for (int n = 1; n <= 100; n++) {
         double before = tools.division.hardness;
