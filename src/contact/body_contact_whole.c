@@ -127,7 +127,7 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
            groups = (size_t)search_state->search->list.group_room;
     size_t pairs = (size_t)search_state->search->list.face_room;
     int32_t *value = lar_calloc(nodes, sizeof *value);
-    contact->view.value = value;
+    contact->view.value = search_state->value = value;
     search_state->x = lar_calloc(nodes, sizeof *search_state->x);
     search_state->searched = lar_calloc(nodes, sizeof *search_state->searched);
     contact->due = lar_calloc(groups, sizeof *contact->due);
@@ -184,7 +184,7 @@ void lar_body_contact_destroy(lar_body_contact *contact) {
     free(contact->part);
     free(contact->offset);
     if (search_state) {
-        free((int32_t *)contact->view.value);
+        free(search_state->value);
         if (search_state->search) lar_contact_search_clear(search_state->search);
         free(search_state->search);
         free(search_state->x);

@@ -285,9 +285,9 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
     memset(own->v, 0, 4 * (size_t)layout->node_padded * sizeof *own->v);
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
-        size_t there = 4 * (size_t)whole->layout.local[layout->global[n]], here = 4 * (size_t)n;
-        memcpy(own->u + here, state->u + there, 4 * sizeof *own->u);
-        memcpy(own->v + here, state->v + there, 4 * sizeof *own->v);
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, whole->layout.local[layout->global[n]], value);
+        lar_state_write(own, n, value);
     }
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_worker *worker = &p->worker[t];

@@ -444,14 +444,9 @@ void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3
 uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
-        size_t node = (size_t)domain->layout.local[g];
-#define LAR_STATE_HASH(type, name, values, kept)                                                   \
-    for (int i = 0; kept && i < 3; i++)                                                            \
-        hash = lar_hash_double(hash, (double)state->name[node * (values) + (size_t)i]);
-        LAR_STATE_ARRAYS(LAR_STATE_HASH)
-#undef LAR_STATE_HASH
-        double level = state->u[4 * node + 3];
-        if (level > 0) hash = lar_hash_double(hash, level);
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, domain->layout.local[g], value);
+        hash = lar_state_hash_values(hash, value);
     }
     return hash;
 }
