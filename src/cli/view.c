@@ -157,7 +157,7 @@ static int open_server(view *v) {
         cli_complain(&cli_view, CLI_DONE, "note: port %d is taken; listening at port %d instead",
                      (int)s->port, options.port);
     v->url = strdup(lar_server_url(v->server));
-    return CLI_DONE;
+    return v->url ? CLI_DONE : cli_complain(&cli_view, CLI_FAILED, "out of memory");
 }
 
 static int open_session(view *v) {

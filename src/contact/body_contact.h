@@ -90,6 +90,7 @@ typedef struct lar_penetration_offset {
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_body_contact_search_state {
     lar_contact_search *search;
+    int32_t *value;            /* [contact nodes] of lar_contact_view */
     double (*x)[3];            /* [contact nodes] places at the search under way [m] */
     double (*searched)[3];     /* and at the last one */
     double since;              /* what has moved since the search under way began [m] */
@@ -105,20 +106,20 @@ typedef struct lar_body_contact {
     lar_contact_law law;
     double time_step;
     lar_contact_view view;
-    lar_contact_list list;                  /* what this thread has to do with */
-    const uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
-    double *due;                            /* [list.group_room] travel at which to look */
-    int32_t *last;                          /* [list.group_room] the closest face then, an entry */
-    double *away;                           /* [list.face_room] travel until which the face cannot
-                                               be the closest one within reach */
-    int32_t *near;                          /* [list.group_room] the groups that are due before */
-    int32_t near_count;                     /* travel is at */
-    double travel, horizon;                 /* [m] */
+    lar_contact_list list;            /* what this thread has to do with */
+    uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
+    double *due;                      /* [list.group_room] travel at which to look */
+    int32_t *last;                    /* [list.group_room] the closest face then, an entry */
+    double *away;                     /* [list.face_room] travel until which the face cannot
+                                         be the closest one within reach */
+    int32_t *near;                    /* [list.group_room] the groups that are due before */
+    int32_t near_count;               /* travel is at */
+    double travel, horizon;           /* [m] */
     double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
     double way;   /* the same in the last step [m] */
     int32_t part_count;
     lar_body_contact_part *part; /* [list.group_room] */
-    const uint8_t *keeps;        /* [contact nodes] those that this thread moves; NULL: all */
+    uint8_t *keeps;              /* [contact nodes] those that this thread moves; NULL: all */
     int32_t offset_count;
     lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
@@ -126,8 +127,9 @@ typedef struct lar_body_contact {
     lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
 } lar_body_contact;
 
-/* For the whole model. Without contacts of bodies it costs nothing. */
-lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+/* For the whole model; `tree`, fitted to the time step, outlives it. Without contacts of bodies it
+ * costs nothing. */
+lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *local,
                                    double time_step, double stable_step, bool search_always,
                                    lar_body_contact *contact, lar_error *error);
 void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */

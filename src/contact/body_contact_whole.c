@@ -122,12 +122,12 @@ void lar_body_contact_forget(lar_body_contact *contact) {
 
 static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_error *error) {
     lar_body_contact_search_state *search_state = contact->search_state;
-    const lar_contact_surface *surface = &search_state->search->surface;
+    const lar_contact_surface *surface = &search_state->search->tree->surface;
     size_t nodes = (size_t)surface->node_count,
            groups = (size_t)search_state->search->list.group_room;
     size_t pairs = (size_t)search_state->search->list.face_room;
     int32_t *value = lar_calloc(nodes, sizeof *value);
-    contact->view.value = value;
+    contact->view.value = search_state->value = value;
     search_state->x = lar_calloc(nodes, sizeof *search_state->x);
     search_state->searched = lar_calloc(nodes, sizeof *search_state->searched);
     contact->due = lar_calloc(groups, sizeof *contact->due);
@@ -143,10 +143,12 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     return LAR_OK;
 }
 
-lar_status lar_body_contact_create(const lar_model *model, const double *mass, const int32_t *local,
+lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *local,
                                    double time_step, double stable_step, bool search_always,
                                    lar_body_contact *contact, lar_error *error) {
     *contact = (lar_body_contact){0};
+    const lar_contact_surface *surface = &tree->surface;
+    if (surface->node_count == 0) return LAR_OK;
     lar_body_contact_search_state *search_state = contact->search_state =
         lar_calloc(1, sizeof *search_state);
     if (search_state) search_state->search = lar_calloc(1, sizeof *search_state->search);
@@ -154,11 +156,8 @@ lar_status lar_body_contact_create(const lar_model *model, const double *mass, c
         lar_body_contact_destroy(contact);
         return lar_fail_memory(error, sizeof *search_state->search, "contact of bodies");
     }
-    lar_status status = lar_contact_search_create(model, mass, local, search_state->search, error);
-    lar_contact_surface *surface = &search_state->search->surface;
-    if (!status && surface->node_count > 0)
-        status = lar_contact_surface_fit(model, time_step, stable_step, surface, error);
-    if (status || surface->node_count == 0) {
+    lar_status status = lar_contact_search_create(tree, search_state->search, error);
+    if (status) {
         lar_body_contact_destroy(contact);
         return status;
     }
@@ -185,7 +184,7 @@ void lar_body_contact_destroy(lar_body_contact *contact) {
     free(contact->part);
     free(contact->offset);
     if (search_state) {
-        free((int32_t *)contact->view.value);
+        free(search_state->value);
         if (search_state->search) lar_contact_search_clear(search_state->search);
         free(search_state->search);
         free(search_state->x);

@@ -101,6 +101,28 @@ void lar_conditions_destroy(lar_conditions *c) {
     *c = (lar_conditions){0};
 }
 
+lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
+                                      lar_error *error) {
+    size_t moved = (size_t)(c->constraint_count - c->fixed_count), forces = (size_t)c->force_count;
+    size_t pressures = (size_t)c->pressure_count;
+    *notes = (lar_condition_notes){.moved = lar_calloc(moved, sizeof *notes->moved),
+                                   .force = lar_calloc(forces, sizeof *notes->force),
+                                   .pressure = lar_calloc(pressures, sizeof *notes->pressure)};
+    if (notes->moved && notes->force && notes->pressure) return LAR_OK;
+    lar_condition_notes_destroy(notes);
+    return lar_fail_memory(error,
+                           moved * sizeof *notes->moved + forces * sizeof *notes->force +
+                               pressures * sizeof *notes->pressure,
+                           "supports and loads");
+}
+
+void lar_condition_notes_destroy(lar_condition_notes *notes) {
+    free(notes->moved);
+    free(notes->force);
+    free(notes->pressure);
+    *notes = (lar_condition_notes){0};
+}
+
 static double factor_at(const lar_model *model, int curve, double time) {
     return curve < 0 ? 1 : lar_curve_value(&model->curve[curve], time);
 }
@@ -156,49 +178,50 @@ static double gravity_half_work(const lar_condition_context *context, double tim
 }
 
 double lar_conditions_half_work(const lar_conditions *c, const lar_condition_context *context,
-                                double time, const lar_state *state) {
+                                double time, const lar_condition_notes *notes,
+                                const lar_state *state) {
     double dt = context->mean_step, work = 0;
     for (int32_t i = 0; i < c->force_count; i++)
-        work += half_work(c->force[i].now, state->v + c->force[i].node, dt);
+        work += half_work(notes->force[i], state->v + c->force[i].node, dt);
     for (int32_t i = 0; i < c->pressure_count; i++)
         for (int a = 0; a < 4; a++)
-            work += half_work(c->pressure[i].now[a], state->v + c->pressure[i].node[a], dt);
+            work += half_work(notes->pressure[i][a], state->v + c->pressure[i].node[a], dt);
     if (lar_gravity_varies(context->model, context->settings))
         work += gravity_half_work(context, time, state);
     return work;
 }
 
-int32_t lar_conditions_load(lar_conditions *c, const lar_condition_context *context, double time,
-                            lar_state *state) {
+int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context *context,
+                            double time, lar_condition_notes *notes, lar_state *state) {
     int32_t beyond = -1;
     for (int32_t i = 0; i < c->force_count; i++) {
-        lar_point_force *f = &c->force[i];
-        double factor = factor_at(context->model, f->curve, time);
-        for (int k = 0; k < 3; k++) f->now[k] = factor * f->force[k];
-        if (!add_external(state->force + f->node, context->scale, f->now)) beyond = f->node / 4;
+        const lar_point_force *f = &c->force[i];
+        double factor = factor_at(context->model, f->curve, time), *now = notes->force[i];
+        for (int k = 0; k < 3; k++) now[k] = factor * f->force[k];
+        if (!add_external(state->force + f->node, context->scale, now)) beyond = f->node / 4;
     }
     for (int32_t i = 0; i < c->pressure_count; i++) {
-        lar_face_pressure *p = &c->pressure[i];
-        double x[4][3];
+        const lar_face_pressure *p = &c->pressure[i];
+        double x[4][3], (*now)[3] = notes->pressure[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++) x[a][k] = p->position[a][k] + state->u[p->node[a] + k];
-        pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), p->now);
+        pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), now);
         for (int a = 0; a < 4; a++)
-            if (!add_external(state->force + p->node[a], context->scale, p->now[a]))
+            if (!add_external(state->force + p->node[a], context->scale, now[a]))
                 beyond = p->node[a] / 4;
     }
     return beyond;
 }
 
-void lar_conditions_observe(lar_conditions *c, const lar_condition_context *context,
-                            lar_state *state) {
+void lar_conditions_observe(const lar_conditions *c, const lar_condition_context *context,
+                            lar_condition_notes *notes, lar_state *state) {
     /* The support takes it: a large reaction is no fast node. */
     for (int32_t i = 0; i < c->fixed_count; i++) state->force[c->constraint[i].value] = 0;
     for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
-        lar_constraint *constraint = &c->constraint[i];
-        int64_t *force = &state->force[constraint->value];
-        constraint->force = (double)*force / context->scale;
-        constraint->before = state->v[constraint->value];
+        int32_t value = c->constraint[i].value;
+        int64_t *force = &state->force[value];
+        notes->moved[i - c->fixed_count] =
+            (lar_moved_axis){(double)*force / context->scale, state->v[value]};
         *force = 0;
     }
 }
@@ -219,8 +242,8 @@ static double hold(const lar_conditions *c, const double *weight, lar_state *sta
     return counted;
 }
 
-double lar_conditions_impose(lar_conditions *c, const lar_condition_context *context, double time,
-                             lar_state *state) {
+double lar_conditions_impose(const lar_conditions *c, const lar_condition_context *context,
+                             double time, const lar_condition_notes *notes, lar_state *state) {
     const lar_model *model = context->model;
     double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
     double dt = context->time_step, step = context->mean_step;
@@ -229,10 +252,11 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
     state->damped -= share * hold(c, context->weight, state);
     for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
         const lar_constraint *constraint = &c->constraint[i];
+        const lar_moved_axis *noted = &notes->moved[i - c->fixed_count];
         double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
         double mass = context->mass[constraint->value / 4];
         double weight = context->weight[constraint->value / 4];
-        double before = constraint->before, free = before + *v;
+        double before = noted->before, free = before + *v;
         double old = lar_constraint_value(model, constraint, time);
         *u = lar_constraint_value(model, constraint, time + dt);
         *v = (*u - old) / dt;
@@ -241,8 +265,8 @@ double lar_conditions_impose(lar_conditions *c, const lar_condition_context *con
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / step;
-        double reaction = mass * (acceleration + damping * mean - gravity[constraint->value % 4]) +
-                          constraint->force;
+        double reaction =
+            mass * (acceleration + damping * mean - gravity[constraint->value % 4]) + noted->force;
         if (weight > 0) work += reaction * mean * step;
     }
     return work;

@@ -5,8 +5,8 @@
  * Prescribed values are computed from the model's curves at the new time, the same on every
  * processor that has the node.
  *
- * What the lists note within a step (forces, velocities before) means nothing between steps: it is
- * no state.
+ * The lists are constant. What a thread notes of them within a step (forces, velocities before)
+ * stands beside them, and means nothing between steps: it is no state.
  *
  * Work. In the leapfrog scheme a force F_n held from v- to v+ does exactly the work
  * dt F_n (v- + v+)/2 on the half-step kinetic energy; the sums here use that, so the energy
@@ -23,8 +23,6 @@ typedef struct lar_constraint {
     int32_t value; /* index into u and v: 4 * local node + axis */
     int32_t curve; /* -1: held */
     double by;
-    double force;  /* residual force of the step under way [N] */
-    double before; /* velocity before the step under way */
 } lar_constraint;
 
 /* A dead force on one node. */
@@ -32,7 +30,6 @@ typedef struct lar_point_force {
     int32_t node; /* 4 * local node */
     int32_t curve;
     double force[3];
-    double now[3]; /* in the step under way [N] */
 } lar_point_force;
 
 /* A pressure on one face. */
@@ -41,7 +38,6 @@ typedef struct lar_face_pressure {
     int32_t curve;
     double pressure;
     double position[4][3]; /* reference */
-    double now[4][3];      /* forces on the corners in the step under way [N] */
 } lar_face_pressure;
 
 typedef struct lar_conditions {
@@ -52,6 +48,19 @@ typedef struct lar_conditions {
     lar_face_pressure *pressure;
     uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
 } lar_conditions;
+
+/* Of an axis that is moved, in the step under way. */
+typedef struct lar_moved_axis {
+    double force;  /* residual [N] */
+    double before; /* velocity before it [m/s] */
+} lar_moved_axis;
+
+/* What a thread notes of its conditions in the step under way. */
+typedef struct lar_condition_notes {
+    lar_moved_axis *moved;    /* [constraint_count - fixed_count] */
+    double (*force)[3];       /* [force_count] [N] */
+    double (*pressure)[4][3]; /* [pressure_count] on the corners [N] */
+} lar_condition_notes;
 
 /* Everything a step needs to know besides the lists. */
 typedef struct lar_condition_context {
@@ -85,26 +94,30 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  lar_error *error);
 void lar_conditions_destroy(lar_conditions *conditions); /* idempotent */
 
+lar_status lar_condition_notes_create(const lar_conditions *conditions, lar_condition_notes *notes,
+                                      lar_error *error);
+void lar_condition_notes_destroy(lar_condition_notes *notes); /* idempotent */
+
 /* Adds the loads at `time` to state->force. Returns a node (local) whose loads are too large for
  * the force sums, so that the run must stop; -1 when there is none. */
-int32_t lar_conditions_load(lar_conditions *conditions, const lar_condition_context *context,
-                            double time, lar_state *state);
+int32_t lar_conditions_load(const lar_conditions *conditions, const lar_condition_context *context,
+                            double time, lar_condition_notes *notes, lar_state *state);
 
 /* Half the work of one step by the loads of the last lar_conditions_load, with the velocities as
  * they are: once before and once after the nodes move [J]. */
 double lar_conditions_half_work(const lar_conditions *conditions,
                                 const lar_condition_context *context, double time,
-                                const lar_state *state);
+                                const lar_condition_notes *notes, const lar_state *state);
 
 /* After the elements, before the nodes move: remembers residual force and velocity where motion is
  * prescribed, and takes the residual from every supported value: it goes into the ground. */
-void lar_conditions_observe(lar_conditions *conditions, const lar_condition_context *context,
-                            lar_state *state);
+void lar_conditions_observe(const lar_conditions *conditions, const lar_condition_context *context,
+                            lar_condition_notes *notes, lar_state *state);
 
 /* After the nodes moved from `time`: imposes supports and motion at time + dt; returns the work
  * that moving the supports took [J]. */
-double lar_conditions_impose(lar_conditions *conditions, const lar_condition_context *context,
-                             double time, lar_state *state);
+double lar_conditions_impose(const lar_conditions *conditions, const lar_condition_context *context,
+                             double time, const lar_condition_notes *notes, lar_state *state);
 
 /* Displacement of a constraint at `time` [m]. */
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time);

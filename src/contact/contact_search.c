@@ -49,39 +49,35 @@ static int widest_axis(const int32_t *order, int32_t count, const double (*middl
 }
 
 /* The patch of some faces and all below it; its depth is that of a balanced tree. */
-static void divide(lar_contact_search *search, int32_t first, int32_t count,
+static void divide(lar_contact_tree *tree, int32_t first, int32_t count,
                    const double (*middle)[3]) {
-    int32_t own = search->patch_count++;
-    search->patch[own] = (lar_patch){first, count, 0};
+    int32_t own = tree->patch_count++;
+    tree->patch[own] = (lar_patch){first, count, 0};
     if (count <= PATCH_FACES) return;
-    int32_t *order = search->order + first;
+    int32_t *order = tree->order + first;
     halve(order, count, middle, widest_axis(order, count, middle));
-    divide(search, first, count / 2, middle);
-    search->patch[own].right = search->patch_count;
-    divide(search, first + count / 2, count - count / 2, middle);
+    divide(tree, first, count / 2, middle);
+    tree->patch[own].right = tree->patch_count;
+    divide(tree, first + count / 2, count - count / 2, middle);
 }
 
-static lar_status build_tree(lar_contact_search *search, lar_error *error) {
-    const lar_contact_surface *s = &search->surface;
+static lar_status build_tree(lar_contact_tree *tree, lar_error *error) {
+    const lar_contact_surface *s = &tree->surface;
     size_t faces = (size_t)s->face_count;
     double(*middle)[3] = lar_calloc(faces, sizeof *middle);
-    search->order = lar_calloc(faces, sizeof *search->order);
-    search->patch = lar_calloc(2 * faces + 1, sizeof *search->patch);
-    search->patch_box = lar_calloc(2 * faces + 1, sizeof *search->patch_box);
-    search->face_box = lar_calloc(faces, sizeof *search->face_box);
-    search->apart = lar_calloc(faces, sizeof *search->apart);
-    search->place = lar_calloc(faces, sizeof *search->place);
-    bool fits = middle && search->order && search->patch && search->patch_box && search->face_box &&
-                search->apart && search->place;
+    tree->order = lar_calloc(faces, sizeof *tree->order);
+    tree->patch = lar_calloc(2 * faces + 1, sizeof *tree->patch);
+    tree->place = lar_calloc(faces, sizeof *tree->place);
+    bool fits = middle && tree->order && tree->patch && tree->place;
     for (int32_t f = 0; f < s->face_count && fits; f++) {
-        search->order[f] = f;
+        tree->order[f] = f;
         for (int a = 0; a < 4; a++)
             for (int i = 0; i < 3; i++) middle[f][i] += 0.25 * s->rest[s->face[f].corner[a]][i];
     }
-    if (fits) divide(search, 0, s->face_count, (const double(*)[3])middle);
-    for (int32_t i = 0; i < s->face_count && fits; i++) search->place[search->order[i]] = i;
+    if (fits) divide(tree, 0, s->face_count, (const double(*)[3])middle);
+    for (int32_t i = 0; i < s->face_count && fits; i++) tree->place[tree->order[i]] = i;
     free(middle);
-    return fits ? LAR_OK : lar_fail_memory(error, 140 * faces, "the boxes of surfaces");
+    return fits ? LAR_OK : lar_fail_memory(error, 64 * faces, "the boxes of surfaces");
 }
 
 /* ---- boxes ---------------------------------------------------------------------------------- */
@@ -120,15 +116,16 @@ static lar_box box_of(const lar_contact_surface *s, const lar_contact_face *face
 /* The boxes of some more faces; with the last ones, those of all patches. Halves stand behind what
  * they are halves of. */
 static void fit_boxes(lar_contact_search *search, int32_t faces) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_tree *tree = search->tree;
+    const lar_contact_surface *s = &tree->surface;
     int32_t left = s->face_count - search->boxes,
             end = search->boxes + (faces < left ? faces : left);
     for (int32_t i = search->boxes; i < end; i++)
-        search->face_box[i] = box_of(s, &s->face[search->order[i]], search->x, search->next.skin);
+        search->face_box[i] = box_of(s, &s->face[tree->order[i]], search->x, search->next.skin);
     search->boxes = end;
     if (end < s->face_count) return;
-    for (int32_t p = search->patch_count - 1; p >= 0; p--) {
-        const lar_patch *patch = &search->patch[p];
+    for (int32_t p = tree->patch_count - 1; p >= 0; p--) {
+        const lar_patch *patch = &tree->patch[p];
         lar_box *box = &search->patch_box[p];
         *box = no_box;
         if (patch->right) {
@@ -163,7 +160,7 @@ static void insert(const lar_contact_face *face, int32_t *list, int32_t count, i
 
 /* Marks the faces that a node never meets: every node is in the boxes of its neighbours. */
 static void mark_apart(lar_contact_search *search, int32_t node) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_surface *s = &search->tree->surface;
     for (int64_t i = s->apart_first[node]; i < s->apart_first[node + 1]; i++)
         search->apart[s->apart[i]] = node + 1;
 }
@@ -171,13 +168,14 @@ static void mark_apart(lar_contact_search *search, int32_t node) {
 /* The faces whose boxes hold a node, behind those in the list; -1: there is no room. */
 static int32_t find_faces(const lar_contact_search *search, int32_t node, const double x[3],
                           int32_t *face, int32_t room) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_tree *tree = search->tree;
+    const lar_contact_surface *s = &tree->surface;
     uint64_t passes = s->node[node].passes;
     int32_t stack[DEPTH], depth = 0, count = 0;
     stack[depth++] = 0;
     while (depth > 0) {
         int32_t p = stack[--depth];
-        const lar_patch *patch = &search->patch[p];
+        const lar_patch *patch = &tree->patch[p];
         if (!holds(&search->patch_box[p], x)) continue;
         if (patch->right) {
             stack[depth++] = patch->right;
@@ -186,7 +184,7 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
         }
         for (int32_t i = patch->first; i < patch->first + patch->count; i++) {
             if (!holds(&search->face_box[i], x)) continue;
-            int32_t f = search->order[i];
+            int32_t f = tree->order[i];
             if (search->apart[f] == node + 1 || !(passes & (s->face[f].active | s->face[f].mute)))
                 continue;
             if (node >= s->node_count && s->face[f].body == s->node[node].body) continue;
@@ -207,7 +205,8 @@ static double outside(const lar_box *box, double skin, const double x[3]) {
 
 /* Cuts the faces of a node into groups of one body each. A group of mute faces pushes nobody. */
 static bool add_groups(lar_contact_search *search, int32_t node, const double x[3], int32_t count) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_tree *tree = search->tree;
+    const lar_contact_surface *s = &tree->surface;
     lar_contact_list *list = &search->next;
     int32_t *face = list->face + list->face_count, kept = 0;
     for (int32_t from = 0, to; from < count; from = to) {
@@ -215,7 +214,7 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
         double gap = INFINITY;
         for (to = from; to < count && s->face[face[to]].body == s->face[face[from]].body; to++) {
             active = active || lar_contact_active(&s->node[node], &s->face[face[to]]);
-            gap = lesser(gap, outside(&search->face_box[search->place[face[to]]], list->skin, x));
+            gap = lesser(gap, outside(&search->face_box[tree->place[face[to]]], list->skin, x));
         }
         if (!active) continue;
         if (list->group_count == list->group_room || to - from > LAR_GROUP_FACES_MAX) return false;
@@ -230,7 +229,7 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
 static void find_place(const lar_contact_search *search, int32_t node, double x[3]) {
     int32_t parent[2];
     double weight[2];
-    int count = lar_contact_parents(&search->surface, node, parent, weight);
+    int count = lar_contact_parents(&search->tree->surface, node, parent, weight);
     const double *one = search->x[parent[0]], *other = search->x[parent[1]];
     for (int i = 0; i < 3; i++)
         x[i] = count == 1 ? one[i] : weight[0] * one[i] + weight[1] * other[i];
@@ -248,12 +247,12 @@ void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], 
 enum { BOXES_PER_NODE = 4 };
 
 int32_t lar_contact_search_left(const lar_contact_search *search) {
-    return search->surface.point_count - search->at +
-           (search->surface.face_count - search->boxes) / BOXES_PER_NODE;
+    return search->tree->surface.point_count - search->at +
+           (search->tree->surface.face_count - search->boxes) / BOXES_PER_NODE;
 }
 
 lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_surface *s = &search->tree->surface;
     lar_contact_list *list = &search->next;
     if (search->boxes < s->face_count) {
         fit_boxes(search,
@@ -373,7 +372,7 @@ static void measure_clearance(lar_contact_surface *s, const lar_contact_list *li
 /* Contact would throw the two apart, with energy from nowhere. */
 static lar_status refuse_overlap(const lar_model *model, const lar_contact_search *search,
                                  lar_error *error) {
-    const lar_contact_surface *s = &search->surface;
+    const lar_contact_surface *s = &search->tree->surface;
     const lar_contact_list *list = &search->list;
     overlap deepest = {-1, -1, lar_overlap_rounding(&model->mesh)};
     for (int32_t g = 0; g < list->group_count; g++) {
@@ -393,8 +392,8 @@ static lar_status refuse_overlap(const lar_model *model, const lar_contact_searc
 
 /* Within one body that is its shape, and nothing to be pushed apart. Bodies that lie in each other
  * are refused. */
-static lar_status keep_shape(const lar_model *model, lar_contact_search *search, lar_error *error) {
-    lar_contact_surface *s = &search->surface;
+static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
+                             lar_contact_surface *s, lar_error *error) {
     const lar_contact_list *list = &search->list;
     if (!lar_contact_search_run(search, (const double(*)[3])s->rest, 0))
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -422,28 +421,50 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
     return status;
 }
 
-lar_status lar_contact_search_create(const lar_model *model, const double *mass,
-                                     const int32_t *local, lar_contact_search *search,
+lar_status lar_contact_tree_create(const lar_model *model, const double *mass, const int32_t *local,
+                                   lar_contact_tree *tree, lar_error *error) {
+    lar_contact_search search;
+    *tree = (lar_contact_tree){0};
+    lar_status status = lar_contact_surface_create(model, mass, local, &tree->surface, error);
+    if (status || tree->surface.node_count == 0) return status;
+    status = build_tree(tree, error);
+    if (!status) status = lar_contact_search_create(tree, &search, error);
+    if (!status) {
+        status = keep_shape(model, &search, &tree->surface, error);
+        lar_contact_search_clear(&search);
+    }
+    if (status) lar_contact_tree_clear(tree);
+    return status;
+}
+
+void lar_contact_tree_clear(lar_contact_tree *tree) {
+    lar_contact_surface_clear(&tree->surface);
+    free(tree->patch);
+    free(tree->order);
+    free(tree->place);
+    *tree = (lar_contact_tree){0};
+}
+
+lar_status lar_contact_search_create(const lar_contact_tree *tree, lar_contact_search *search,
                                      lar_error *error) {
-    *search = (lar_contact_search){0};
-    lar_status status = lar_contact_surface_create(model, mass, local, &search->surface, error);
-    if (status || search->surface.node_count == 0) return status;
-    status = build_tree(search, error);
-    if (!status) status = allocate_list(&search->surface, &search->list, error);
-    if (!status) status = allocate_list(&search->surface, &search->next, error);
-    if (!status) status = keep_shape(model, search, error);
+    size_t faces = (size_t)tree->surface.face_count, patches = (size_t)tree->patch_count;
+    *search = (lar_contact_search){.tree = tree,
+                                   .patch_box = lar_calloc(patches, sizeof *search->patch_box),
+                                   .face_box = lar_calloc(faces, sizeof *search->face_box),
+                                   .apart = lar_calloc(faces, sizeof *search->apart)};
+    bool fits = search->patch_box && search->face_box && search->apart;
+    lar_status status =
+        fits ? LAR_OK : lar_fail_memory(error, 100 * faces, "the boxes of surfaces");
+    if (!status) status = allocate_list(&tree->surface, &search->list, error);
+    if (!status) status = allocate_list(&tree->surface, &search->next, error);
     if (status) lar_contact_search_clear(search);
     return status;
 }
 
 void lar_contact_search_clear(lar_contact_search *search) {
-    lar_contact_surface_clear(&search->surface);
-    free(search->patch);
     free(search->patch_box);
     free(search->face_box);
-    free(search->order);
     free(search->apart);
-    free(search->place);
     free(search->list.group);
     free(search->list.face);
     free(search->next.group);

@@ -41,7 +41,7 @@ typedef struct lar_contact_list {
     double skin; /* [m] */
 } lar_contact_list;
 
-/* A patch: faces first .. first + count - 1 of lar_contact_search.order; its left half follows it,
+/* A patch: faces first .. first + count - 1 of lar_contact_tree.order; its left half follows it,
  * its right half is `right`, 0 for one that is not divided. */
 typedef struct lar_patch {
     int32_t first, count, right;
@@ -51,14 +51,19 @@ typedef struct lar_box {
     double lower[3], upper[3];
 } lar_box;
 
-typedef struct lar_contact_search {
+/* What may touch what, and the tree over it: constant once time step and masses are fitted. */
+typedef struct lar_contact_tree {
     lar_contact_surface surface;
     int32_t patch_count;
-    lar_patch *patch;      /* [patch_count] */
-    lar_box *patch_box;    /* [patch_count] */
-    int32_t *order;        /* [face_count] faces, those of a patch together */
-    int32_t *place;        /* [face_count] where a face stands in `order` */
-    lar_box *face_box;     /* [face_count] in that order */
+    lar_patch *patch; /* [patch_count] */
+    int32_t *order;   /* [face_count] faces, those of a patch together */
+    int32_t *place;   /* [face_count] where a face stands in `order` */
+} lar_contact_tree;
+
+typedef struct lar_contact_search {
+    const lar_contact_tree *tree;
+    lar_box *patch_box;    /* [tree->patch_count] */
+    lar_box *face_box;     /* [face_count] in the tree's order */
     int32_t *apart;        /* [face_count] the last node, plus 1, that never meets it */
     lar_contact_list list; /* of the last search */
     lar_contact_list next; /* of the one under way */
@@ -69,8 +74,12 @@ typedef struct lar_contact_search {
 
 /* Without contacts between bodies surface.node_count is 0. Bodies that lie in each other at rest
  * are refused (LAR_ERROR_MODEL). */
-lar_status lar_contact_search_create(const lar_model *model, const double *mass,
-                                     const int32_t *local, lar_contact_search *search,
+lar_status lar_contact_tree_create(const lar_model *model, const double *mass, const int32_t *local,
+                                   lar_contact_tree *tree, lar_error *error);
+void lar_contact_tree_clear(lar_contact_tree *tree); /* idempotent */
+
+/* `tree`, which has nodes, outlives it. */
+lar_status lar_contact_search_create(const lar_contact_tree *tree, lar_contact_search *search,
                                      lar_error *error);
 void lar_contact_search_clear(lar_contact_search *search); /* idempotent */
 

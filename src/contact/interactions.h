@@ -1,20 +1,35 @@
-/* What acts on the nodes of one thread besides elements. */
+/* What one thread knows, beside its state, of what acts on its nodes besides elements: what is near
+ * what, what tools have felt, what has been counted. All of it can be forgotten between steps: the
+ * next ones have the same bits, which is why energies are asked for with interactions of their own
+ * (step/measure.h). */
 #ifndef LAR_CONTACT_INTERACTIONS_H
 #define LAR_CONTACT_INTERACTIONS_H
 
-#include "contact/body_contact.h"
-#include "contact/conditions.h"
-#include "contact/tool_contact.h"
+#include "contact/surroundings.h"
 
 typedef struct lar_interactions {
-    lar_conditions conditions;     /* supports, prescribed motion, loads */
+    const lar_surroundings *surroundings;
+    lar_condition_notes notes;     /* of supports, prescribed motion and loads */
     lar_tool_contact tool_contact; /* tools and planes */
     lar_body_contact body_contact; /* bodies */
 } lar_interactions;
 
+/* Notes, and contact of tools and planes; bodies are left to the caller (lar_body_contact_create,
+ * parallel/contact_exchange.h). `surroundings` and `tools`, which may be NULL, outlive it. */
+static inline lar_status lar_interactions_create(const lar_surroundings *surroundings,
+                                                 const lar_tools *tools, bool search_always,
+                                                 lar_interactions *interactions, lar_error *error) {
+    *interactions = (lar_interactions){.surroundings = surroundings};
+    lar_status status =
+        lar_condition_notes_create(&surroundings->conditions, &interactions->notes, error);
+    if (status) return status;
+    return lar_tool_contact_create(&surroundings->faces, &surroundings->planes, surroundings->list,
+                                   tools, search_always, &interactions->tool_contact, error);
+}
+
 /* All of them; idempotent. */
 static inline void lar_interactions_destroy(lar_interactions *interactions) {
-    lar_conditions_destroy(&interactions->conditions);
+    lar_condition_notes_destroy(&interactions->notes);
     lar_tool_contact_destroy(&interactions->tool_contact);
     lar_body_contact_destroy(&interactions->body_contact);
 }

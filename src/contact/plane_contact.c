@@ -17,8 +17,8 @@ static void mark_held(const lar_model *model, uint8_t *held) {
 
 /* Supports are stronger than planes: a node gives way along its free axes only, and not at all when
  * these lie along the plane. */
-static void add_node(lar_plane_contact *plane_contact, const lar_contact *plane,
-                     const double position[3], int32_t value, unsigned held) {
+static void add_node(lar_planes *planes, const lar_contact *plane, const double position[3],
+                     int32_t value, unsigned held) {
     lar_plane_way way;
     lar_plane_node node = {.value = value};
     double free = 0;
@@ -30,16 +30,14 @@ static void add_node(lar_plane_contact *plane_contact, const lar_contact *plane,
     }
     if (free < 1e-6) return;
     for (int i = 0; i < 3; i++) way.slide[i] /= free;
-    while (node.way < plane_contact->way_count &&
-           memcmp(&plane_contact->way[node.way], &way, sizeof way) != 0)
+    while (node.way < planes->way_count && memcmp(&planes->way[node.way], &way, sizeof way) != 0)
         node.way++;
-    if (node.way == plane_contact->way_count) plane_contact->way[plane_contact->way_count++] = way;
-    plane_contact->node[plane_contact->count++] = node;
+    if (node.way == planes->way_count) planes->way[planes->way_count++] = way;
+    planes->node[planes->count++] = node;
 }
 
-static void add_plane(lar_plane_contact *plane_contact, const lar_model *model,
-                      const int32_t *local, const lar_condition_share *share, int plane,
-                      uint8_t *held) {
+static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
+                      const lar_condition_share *share, int plane, uint8_t *held) {
     enum { SEEN = 0x80 };
     const lar_contact *contact = &model->contact[plane];
     for (int32_t f = 0; f < contact->face_count; f++)
@@ -47,7 +45,7 @@ static void add_plane(lar_plane_contact *plane_contact, const lar_model *model,
             int32_t face = contact->face[f];
             int32_t node = model->mesh.element[face / 6][lar_face_node[face % 6][a]];
             if (held[node] & SEEN || (share && share->holds[node] != share->thread)) continue;
-            add_node(plane_contact, contact, model->mesh.position[node], 4 * local[node],
+            add_node(planes, contact, model->mesh.position[node], 4 * local[node],
                      held[node] & LAR_AXIS_ALL);
             held[node] |= SEEN;
         }
@@ -60,10 +58,10 @@ static int by_node(const void *a, const void *b) {
     return (x->way > y->way) - (x->way < y->way);
 }
 
-lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local,
-                                    const lar_condition_share *share,
-                                    lar_plane_contact *plane_contact, lar_error *error) {
-    *plane_contact = (lar_plane_contact){0};
+lar_status lar_planes_create(const lar_model *model, const int32_t *local,
+                             const lar_condition_share *share, lar_planes *planes,
+                             lar_error *error) {
+    *planes = (lar_planes){0};
     size_t max = 0, ways = 0;
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE) {
@@ -72,27 +70,40 @@ lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local
         }
     if (max == 0) return LAR_OK;
     uint8_t *held = lar_calloc((size_t)model->mesh.node_count, sizeof *held);
-    plane_contact->node = lar_calloc(max, sizeof *plane_contact->node);
-    plane_contact->near = lar_calloc(max, sizeof *plane_contact->near);
-    plane_contact->way = lar_calloc(ways, sizeof *plane_contact->way);
-    if (!held || !plane_contact->node || !plane_contact->near || !plane_contact->way) {
+    planes->node = lar_calloc(max, sizeof *planes->node);
+    planes->way = lar_calloc(ways, sizeof *planes->way);
+    if (!held || !planes->node || !planes->way) {
         free(held);
-        lar_plane_contact_destroy(plane_contact);
-        return lar_fail_memory(error, max * sizeof *plane_contact->near, "the nodes before planes");
+        lar_planes_destroy(planes);
+        return lar_fail_memory(error, max * sizeof *planes->node, "the nodes before planes");
     }
     mark_held(model, held);
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE)
-            add_plane(plane_contact, model, local, share, i, held);
+            add_plane(planes, model, local, share, i, held);
     free(held);
-    qsort(plane_contact->node, (size_t)plane_contact->count, sizeof *plane_contact->node, by_node);
+    qsort(planes->node, (size_t)planes->count, sizeof *planes->node, by_node);
     return LAR_OK;
 }
 
+void lar_planes_destroy(lar_planes *planes) {
+    free(planes->node);
+    free(planes->way);
+    *planes = (lar_planes){0};
+}
+
+lar_status lar_plane_contact_create(const lar_planes *planes, lar_plane_contact *plane_contact,
+                                    lar_error *error) {
+    *plane_contact = (lar_plane_contact){.planes = planes};
+    if (planes->count == 0) return LAR_OK;
+    plane_contact->near = lar_calloc((size_t)planes->count, sizeof *plane_contact->near);
+    if (plane_contact->near) return LAR_OK;
+    return lar_fail_memory(error, (size_t)planes->count * sizeof *plane_contact->near,
+                           "the nodes before planes");
+}
+
 void lar_plane_contact_destroy(lar_plane_contact *plane_contact) {
-    free(plane_contact->node);
     free(plane_contact->near);
-    free(plane_contact->way);
     *plane_contact = (lar_plane_contact){0};
 }
 
@@ -122,9 +133,10 @@ static void search(lar_plane_contact *plane_contact, const lar_condition_context
     plane_contact->reach = AHEAD * step_travel(context, state) + 50000 * dt * dt;
     plane_contact->travel = 0;
     plane_contact->near_count = 0;
-    for (int32_t i = 0; i < plane_contact->count; i++) {
-        const lar_plane_node *n = &plane_contact->node[i];
-        double height = n->offset + dot(plane_contact->way[n->way].normal, state->u + n->value);
+    const lar_planes *planes = plane_contact->planes;
+    for (int32_t i = 0; i < planes->count; i++) {
+        const lar_plane_node *n = &planes->node[i];
+        double height = n->offset + dot(planes->way[n->way].normal, state->u + n->value);
         /* A little more, for rounding. Not a number counts as near. */
         if (height > (1 + 1e-9) * plane_contact->reach) continue;
         lar_plane_near *near = &plane_contact->near[plane_contact->near_count++];
@@ -139,7 +151,7 @@ static void search(lar_plane_contact *plane_contact, const lar_condition_context
 void lar_plane_contact_observe(lar_plane_contact *plane_contact,
                                const lar_condition_context *context, const lar_state *state,
                                bool always, lar_contact_info *seen) {
-    if (plane_contact->count == 0) return;
+    if (plane_contact->planes->count == 0) return;
     double next = plane_contact->travel + 2 * step_travel(context, state);
     if (always || !plane_contact->known || !(next < plane_contact->reach)) {
         search(plane_contact, context, state, seen);
@@ -195,7 +207,7 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
 
 void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
                             lar_state *state, bool always, lar_contact_info *seen) {
-    if (plane_contact->count == 0) return;
+    if (plane_contact->planes->count == 0) return;
     plane_contact->travel += step_travel(context, state);
     /* Faster within one step than the search allowed for: somebody else may be there now. (What
      * they had before is lost, which costs the energy account a little and the motion nothing.) */
@@ -203,9 +215,10 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
         search(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);
     stops sum = {.fastest = state->fastest};
+    const lar_plane_way *way = plane_contact->planes->way;
     for (int32_t i = 0; i < plane_contact->near_count; i++) {
         const lar_plane_near *near = &plane_contact->near[i];
-        stop_node(near, &plane_contact->way[near->node.way], dt, rate, state->u + near->node.value,
+        stop_node(near, &way[near->node.way], dt, rate, state->u + near->node.value,
                   state->v + near->node.value, &sum);
     }
     state->fastest = sum.fastest;
@@ -216,18 +229,17 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     plane_contact->travel += step_travel(context, state) - moved;
     seen->touching += sum.touching;
     seen->deepest = larger(seen->deepest, sum.deepest);
-    seen->possible += (uint64_t)plane_contact->count;
+    seen->possible += (uint64_t)plane_contact->planes->count;
     seen->tested += (uint64_t)plane_contact->near_count;
 }
 
-int32_t lar_plane_contact_ahead(const lar_plane_contact *plane_contact,
-                                const lar_condition_context *context, const lar_state *state,
-                                int32_t entry, double ahead[3]) {
+int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
+                         const lar_state *state, int32_t entry, double ahead[3]) {
     double dt = context->time_step;
-    int32_t value = plane_contact->node[entry].value;
-    for (; entry < plane_contact->count && plane_contact->node[entry].value == value; entry++) {
-        const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
-        double height = plane_contact->node[entry].offset + dot(way->normal, state->u + value);
+    int32_t value = planes->node[entry].value;
+    for (; entry < planes->count && planes->node[entry].value == value; entry++) {
+        const lar_plane_way *way = &planes->way[planes->node[entry].way];
+        double height = planes->node[entry].offset + dot(way->normal, state->u + value);
         double speed = dot(way->normal, ahead);
         double min = min_velocity(height, 1 / dt);
         for (int i = 0; i < 3 && speed < min; i++) ahead[i] += way->slide[i] * (min - speed);

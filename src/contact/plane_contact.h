@@ -44,20 +44,32 @@ typedef struct lar_plane_near {
     double before[3]; /* velocity before it moved [m/s] */
 } lar_plane_near;
 
-typedef struct lar_plane_contact {
-    int32_t count, way_count, near_count;
+/* The nodes before planes: constant. */
+typedef struct lar_planes {
+    int32_t count, way_count;
     lar_plane_node *node; /* [count] all planes of a node one after the other */
     lar_plane_way *way;   /* [way_count] */
-    lar_plane_near *near; /* [near_count] in the same order */
+} lar_planes;
+
+/* What a thread knows of them. */
+typedef struct lar_plane_contact {
+    const lar_planes *planes;
+    int32_t near_count;
+    lar_plane_near *near; /* [near_count] in the order of planes->node */
     double travel;        /* at most this far has any node gone since the search [m] */
     double reach;         /* how far `near` looks [m] */
     bool known;           /* `near` belongs to the state */
 } lar_plane_contact;
 
 /* `local` and `share` as for lar_conditions_create. */
-lar_status lar_plane_contact_create(const lar_model *model, const int32_t *local,
-                                    const lar_condition_share *share,
-                                    lar_plane_contact *plane_contact, lar_error *error);
+lar_status lar_planes_create(const lar_model *model, const int32_t *local,
+                             const lar_condition_share *share, lar_planes *planes,
+                             lar_error *error);
+void lar_planes_destroy(lar_planes *planes); /* idempotent */
+
+/* `planes` outlive it. */
+lar_status lar_plane_contact_create(const lar_planes *planes, lar_plane_contact *plane_contact,
+                                    lar_error *error);
 void lar_plane_contact_destroy(lar_plane_contact *plane_contact); /* idempotent */
 
 /* Before the nodes move, and after they have, supports included. The work goes to state->contact.
@@ -71,8 +83,7 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
 /* The velocity that nodes would have half a step later: from `ahead` [local nodes][4], what it were
  * without planes, to what it will be, for one node; `entry` is its first in `node`. Returns the
  * entry behind its last. (For energies; changes nothing.) */
-int32_t lar_plane_contact_ahead(const lar_plane_contact *plane_contact,
-                                const lar_condition_context *context, const lar_state *state,
-                                int32_t entry, double ahead[3]);
+int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
+                         const lar_state *state, int32_t entry, double ahead[3]);
 
 #endif

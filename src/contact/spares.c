@@ -45,8 +45,7 @@ lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spare
     if (place < 0) return list->tool[index];
     const lar_spare_tool *spare = &spares[place];
     if (!spare->placed) return nothing;
-    return (lar_tool){.name = (char *)list->name[place][spare->shape],
-                      .shape = (lar_tool_shape)spare->shape,
+    return (lar_tool){.shape = (lar_tool_shape)spare->shape,
                       .radius = spare->radius,
                       .length = spare->length,
                       .spread = spare->spread,
@@ -66,6 +65,8 @@ bool lar_spares_take(const lar_tools *tools, lar_tool_list *list) {
         lar_tool there = lar_spare_tool_of(list, tools->spare, i);
         changed = changed || !are_same(here, &there);
         *here = there;
+        if (here->shape != LAR_TOOL_NONE)
+            here->name = list->name[i - lar_spares_first(list)][here->shape];
     }
     return changed;
 }

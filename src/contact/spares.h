@@ -47,7 +47,8 @@ void lar_spares_name(lar_tool_list *list);
 /* The list's spares become those of `tools`. True when one has changed. */
 bool lar_spares_take(const lar_tools *tools, lar_tool_list *list);
 
-/* What tool `index` is when the spares are these, whatever the list has there now. */
+/* What tool `index` is when the spares are these, whatever the list has there now; a spare that is
+ * there has no name. */
 lar_tool lar_spare_tool_of(const lar_tool_list *list, const lar_spare_tool spare[LAR_SPARES_MAX],
                            int32_t index);
 

@@ -14,9 +14,9 @@ static bool mine(const lar_model *model, const lar_condition_share *share, int32
 }
 
 static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
-                     int32_t face, lar_tool_contact *contact) {
-    lar_tool_contact_face *f = &contact->face[contact->face_count++];
-    *f = (lar_tool_contact_face){.of = face, .loaded = -1};
+                     int32_t face, lar_tool_faces *faces) {
+    lar_tool_contact_face *f = &faces->face[faces->face_count++];
+    *f = (lar_tool_contact_face){.of = face};
     for (int a = 0; a < 4; a++) {
         int32_t node = model->surface.corner[face][a];
         f->value[a] = 4 * local[node];
@@ -35,77 +35,95 @@ static void add_face(const lar_model *model, const int32_t *local, const uint8_t
 
 /* Corners of own faces that other threads move. */
 static void list_foreign(const lar_model *model, const int32_t *local,
-                         const lar_condition_share *share, uint8_t *marked,
-                         lar_tool_contact *contact) {
+                         const lar_condition_share *share, uint8_t *marked, lar_tool_faces *faces) {
     memset(marked, 0, (size_t)model->mesh.node_count);
-    for (int32_t f = 0; f < contact->face_count; f++)
+    for (int32_t f = 0; f < faces->face_count; f++)
         for (int a = 0; a < 4; a++) {
-            int32_t node = model->surface.corner[contact->face[f].of][a];
+            int32_t node = model->surface.corner[faces->face[f].of][a];
             if (share->holds[node] == share->thread || marked[node]) continue;
             marked[node] = 1;
-            contact->foreign[contact->foreign_count++] = 4 * local[node];
+            faces->foreign[faces->foreign_count++] = 4 * local[node];
         }
 }
 
-static lar_status allocate(const lar_model *model, int32_t faces, int tools,
-                           lar_tool_contact *contact, lar_error *error) {
-    size_t count = (size_t)faces, nodes = (size_t)model->surface.node_count;
-    contact->face = lar_calloc(count, sizeof *contact->face);
+static lar_status allocate_faces(const lar_model *model, int32_t count, lar_tool_faces *faces,
+                                 lar_error *error) {
+    faces->face = lar_calloc((size_t)count, sizeof *faces->face);
+    faces->foreign = lar_calloc((size_t)model->surface.node_count, sizeof *faces->foreign);
+    faces->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *faces->face_of);
+    faces->weights = lar_calloc(1, sizeof *faces->weights);
+    if (faces->face && faces->foreign && faces->face_of && faces->weights) return LAR_OK;
+    return lar_fail_memory(error, (size_t)count * sizeof *faces->face, "the faces before tools");
+}
+
+lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, lar_tool_faces *faces,
+                                 lar_error *error) {
+    const lar_surface *surface = &model->surface;
+    int32_t count = 0;
+    *faces = (lar_tool_faces){0};
+    for (int32_t f = 0; f < surface->face_count; f++) count += mine(model, share, f);
+    uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
+    if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
+    lar_status status = allocate_faces(model, count, faces, error);
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++)
+            for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
+        for (int32_t f = 0; f < surface->face_count; f++)
+            if (mine(model, share, f)) add_face(model, local, marked, f, faces);
+        for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
+            for (int i = 0; i < n * n; i++)
+                lar_tool_contact_weights(i, n, faces->weights->of[n][i]);
+        status = lar_tool_faces_group(faces, error);
+    }
+    if (!status) {
+        for (int32_t f = 0; f < surface->face_count; f++) faces->face_of[f] = -1;
+        for (int32_t f = 0; f < count; f++) faces->face_of[faces->face[f].of] = f;
+        if (share) list_foreign(model, local, share, marked, faces);
+    }
+    free(marked);
+    if (status) lar_tool_faces_destroy(faces);
+    return status;
+}
+
+void lar_tool_faces_destroy(lar_tool_faces *faces) {
+    free(faces->face);
+    free(faces->group);
+    free(faces->foreign);
+    free(faces->face_of);
+    free(faces->weights);
+    *faces = (lar_tool_faces){0};
+}
+
+static lar_status allocate(lar_tool_contact *contact, lar_error *error) {
+    size_t count = (size_t)contact->faces->face_count, groups = (size_t)contact->faces->group_count;
     contact->loaded = lar_calloc(count, sizeof *contact->loaded);
-    contact->foreign = lar_calloc(nodes, sizeof *contact->foreign);
-    contact->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *contact->face_of);
-    contact->weights = lar_calloc(1, sizeof *contact->weights);
-    bool fits = contact->face && contact->loaded && contact->foreign && contact->face_of &&
-                contact->weights;
-    for (int t = 0; t < tools && fits; t++) {
+    contact->loaded_at = lar_calloc(count, sizeof *contact->loaded_at);
+    contact->ball = lar_calloc(groups, sizeof *contact->ball);
+    bool fits = contact->loaded && contact->loaded_at && contact->ball;
+    for (int32_t t = 0; contact->list && t < contact->list->count && fits; t++) {
         lar_tool_vicinity *vicinity = &contact->vicinity[t];
         vicinity->near = lar_calloc(count, sizeof *vicinity->near);
         vicinity->look = lar_calloc(count, sizeof *vicinity->look);
         fits = vicinity->near && vicinity->look;
     }
     return fits ? LAR_OK
-                : lar_fail_memory(error, count * sizeof *contact->face, "the faces before tools");
+                : lar_fail_memory(error, count * sizeof *contact->loaded, "the faces before tools");
 }
 
-static lar_status create_faces(const lar_model *model, const int32_t *local,
-                               const lar_condition_share *share, lar_tool_contact *contact,
-                               lar_error *error) {
-    const lar_surface *surface = &model->surface;
-    int32_t faces = 0;
-    for (int32_t f = 0; f < surface->face_count; f++) faces += mine(model, share, f);
-    uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
-    if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
-    lar_status status = allocate(model, faces, contact->list->count, contact, error);
-    if (!status) {
-        for (int32_t f = 0; f < surface->face_count; f++)
-            for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
-        for (int32_t f = 0; f < surface->face_count; f++)
-            if (mine(model, share, f)) add_face(model, local, marked, f, contact);
-        for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-            for (int i = 0; i < n * n; i++)
-                lar_tool_contact_weights(i, n, contact->weights->of[n][i]);
-        status = lar_tool_contact_group_faces(contact, error);
+lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes *planes,
+                                   const lar_tool_list *list, const lar_tools *tools, bool always,
+                                   lar_tool_contact *contact, lar_error *error) {
+    *contact = (lar_tool_contact){.list = list, .tools = tools, .faces = faces, .always = always};
+    lar_status status = lar_plane_contact_create(planes, &contact->plane_contact, error);
+    if (!status && faces->face_count > 0) status = allocate(contact, error);
+    if (status) {
+        lar_tool_contact_destroy(contact);
+        return status;
     }
-    if (!status) {
-        for (int32_t f = 0; f < surface->face_count; f++) contact->face_of[f] = -1;
-        for (int32_t f = 0; f < faces; f++) contact->face_of[contact->face[f].of] = f;
-        if (share) list_foreign(model, local, share, marked, contact);
-    }
-    free(marked);
-    return status;
-}
-
-lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
-                                   const lar_condition_share *share, const lar_tool_list *list,
-                                   const lar_tools *tools, lar_tool_contact *contact,
-                                   lar_error *error) {
-    *contact = (lar_tool_contact){.list = list, .tools = tools};
-    lar_status status =
-        lar_plane_contact_create(model, local, share, &contact->plane_contact, error);
-    if (!status && list && list->count > 0)
-        status = create_faces(model, local, share, contact, error);
-    if (status) lar_tool_contact_destroy(contact);
-    return status;
+    for (int32_t f = 0; f < faces->face_count; f++) contact->loaded_at[f] = -1;
+    lar_tool_contact_forget(contact);
+    return LAR_OK;
 }
 
 void lar_tool_contact_destroy(lar_tool_contact *contact) {
@@ -114,18 +132,15 @@ void lar_tool_contact_destroy(lar_tool_contact *contact) {
         free(contact->vicinity[t].near);
         free(contact->vicinity[t].look);
     }
-    free(contact->face);
-    free(contact->group);
+    free(contact->ball);
     free(contact->loaded);
-    free(contact->foreign);
-    free(contact->face_of);
-    free(contact->weights);
+    free(contact->loaded_at);
     *contact = (lar_tool_contact){0};
 }
 
 /* The balls of groups are measured anew when somebody asks. */
 static void forget_groups(lar_tool_contact *contact) {
-    for (int32_t g = 0; g < contact->group_count; g++) contact->group[g].travel = -INFINITY;
+    for (int32_t g = 0; g < contact->faces->group_count; g++) contact->ball[g].travel = -INFINITY;
     contact->travel = 0;
 }
 
@@ -216,16 +231,16 @@ static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
 static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
                  int32_t tool, const double tip[3], const double x[4][3],
                  const double force[4][3]) {
-    lar_tool_contact_face *face = &contact->face[f];
+    int32_t *at = &contact->loaded_at[f];
     lar_tool_sum *sum = &contact->sum[tool];
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
             if (!(fabs(force[a][i] * context->scale) < 0x1p56)) return;
-    if (face->loaded < 0) {
-        face->loaded = contact->loaded_count++;
-        contact->loaded[face->loaded] = (lar_tool_contact_force){.face = f};
+    if (*at < 0) {
+        *at = contact->loaded_count++;
+        contact->loaded[*at] = (lar_tool_contact_force){.face = f};
     }
-    lar_tool_contact_force *loaded = &contact->loaded[face->loaded];
+    lar_tool_contact_force *loaded = &contact->loaded[*at];
     for (int a = 0; a < 4; a++) {
         double units[3], arm[3];
         for (int i = 0; i < 3; i++) {
@@ -255,19 +270,19 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
     lar_tool_vicinity *vicinity = &contact->vicinity[tool];
     for (int32_t i = 0; i < vicinity->near_count; i++) {
         if (vicinity->path < vicinity->look[i] && !contact->always) continue;
-        lar_tool_contact_patch patch = {.face = &contact->face[vicinity->near[i]],
+        lar_tool_contact_patch patch = {.face = &contact->faces->face[vicinity->near[i]],
                                         .body = &vicinity->body,
                                         .radius = contact->list->tool[tool].radius,
                                         .rate_of = 1 / context->time_step,
                                         .closest = INFINITY};
         double center[3];
         lar_tool_contact_corners(patch.face, state->u, patch.x);
-        double size = lar_tool_contact_ball((const double(*)[3])patch.x, center);
+        double size = lar_tool_contact_ball_of((const double(*)[3])patch.x, center);
         double gap = lar_tool_contact_distance(&vicinity->body, patch.radius, center) - size;
         contact->seen.tested++;
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
         if (gap > 0) continue;
-        lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->weights);
+        lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->faces->weights);
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
@@ -299,7 +314,7 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
 static void grasp_point(lar_tool_contact *contact, const lar_condition_context *context,
                         const lar_state *state, const lar_grasp *grasp,
                         const lar_grasp_motion *motion, const lar_contact_law *law) {
-    const lar_tool_contact_face *face = &contact->face[contact->face_of[grasp->face]];
+    const lar_tool_contact_face *face = &contact->faces->face[contact->faces->face_of[grasp->face]];
     const lar_tool *tool = &contact->list->tool[grasp->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
     double pull[3], force[4][3], length = 0;
@@ -319,7 +334,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
-    give(contact, context, contact->face_of[grasp->face], grasp->tool, motion->now.position,
+    give(contact, context, contact->faces->face_of[grasp->face], grasp->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
     contact->sum[grasp->tool].held++;
 }
@@ -330,7 +345,7 @@ static void apply_grasps(lar_tool_contact *contact, const lar_condition_context 
     for (int t = 0; t < LAR_TOOLS_MAX; t++) motion[t].known = false;
     for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
         const lar_grasp *grasp = &contact->tools->grasps[i];
-        if (contact->face_of[grasp->face] < 0) continue;
+        if (contact->faces->face_of[grasp->face] < 0) continue;
         lar_grasp_motion *of = &motion[grasp->tool];
         const lar_tool_motion *tool = &contact->tools->motion[grasp->tool];
         if (!of->known) {
@@ -349,9 +364,9 @@ static double step_travel(const lar_tool_contact *contact, const lar_condition_c
                           const lar_state *state) {
     if (contact->moved != state->round) return INFINITY;
     double fastest = state->fastest;
-    for (int32_t i = 0; i < contact->foreign_count; i++)
+    for (int32_t i = 0; i < contact->faces->foreign_count; i++)
         for (int k = 0; k < 3; k++)
-            fastest = fmax(fastest, fabs(state->v[contact->foreign[i] + k]));
+            fastest = fmax(fastest, fabs(state->v[contact->faces->foreign[i] + k]));
     return 1.7320508075688774 * context->whole_step * fastest;
 }
 
@@ -370,12 +385,12 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
             contact, t, state,
             travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
     touch_near(contact, context, state, t, law);
-    contact->seen.possible += (uint64_t)contact->face_count;
+    contact->seen.possible += (uint64_t)contact->faces->face_count;
 }
 
 static void clear_loaded(lar_tool_contact *contact) {
     for (int32_t i = 0; i < contact->loaded_count; i++)
-        contact->face[contact->loaded[i].face].loaded = -1;
+        contact->loaded_at[contact->loaded[i].face] = -1;
     contact->loaded_count = 0;
     contact->seen.touching = 0;
     contact->seen.deepest = 0;
@@ -386,14 +401,14 @@ static void add_forces(const lar_tool_contact *contact, int64_t *force) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
-                force[contact->face[loaded->face].value[a] + k] -= loaded->force[a][k];
+                force[contact->faces->face[loaded->face].value[a] + k] -= loaded->force[a][k];
     }
 }
 
 void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_context *context,
                             lar_state *state) {
     clear_loaded(contact);
-    if (contact->face_count == 0) return;
+    if (contact->faces->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
     lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
     tool_law.stiffness *= context->hardness;
@@ -420,7 +435,7 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
                 work += (double)loaded->force[a][k] *
-                        state->v[contact->face[loaded->face].value[a] + k];
+                        state->v[contact->faces->face[loaded->face].value[a] + k];
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
 }
@@ -436,16 +451,6 @@ void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_contex
     lar_plane_contact_stop(&contact->plane_contact, context, state, contact->always,
                            &contact->seen);
     contact->moved = state->round + 1;
-    bool tools = contact->face_count > 0 && lar_spares_any(contact->list, contact->tools);
-    if (contact->plane_contact.count > 0 || tools) contact->seen.steps++;
-}
-
-void lar_tool_contact_remember(const lar_tool_contact *contact, lar_tool_contact_saved *note) {
-    memcpy(note->sum, contact->sum, sizeof note->sum);
-    note->seen = contact->seen;
-}
-
-void lar_tool_contact_restore(lar_tool_contact *contact, const lar_tool_contact_saved *note) {
-    memcpy(contact->sum, note->sum, sizeof note->sum);
-    contact->seen = note->seen;
+    bool tools = contact->faces->face_count > 0 && lar_spares_any(contact->list, contact->tools);
+    if (contact->plane_contact.planes->count > 0 || tools) contact->seen.steps++;
 }

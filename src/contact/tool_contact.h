@@ -1,5 +1,9 @@
 /* Tools and fixed planes against the surface: what one thread has of them.
  *
+ * The faces are compiled and constant (lar_tool_faces); what is known of the tools' surroundings,
+ * what they have felt and what acts in a step stands beside the state (lar_tool_contact). Whoever
+ * wants to know the forces without going on has one of these of its own (step/measure.h).
+ *
  *     every step                      apply: tool -> near faces -> points of them -> corners
  *     when something could be near    search: tool -> groups of faces -> faces
  *
@@ -42,7 +46,6 @@ static const double LAR_TORQUE_REST = 0x1p-20;
 typedef struct lar_tool_contact_face {
     int32_t value[4];  /* 4 * local node */
     int32_t of;        /* index into the model's surface */
-    int32_t loaded;    /* index into contact->loaded; -1: nothing acts on it in this step */
     double share[4];   /* of a corner's mass: one over the number of faces that it is a corner of */
     double rest[4][3]; /* positions at rest [m] */
     double edge;       /* the longest at rest [m] */
@@ -54,12 +57,26 @@ typedef struct lar_point_weights {
     double of[LAR_POINTS_ALONG_EDGE + 1][LAR_POINTS_ALONG_EDGE * LAR_POINTS_ALONG_EDGE][4];
 } lar_point_weights;
 
-/* Neighbouring faces in a ball. */
+/* Neighbouring faces. */
 typedef struct lar_tool_contact_group {
     int32_t first, count;
+} lar_tool_contact_group;
+
+/* The faces before tools. */
+typedef struct lar_tool_faces {
+    int32_t face_count, group_count, foreign_count;
+    lar_tool_contact_face *face;   /* [face_count] group after group */
+    lar_tool_contact_group *group; /* [group_count] */
+    int32_t *face_of;              /* [faces of the model's surface] index into `face`, or -1 */
+    int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
+    lar_point_weights *weights;    /* NULL: no faces */
+} lar_tool_faces;
+
+/* The ball around a group. */
+typedef struct lar_tool_contact_ball {
     double center[3], radius; /* [m] */
     double travel;            /* contact->travel when that was so */
-} lar_tool_contact_group;
+} lar_tool_contact_ball;
 
 /* What acts on the corners of a face in the step under way [force units]. */
 typedef struct lar_tool_contact_force {
@@ -89,28 +106,31 @@ typedef struct lar_tool_vicinity {
 typedef struct lar_tool_contact {
     const lar_tool_list *list; /* NULL: no tools */
     const lar_tools *tools;
+    const lar_tool_faces *faces;
     lar_tool_sum sum[LAR_TOOLS_MAX];
     lar_contact_info seen; /* counters since the start; `touching`, `deepest` of the last step */
     bool always;           /* search in every step */
     lar_plane_contact plane_contact;
-    int32_t face_count, group_count, foreign_count, loaded_count;
-    lar_tool_contact_face *face;   /* [face_count] group after group */
-    lar_tool_contact_group *group; /* [group_count] */
-    int32_t *face_of;              /* [faces of the model's surface] index into `face`, or -1 */
-    int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
-    lar_tool_contact_force *loaded;
-    lar_point_weights *weights; /* NULL: no faces */
+    int32_t loaded_count;
+    lar_tool_contact_force *loaded; /* [loaded_count] of [faces->face_count] */
+    int32_t *loaded_at;             /* [faces->face_count] index into `loaded`; -1: nothing acts on
+                                       the face in this step */
+    lar_tool_contact_ball *ball;    /* [faces->group_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
     double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
 
-/* Of the whole model, or with a share (NULL: all) of one thread. `list` and `tools` outlive it and
- * may be NULL. */
-lar_status lar_tool_contact_create(const lar_model *model, const int32_t *local,
-                                   const lar_condition_share *share, const lar_tool_list *list,
-                                   const lar_tools *tools, lar_tool_contact *contact,
-                                   lar_error *error);
+/* Of the whole model, or with a share (NULL: all) of one thread. */
+lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, lar_tool_faces *faces,
+                                 lar_error *error);
+void lar_tool_faces_destroy(lar_tool_faces *faces); /* idempotent */
+
+/* What it is given outlives it; `list` and `tools` may be NULL. Knows nothing yet. */
+lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes *planes,
+                                   const lar_tool_list *list, const lar_tools *tools, bool always,
+                                   lar_tool_contact *contact, lar_error *error);
 void lar_tool_contact_destroy(lar_tool_contact *contact); /* idempotent */
 
 /* The state has been replaced by another one, or the tools have been put elsewhere: everything is
@@ -137,27 +157,17 @@ void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_con
 void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_context *context,
                            lar_state *state);
 
-/* What a look at the forces must not change: lar_tool_contact_apply once more in the same step, for
- * energies, is not felt twice. */
-typedef struct lar_tool_contact_saved {
-    lar_tool_sum sum[LAR_TOOLS_MAX];
-    lar_contact_info seen;
-} lar_tool_contact_saved;
-
-void lar_tool_contact_remember(const lar_tool_contact *contact, lar_tool_contact_saved *note);
-void lar_tool_contact_restore(lar_tool_contact *contact, const lar_tool_contact_saved *note);
-
 /* ---- for tool_contact_face.c, tool_contact_search.c, grasp.c and fault_tool.c ---------------- */
 
 /* Puts neighbouring faces next to each other, into groups. */
-lar_status lar_tool_contact_group_faces(lar_tool_contact *contact, lar_error *error);
+lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);
 /* Points along an edge of a face: no farther apart than half the tool's radius, so that a sphere
  * that touches has several inside. The weights of point 0 .. n n - 1. */
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius);
 void lar_tool_contact_weights(int point, int n, double weight[4]);
 /* Corners of a face now [m], and the ball around them. */
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const double *u, double x[4][3]);
-double lar_tool_contact_ball(const double x[4][3], double center[3]);
+double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
 /* Where a tool's segments are in a pose. */
 void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
                     lar_segment segment[2]);

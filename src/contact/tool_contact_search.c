@@ -16,7 +16,7 @@ void lar_tool_contact_corners(const lar_tool_contact_face *face, const double *u
         for (int i = 0; i < 3; i++) x[a][i] = face->rest[a][i] + u[face->value[a] + i];
 }
 
-double lar_tool_contact_ball(const double x[4][3], double center[3]) {
+double lar_tool_contact_ball_of(const double x[4][3], double center[3]) {
     double radius = 0;
     for (int i = 0; i < 3; i++) center[i] = 0.25 * ((x[0][i] + x[1][i]) + (x[2][i] + x[3][i]));
     for (int a = 0; a < 4; a++) radius = fmax(radius, distance_between(center, x[a]));
@@ -53,12 +53,10 @@ COMPARE_ALONG(along_z, 2)
 #undef COMPARE_ALONG
 
 /* Halves across the longest side until they are small: neighbours stay together. */
-static void halve(lar_tool_contact *contact, int32_t first, int32_t count) {
+static void halve(lar_tool_faces *faces, int32_t first, int32_t count) {
     static int (*const compare[3])(const void *, const void *) = {along_x, along_y, along_z};
     if (count <= GROUP) {
-        if (count > 0)
-            contact->group[contact->group_count++] =
-                (lar_tool_contact_group){.first = first, .count = count, .travel = -INFINITY};
+        if (count > 0) faces->group[faces->group_count++] = (lar_tool_contact_group){first, count};
         return;
     }
     double longest = -1;
@@ -66,55 +64,56 @@ static void halve(lar_tool_contact *contact, int32_t first, int32_t count) {
     for (int i = 0; i < 3; i++) {
         double low = INFINITY, high = -INFINITY;
         for (int32_t f = first; f < first + count; f++) {
-            low = fmin(low, center_along(&contact->face[f], i));
-            high = fmax(high, center_along(&contact->face[f], i));
+            low = fmin(low, center_along(&faces->face[f], i));
+            high = fmax(high, center_along(&faces->face[f], i));
         }
         if (high - low > longest) {
             longest = high - low;
             axis = i;
         }
     }
-    qsort(contact->face + first, (size_t)count, sizeof *contact->face, compare[axis]);
-    halve(contact, first, count / 2);
-    halve(contact, first + count / 2, count - count / 2);
+    qsort(faces->face + first, (size_t)count, sizeof *faces->face, compare[axis]);
+    halve(faces, first, count / 2);
+    halve(faces, first + count / 2, count - count / 2);
 }
 
-lar_status lar_tool_contact_group_faces(lar_tool_contact *contact, lar_error *error) {
-    size_t max = (size_t)contact->face_count / (GROUP / 2) + 1;
-    contact->group = lar_calloc(max, sizeof *contact->group);
-    if (!contact->group)
-        return lar_fail_memory(error, max * sizeof *contact->group, "the groups of faces");
-    halve(contact, 0, contact->face_count);
+lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error) {
+    size_t max = (size_t)faces->face_count / (GROUP / 2) + 1;
+    faces->group = lar_calloc(max, sizeof *faces->group);
+    if (!faces->group)
+        return lar_fail_memory(error, max * sizeof *faces->group, "the groups of faces");
+    halve(faces, 0, faces->face_count);
     return LAR_OK;
 }
 
 /* ---- the search ---------------------------------------------------------------------------- */
 
 /* The ball around all corners of a group: that of the corners' mean, which is not the smallest. */
-static void measure_group(const lar_tool_contact *contact, lar_tool_contact_group *group,
-                          const double *u) {
+static void measure_group(const lar_tool_contact *contact, const lar_tool_contact_group *group,
+                          const double *u, lar_tool_contact_ball *ball) {
+    const lar_tool_contact_face *face = contact->faces->face;
     double x[4][3], center[3];
-    memset(group->center, 0, sizeof group->center);
+    memset(ball->center, 0, sizeof ball->center);
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&contact->face[f], u, x);
-        lar_tool_contact_ball((const double(*)[3])x, center);
-        for (int i = 0; i < 3; i++) group->center[i] += center[i] / group->count;
+        lar_tool_contact_corners(&face[f], u, x);
+        lar_tool_contact_ball_of((const double(*)[3])x, center);
+        for (int i = 0; i < 3; i++) ball->center[i] += center[i] / group->count;
     }
-    group->radius = 0;
+    ball->radius = 0;
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&contact->face[f], u, x);
+        lar_tool_contact_corners(&face[f], u, x);
         for (int a = 0; a < 4; a++)
-            group->radius = fmax(group->radius, distance_between(group->center, x[a]));
+            ball->radius = fmax(ball->radius, distance_between(ball->center, x[a]));
     }
-    group->travel = contact->travel;
+    ball->travel = contact->travel;
 }
 
 static void search_group(lar_tool_contact *contact, lar_tool_vicinity *vicinity, double radius,
                          double reach, const lar_tool_contact_group *group, const double *u) {
     double x[4][3], center[3];
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&contact->face[f], u, x);
-        double size = lar_tool_contact_ball((const double(*)[3])x, center);
+        lar_tool_contact_corners(&contact->faces->face[f], u, x);
+        double size = lar_tool_contact_ball_of((const double(*)[3])x, center);
         double gap = lar_tool_contact_distance(&vicinity->body, radius, center) - size;
         if (gap > reach) continue; /* not a number is near */
         vicinity->near[vicinity->near_count] = f;
@@ -134,15 +133,16 @@ void lar_tool_contact_search(lar_tool_contact *contact, int32_t tool, const lar_
     vicinity->path = 0; /* short sums keep the smallest steps */
     vicinity->limit = lar_tool_contact_clear(reach, radius);
     vicinity->known = true;
-    for (int32_t g = 0; g < contact->group_count; g++) {
-        lar_tool_contact_group *group = &contact->group[g];
+    for (int32_t g = 0; g < contact->faces->group_count; g++) {
+        const lar_tool_contact_group *group = &contact->faces->group[g];
+        lar_tool_contact_ball *ball = &contact->ball[g];
         /* As it was, grown by what its corners can have gone: mostly that is far enough away. */
-        double grown = group->radius + (contact->travel - group->travel);
-        if (lar_tool_contact_distance(&vicinity->body, radius, group->center) - grown > reach)
+        double grown = ball->radius + (contact->travel - ball->travel);
+        if (lar_tool_contact_distance(&vicinity->body, radius, ball->center) - grown > reach)
             continue;
-        if (!(contact->travel == group->travel)) {
-            measure_group(contact, group, state->u);
-            if (lar_tool_contact_distance(&vicinity->body, radius, group->center) - group->radius >
+        if (!(contact->travel == ball->travel)) {
+            measure_group(contact, group, state->u, ball);
+            if (lar_tool_contact_distance(&vicinity->body, radius, ball->center) - ball->radius >
                 reach)
                 continue;
         }

@@ -1,21 +1,19 @@
 #include "contact/tools.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "contact/spares.h"
-
-static const char *const hand_name[] = {"hand", "hand 2", "hand 3", "hand 4"};
-enum { HANDS_MAX = sizeof hand_name / sizeof hand_name[0] };
 
 /* How far a hand reaches: about a finger's breadth. */
 static const double HAND_RADIUS = 0.008;
 
 lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t spares,
                                 lar_tool_list *list, lar_error *error) {
-    if (hands < 0 || hands > HANDS_MAX)
+    if (hands < 0 || hands > LAR_HANDS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld hands; there can be 0 to %d", (long)hands,
-                        (int)HANDS_MAX);
+                        (int)LAR_HANDS_MAX);
     if (spares < 0 || spares > LAR_SPARES_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%ld spare tools; there can be 0 to %d",
                         (long)spares, LAR_SPARES_MAX);
@@ -27,12 +25,17 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t s
     *list = (lar_tool_list){.count = model->tool_count + hands + spares, .spares = spares};
     if (model->tool_count)
         memcpy(list->tool, model->tool, (size_t)model->tool_count * sizeof *list->tool);
-    for (int32_t i = 0; i < hands; i++)
+    for (int32_t i = 0; i < hands; i++) {
+        if (i == 0)
+            snprintf(list->hand[i], sizeof list->hand[i], "hand");
+        else
+            snprintf(list->hand[i], sizeof list->hand[i], "hand %d", (int)i + 1);
         list->tool[model->tool_count + i] =
-            (lar_tool){.name = (char *)hand_name[i],
+            (lar_tool){.name = list->hand[i],
                        .shape = LAR_TOOL_HAND,
                        .radius = HAND_RADIUS,
                        .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+    }
     lar_spares_name(list);
     return LAR_OK;
 }

@@ -108,12 +108,15 @@ typedef struct lar_tool_limits {
     double drag;        /* of a tool on its own way [N s/m] */
 } lar_tool_limits;
 
+enum { LAR_HANDS_MAX = 4 };
+
 /* What a tool is: the model's, then hands, then spares. The same on all processors; constant but
  * for the spares, which follow lar_tools.spare. */
 typedef struct lar_tool_list {
     int32_t count, spares;
-    lar_tool tool[LAR_TOOLS_MAX]; /* names are borrowed from the model, static, or `name` */
+    lar_tool tool[LAR_TOOLS_MAX]; /* names are borrowed from the model, or `hand` or `name` */
     lar_tool_limits limits[LAR_TOOLS_MAX];
+    char hand[LAR_HANDS_MAX][24];                                    /* names */
     char name[LAR_SPARES_MAX][LAR_TOOL_HAND][LAR_TOOL_NAME_MAX + 1]; /* by place and shape */
 } lar_tool_list;
 

@@ -1,16 +1,24 @@
 /* The state of a simulation: everything that changes from step to step, in ONE table.
  *
- * The table drives allocation, freeing, and (as the engine grows) checkpoint, hash and
- * comparison: an array that is not in it does not exist. Nodes are in the domain's local order,
- * four values each (x, y, z, 0), padded to an even number of nodes and aligned to 64 bytes. The
- * fourth value of u is the node's offset in contact of its body with itself (body_contact.h), which
- * the kernels leave as it is.
+ *     arrays (memory)      u  x y z .      v  x y z 0      force  x y z 0
+ *     rows (what is kept)     |---| |         |---|
+ *                    displacement contact    velocity
+ *                                  level
+ *
+ * The arrays drive allocation, freeing and copies, the rows everything that takes a node's state
+ * elsewhere or looks at it: checkpoint, hash, division among processors, comparison. What is in
+ * neither does not exist. Nodes are in the domain's local order,
+ * four values each, padded to an even number of nodes and aligned to 64 bytes. The fourth value of
+ * u is the node's offset in contact of its body with itself (body_contact.h), which the kernels
+ * leave as it is.
  */
 #ifndef LAR_LAYOUT_STATE_H
 #define LAR_LAYOUT_STATE_H
 
 #include <stdint.h>
+#include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 
 /* X(type, name, values per node, kept): `kept` arrays carry the state from one step to the next;
@@ -19,6 +27,21 @@
     X(double, u, 4, 1)      /* displacements at the present time [m] */                            \
     X(double, v, 4, 1)      /* velocities half a step before it [m/s] */                           \
     X(int64_t, force, 4, 0) /* internal minus external forces [force units] */
+
+/* X(array, first, count, before, always): the values first .. first + count - 1 of a node's four in
+ * a kept array. `before`: values of a node that stand before them in a checkpoint, which has one
+ * row after the other (docs/formats.md). `always`: in every hash; else where it is above 0, and it
+ * is never less. The rows stand in the order in which they are hashed. */
+#define LAR_STATE_ROWS(X)                                                                          \
+    X(u, 0, 3, 1, 1) /* displacement [m] */                                                        \
+    X(v, 0, 3, 4, 1) /* velocity [m/s] */                                                          \
+    X(u, 3, 1, 0, 0) /* contact level: the initial penetration offset [m] */
+
+#define LAR_STATE_COUNT(array, first, count, before, always) +(count)
+enum { LAR_NODE_VALUES = 0 LAR_STATE_ROWS(LAR_STATE_COUNT) };
+#undef LAR_STATE_COUNT
+
+typedef struct lar_strained lar_strained; /* step/guard.h */
 
 typedef struct lar_state {
     uint64_t step;   /* steps done */
@@ -32,6 +55,7 @@ typedef struct lar_state {
     double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
     bool close;      /* they are looked at in this step: lar_division_is_close */
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
+    lar_strained *strained; /* the list, lent; no state */
     int32_t node_count;
 #define LAR_STATE_MEMBER(type, name, values, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)
@@ -41,5 +65,35 @@ typedef struct lar_state {
 /* All zero, for `node_count` (even) nodes. */
 lar_status lar_state_create(lar_state *state, int32_t node_count, lar_error *error);
 void lar_state_destroy(lar_state *state); /* idempotent */
+
+/* ---- one node, in the order of the rows ------------------------------------------------------ */
+
+static inline void lar_state_read(const lar_state *state, int32_t node,
+                                  double value[LAR_NODE_VALUES]) {
+#define LAR_STATE_READ(array, first, count, before, always)                                        \
+    memcpy(value, state->array + 4 * (size_t)node + (first), (count) * sizeof *value);             \
+    value += (count);
+    LAR_STATE_ROWS(LAR_STATE_READ)
+#undef LAR_STATE_READ
+}
+
+static inline void lar_state_write(lar_state *state, int32_t node,
+                                   const double value[LAR_NODE_VALUES]) {
+#define LAR_STATE_WRITE(array, first, count, before, always)                                       \
+    memcpy(state->array + 4 * (size_t)node + (first), value, (count) * sizeof *value);             \
+    value += (count);
+    LAR_STATE_ROWS(LAR_STATE_WRITE)
+#undef LAR_STATE_WRITE
+}
+
+/* A node's part of the hash of a state. */
+static inline uint64_t lar_state_hash_values(uint64_t hash, const double value[LAR_NODE_VALUES]) {
+#define LAR_STATE_HASH(array, first, count, before, always)                                        \
+    for (int i = 0; i < (count); i++, value++)                                                     \
+        if ((always) || *value > 0) hash = lar_hash_double(hash, *value);
+    LAR_STATE_ROWS(LAR_STATE_HASH)
+#undef LAR_STATE_HASH
+    return hash;
+}
 
 #endif

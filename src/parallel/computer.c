@@ -94,6 +94,7 @@ static void compile_on_thread(void *context, int32_t number) {
     const lar_schedule *schedule =
         &computer->division.schedules.of[computer->first + number / computer->threads];
     lar_processor_setting setting = {.whole = computer->whole,
+                                     .interactions = computer->interactions,
                                      .reporter = computer->division.reporter,
                                      .check = computer->checking ? &computer->check : NULL,
                                      .shift = computer->shift,
@@ -174,9 +175,9 @@ static lar_status open_processors(lar_computer *computer, bool *met, lar_error *
     return status;
 }
 
-lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
-                               lar_tool_list *list, const lar_options *options, lar_computer **out,
-                               lar_error *error) {
+lar_status lar_computer_create(const lar_domain *whole, lar_interactions *interactions,
+                               lar_state *state, lar_tools *tools, lar_tool_list *list,
+                               const lar_options *options, lar_computer **out, lar_error *error) {
     lar_computer *computer = lar_calloc(1, sizeof *computer);
     lar_status status = LAR_OK;
     bool met = false;
@@ -185,6 +186,8 @@ lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_to
     } else {
         computer->options = options;
         computer->whole = whole;
+        computer->interactions = interactions;
+        computer->gathered = true;
         computer->state = state;
         computer->tools = tools;
         computer->list = list;
@@ -379,6 +382,7 @@ static lar_status order_advance(lar_computer *computer, uint64_t until, bool fir
 static lar_status advance_all(lar_computer *computer, uint64_t until, bool first, lar_fault *fault,
                               lar_error *error) {
     lar_status status = computer->control ? order_advance(computer, until, first, error) : LAR_OK;
+    computer->gathered = false;
     if (!status) status = advance_here(computer, until, first, error);
     first_fault(computer, fault);
     if (!status && computer->control) status = hear_all(computer, fault, error);

@@ -67,6 +67,7 @@ typedef struct lar_computer {
     bool called_off;     /* by the callback */
     lar_report report;   /* of the last advance; at processor zero, of all processors */
     lar_state *state;    /* of the whole model: gathered into at zero, scattered from elsewhere */
+    bool gathered;       /* at zero: `state` is what the processors have */
     lar_tools *tools;    /* of this process: zero's are those that count */
     lar_tool_list *list; /* of this process: its spares follow `tools` */
     lar_interval interval;
@@ -76,15 +77,18 @@ typedef struct lar_computer {
     /* for opening */
     const lar_options *options;
     const lar_domain *whole;
+    lar_interactions *interactions; /* of the whole: searches for contact of bodies */
     uint64_t identity;
 } lar_computer;
 
-/* Divides, compiles, starts threads and meets the other processes. `whole` and `state` are those of
- * the whole model at the start; they, `tools` and `list` must outlive the computer. Takes
+/* Divides, compiles, starts threads and meets the other processes. `whole`, `interactions` and
+ * `state` are those of the whole model at the start; they, `tools` and `list` must outlive the
+ * computer. Takes
  * options->listener over, whatever it returns. */
-lar_status lar_computer_create(const lar_domain *whole, lar_state *state, lar_tools *tools,
-                               lar_tool_list *list, const lar_options *options,
-                               lar_computer **computer, lar_error *error);
+lar_status lar_computer_create(const lar_domain *whole, lar_interactions *interactions,
+                               lar_state *state, lar_tools *tools, lar_tool_list *list,
+                               const lar_options *options, lar_computer **computer,
+                               lar_error *error);
 /* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
  * Accepts NULL. */
 void lar_computer_destroy(lar_computer *computer);
@@ -96,8 +100,8 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
                                 lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error);
 
-/* The state of all processors into that of the whole model, and back to all processors: they go on
- * from there, whatever faults there were before. Processor zero only. */
+/* The state of all processors into that of the whole model, where it is not yet, and back to all
+ * processors: they go on from there, whatever faults there were before. Processor zero only. */
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 

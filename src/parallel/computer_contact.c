@@ -27,7 +27,7 @@ static void list_elements(const lar_computer *computer, int32_t *elements, size_
 
 lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    const lar_body_contact *whole = &computer->whole->interactions.body_contact;
+    const lar_body_contact *whole = &computer->interactions->body_contact;
     if (!whole->surface || computer->checking) return LAR_OK;
     const lar_model *model = computer->whole->model;
     size_t nodes = (size_t)whole->surface->node_count;

@@ -4,17 +4,10 @@
 
 #include "parallel/computer.h"
 
-/* What travels for a node: u with the offset behind it, and v. */
-typedef double node_values[7];
+/* What travels for a node: the rows of the state's table. */
+typedef double node_values[LAR_NODE_VALUES];
 
 /* ---- gathering ----------------------------------------------------------------------------- */
-
-static void take_node(const lar_domain *whole, lar_gid node, const double *u, const double *v,
-                      lar_state *state) {
-    size_t there = 4 * (size_t)whole->layout.local[node];
-    memcpy(state->u + there, u, 4 * sizeof *u);
-    memcpy(state->v + there, v, 3 * sizeof *v);
-}
 
 /* A node of several processors has moved by the same bits on each. */
 static void check_copies(const lar_computer *computer, const lar_processor *p) {
@@ -23,9 +16,10 @@ static void check_copies(const lar_computer *computer, const lar_processor *p) {
     const lar_state *state = computer->state;
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
-        size_t there = 4 * (size_t)whole->local[layout->global[n]], here = 4 * (size_t)n;
-        assert(!memcmp(state->u + there, p->worker[0].state.u + here, 4 * sizeof(double)));
-        assert(!memcmp(state->v + there, p->worker[0].state.v + here, 3 * sizeof(double)));
+        node_values there, here;
+        lar_state_read(state, whole->local[layout->global[n]], there);
+        lar_state_read(&p->worker[0].state, n, here);
+        assert(!memcmp(there, here, sizeof here));
     }
 #else
     (void)computer, (void)p;
@@ -50,8 +44,10 @@ static void gather_here(const lar_computer *computer) {
         const lar_state *own = &p->worker[0].state;
         for (lar_lid n = 0; n < layout->node_padded; n++) {
             lar_gid node = layout->global[n];
-            if (node >= 0 && computer->division.reporter[node] == p->self)
-                take_node(whole, node, own->u + 4 * (size_t)n, own->v + 4 * (size_t)n, state);
+            if (node < 0 || computer->division.reporter[node] != p->self) continue;
+            node_values value;
+            lar_state_read(own, n, value);
+            lar_state_write(state, whole->layout.local[node], value);
         }
         add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
     }
@@ -64,7 +60,7 @@ static lar_gid take_answer(const lar_computer *computer, int32_t p, lar_gid node
     const lar_mesh *mesh = &computer->whole->model->mesh;
     for (int64_t i = 0; i < count && node < mesh->node_count; node++)
         if (computer->division.reporter[node] == p) {
-            take_node(computer->whole, node, value[i], value[i] + 4, computer->state);
+            lar_state_write(computer->state, computer->whole->layout.local[node], value[i]);
             i++;
         }
     return node;
@@ -100,12 +96,14 @@ static lar_status gather_others(lar_computer *computer, lar_error *error) {
 }
 
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
+    if (computer->gathered) return LAR_OK;
     if (computer->broken) return lar_computer_refuse(error);
     lar_state *state = computer->state;
     state->step = computer->processor[0].worker[0].state.step;
     state->external = state->damped = state->contact = 0;
     gather_here(computer);
     lar_status status = computer->control ? gather_others(computer, error) : LAR_OK;
+    computer->gathered = !status;
     if (status) computer->broken = true;
     return status;
 }
@@ -126,10 +124,7 @@ lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar
             skip--;
             continue;
         }
-        size_t n = 4 * (size_t)p->domain.layout.local[node];
-        memcpy(value[count], own->u + n, 4 * sizeof(double));
-        memcpy(value[count] + 4, own->v + n, 3 * sizeof(double));
-        count++;
+        lar_state_read(own, p->domain.layout.local[node], value[count++]);
     }
     return lar_control_answer(computer->control, &answer, value, count * sizeof *value, error);
 }
@@ -147,11 +142,8 @@ static lar_status scatter_others(lar_computer *computer, lar_error *error) {
     size_t nodes = (size_t)whole->model->mesh.node_count;
     node_values *value = lar_calloc(nodes, sizeof *value);
     if (!value) return lar_fail_memory(error, nodes * sizeof *value, "the state");
-    for (size_t node = 0; node < nodes; node++) {
-        size_t there = 4 * (size_t)whole->layout.local[node];
-        memcpy(value[node], computer->state->u + there, 4 * sizeof(double));
-        memcpy(value[node] + 4, computer->state->v + there, 3 * sizeof(double));
-    }
+    for (size_t node = 0; node < nodes; node++)
+        lar_state_read(computer->state, whole->layout.local[node], value[node]);
     const lar_order order = {LAR_ORDER_SCATTER, computer->state->step};
     lar_status status =
         lar_control_order(computer->control, &order, value, nodes * sizeof *value, error);
@@ -173,7 +165,7 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
                         "again, from the same installation",
                         bytes, (int)nodes);
     for (lar_gid node = 0; node < nodes; node++)
-        take_node(computer->whole, node, value[node], value[node] + 4, computer->state);
+        lar_state_write(computer->state, computer->whole->layout.local[node], value[node]);
     computer->state->step = step;
     scatter_here(computer);
     return LAR_OK;
@@ -188,6 +180,7 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     first->external = computer->state->external;
     first->damped = computer->state->damped;
     first->contact = computer->state->contact;
+    computer->gathered = true;
     computer->tools_sent = false;
     computer->contact.valid = false;
     computer->contact.info = (lar_contact_info){0};

@@ -301,9 +301,9 @@ void lar_contact_exchange_destroy(lar_processor *p) {
     if (!exchange) return;
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_body_contact *contact = &p->worker[t].interactions.body_contact;
-        free((uint8_t *)contact->adds_node);
-        free((uint8_t *)contact->adds_corner);
-        free((uint8_t *)contact->keeps);
+        free(contact->adds_node);
+        free(contact->adds_corner);
+        free(contact->keeps);
         free(contact->list.group);
         free(contact->list.face);
         contact->adds_node = contact->adds_corner = contact->keeps = NULL;

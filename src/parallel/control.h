@@ -52,8 +52,8 @@ typedef struct lar_order {
 /* Bytes of payload in one packet. */
 enum { LAR_PART_BYTES = 32768 };
 
-/* Values of so many nodes fit into one answer: u and v, three numbers each, and the offset. */
-enum { LAR_ANSWER_NODES = LAR_PART_BYTES / (7 * (int)sizeof(double)) };
+/* Values of so many nodes fit into one answer: the rows of the state's table. */
+enum { LAR_ANSWER_NODES = LAR_PART_BYTES / (LAR_NODE_VALUES * (int)sizeof(double)) };
 
 typedef struct lar_answer {
     uint64_t step;   /* steps done */

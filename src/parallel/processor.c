@@ -191,18 +191,20 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
                         "a thread moves all its nodes in one batch: put them together",
                         (int)p->self, (int)thread, (int)moving);
     lar_status status = create_state(p, worker, error);
+    worker->state.strained = &p->strained;
     if (!status && !(worker->gather = lar_calloc_aligned(largest, 1)))
         status = lar_fail_memory(error, largest, "a packet");
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};
     if (!status)
         status = lar_conditions_create(setting->whole->model, layout->local, &share,
-                                       &worker->interactions.conditions, error);
-    const lar_tool_contact *contact = &setting->whole->interactions.tool_contact;
+                                       &worker->surroundings.conditions, error);
+    const lar_tool_contact *contact = &setting->interactions->tool_contact;
     if (!status)
-        status =
-            lar_tool_contact_create(setting->whole->model, layout->local, &share, contact->list,
-                                    contact->tools, &worker->interactions.tool_contact, error);
-    worker->interactions.tool_contact.always = contact->always;
+        status = lar_surroundings_add_contact(setting->whole->model, layout->local, &share,
+                                              contact->list, &worker->surroundings, error);
+    if (!status)
+        status = lar_interactions_create(&worker->surroundings, contact->tools, contact->always,
+                                         &worker->interactions, error);
     return status;
 }
 
@@ -216,7 +218,7 @@ static lar_status create_workers(const lar_schedule *schedule, const lar_process
         status = create_worker(schedule, setting, a, t, p, error);
     const lar_condition_share share = {-1, a->owner, a->loads, a->thread};
     if (!status && !p->check)
-        status = lar_contact_exchange_create(&setting->whole->interactions.body_contact, &share,
+        status = lar_contact_exchange_create(&setting->interactions->body_contact, &share,
                                              setting->reporter, schedule->grid.count, p, error);
     return status ? status : lar_thread_reduction_create(schedule, a->thread, p, error);
 }
@@ -243,6 +245,7 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
         status = lar_domain_create_part(setting->whole, &part, a.counted,
                                         schedule->transfer_count ? RUN_BLOCKS : INT32_MAX,
                                         &p->domain, error);
+    if (!status) status = lar_strained_create(&p->domain, &p->strained, error);
     if (!status) status = compile_batches(schedule, p, error);
     if (!status) status = compile_packets(schedule, p, error);
     if (!status) status = create_workers(schedule, setting, &a, p, error);
@@ -256,6 +259,7 @@ void lar_processor_destroy(lar_processor *p) {
     for (int32_t t = p->worker ? p->thread_count - 1 : -1; t >= 0; t--) {
         lar_worker *worker = &p->worker[t];
         lar_interactions_destroy(&worker->interactions);
+        lar_surroundings_destroy(&worker->surroundings);
         lar_thread_reduction_destroy(worker);
         free(worker->gather);
         if (t == 0)
@@ -263,6 +267,7 @@ void lar_processor_destroy(lar_processor *p) {
         else
             free(worker->state.force);
     }
+    lar_strained_destroy(&p->strained);
     lar_domain_destroy(&p->domain);
     free(p->worker);
     free(p->batch);
@@ -280,9 +285,9 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
     memset(own->v, 0, 4 * (size_t)layout->node_padded * sizeof *own->v);
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
-        size_t there = 4 * (size_t)whole->layout.local[layout->global[n]], here = 4 * (size_t)n;
-        memcpy(own->u + here, state->u + there, 4 * sizeof *own->u);
-        memcpy(own->v + here, state->v + there, 4 * sizeof *own->v);
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, whole->layout.local[layout->global[n]], value);
+        lar_state_write(own, n, value);
     }
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_worker *worker = &p->worker[t];

@@ -14,6 +14,7 @@
 
 #include "comm/comm.h"
 #include "divide/schedule/schedule.h"
+#include "step/guard.h"
 #include "step/step.h"
 #include "parallel/verification.h"
 
@@ -58,6 +59,7 @@ typedef struct lar_worker {
     lar_state state; /* u, v: the processor's; force, step and work are its own */
     uint64_t round;  /* steps gone through since the start. Packets and flags are counted by it, so
                         that they go on when the state is set back (docs/parallel.md) */
+    lar_surroundings surroundings; /* compiled for its nodes and faces */
     lar_interactions interactions;
     lar_condition_context context;   /* the nodes that it moves */
     lar_reduction_buffer *reduction; /* [threads] for each of them */
@@ -75,7 +77,8 @@ typedef struct lar_worker {
 typedef struct lar_processor {
     int32_t self, thread_count;
     lar_domain domain;
-    lar_worker *worker; /* [thread_count] */
+    lar_strained strained; /* each thread has the places of its runs */
+    lar_worker *worker;    /* [thread_count] */
     int32_t batch_count, packet_count;
     lar_batch_plan *batch;        /* [batch_count] thread after thread */
     lar_batch_sequence *sequence; /* [batch_count], atomic */
@@ -94,7 +97,8 @@ typedef struct lar_processor {
 
 /* What is common to all processors of a computer. */
 typedef struct lar_processor_setting {
-    const lar_domain *whole; /* outlives the processor */
+    const lar_domain *whole;              /* outlives the processor, as the next one */
+    const lar_interactions *interactions; /* of the whole: its tools, how it searches */
     const int32_t *reporter; /* [nodes of the model] the processor that accounts for a node */
     lar_verification *check; /* or NULL */
     const size_t *shift;     /* as above; outlives the processor */

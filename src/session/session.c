@@ -111,7 +111,8 @@ static void destroy(lar_session *session) {
     lar_snapshots_destroy(&session->snapshots);
     lar_recovery_destroy(&session->recovery);
     lar_player_close(session->player);
-    lar_triple_buffer_destroy(&session->view);
+    if (session->view) lar_triple_buffer_destroy(session->view);
+    free(session->view);
     lar_requests_destroy(&session->requests);
     free(session);
 }
@@ -137,9 +138,11 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     session->divided = lar_simulation_divided_steps(simulation, NULL);
     lar_status status = choose(session, &asked, error);
     if (!status) status = make_tools(session, error);
+    if (!status && !(session->view = lar_calloc(1, sizeof *session->view)))
+        status = lar_fail_memory(error, sizeof *session->view, "the session");
     if (!status)
         status =
-            lar_triple_buffer_create(&session->view, sizeof(lar_session_view), "a session", error);
+            lar_triple_buffer_create(session->view, sizeof(lar_session_view), "a session", error);
     if (!status) status = lar_snapshots_create(simulation, &session->snapshots, error);
     if (!status) status = make_recovery(session, error);
     if (status) {

@@ -77,7 +77,7 @@ struct lar_session {
     lar_session_tool tool[LAR_TOOLS_MAX];
 
     lar_requests requests;
-    lar_triple_buffer view; /* lar_session_view, to everybody */
+    lar_triple_buffer *view; /* lar_session_view, to everybody: looking takes the newest one over */
     lar_history history;
     lar_snapshots snapshots;
     pthread_t thread;

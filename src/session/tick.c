@@ -29,7 +29,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->replaying = player != NULL;
     status->replay_time = player ? (double)player->place * session->time_step : 0;
     status->replay_length = player ? (double)player->length * session->time_step : 0;
-    lar_session_view *view = lar_triple_buffer_back(&session->view);
+    lar_session_view *view = lar_triple_buffer_back(session->view);
     view->status = *status;
     lar_simulation_gravity(session->simulation, view->gravity);
     view->damping = lar_simulation_damping(session->simulation);
@@ -44,7 +44,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
             lar_device_status_get(session->tool[i].device, &session->tool[i].device_status);
         view->tool[i].device = session->tool[i].device_status;
     }
-    lar_triple_buffer_publish(&session->view);
+    lar_triple_buffer_publish(session->view);
 }
 
 static void serve_snapshots(lar_session *session) {

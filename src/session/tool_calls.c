@@ -20,13 +20,13 @@ lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_
 
 /* Reading takes over the newest view, which changes nothing that callers see. */
 static const lar_session_view *look_at_view(const lar_session *session) {
-    lar_triple_buffer *box = &((lar_session *)session)->view;
+    lar_triple_buffer *box = session->view;
     lar_triple_buffer_lock(box);
     return lar_triple_buffer_newest(box, NULL);
 }
 
 static void end_look(const lar_session *session) {
-    lar_triple_buffer_unlock(&((lar_session *)session)->view);
+    lar_triple_buffer_unlock(session->view);
 }
 
 int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info) {

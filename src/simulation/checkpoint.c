@@ -18,6 +18,7 @@
 #include "base/pose.h"
 #include "contact/spares.h"
 #include "contact/tool_body.h"
+#include "simulation/checkpoint_rows.h"
 #include "step/identity.h"
 
 /* ---- what stands in a file ------------------------------------------------------------------ */
@@ -46,6 +47,7 @@ _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until the
 _Static_assert(sizeof(lar_settings) == 552, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
+_Static_assert(LAR_NODE_VALUES == 7, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
@@ -53,8 +55,6 @@ typedef struct file_shape {
     uint32_t version;
     int32_t tools, grasps;
 } file_shape;
-
-typedef double node_vector[3];
 
 static size_t settings_bytes(uint32_t version) {
     size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
@@ -66,8 +66,7 @@ static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-           grasps * sizeof(lar_grasp) + nodes * (sizeof(double) + 2 * sizeof(node_vector)) +
-           sizeof(uint64_t);
+           grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) + sizeof(uint64_t);
 }
 
 uint64_t lar_checkpoint_sum(const void *data, size_t words) {
@@ -81,29 +80,23 @@ uint64_t lar_checkpoint_sum(const void *data, size_t words) {
     return sum;
 }
 
-/* As lar_state_hash, for nodes in the mesh's order. */
-static uint64_t hash_state(uint64_t step, const double *offset, const node_vector *u,
-                           const node_vector *v, lar_gid nodes) {
-    uint64_t hash = lar_hash_word(0, step);
-    for (lar_gid n = 0; n < nodes; n++) {
-        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, u[n][i]);
-        for (int i = 0; i < 3; i++) hash = lar_hash_double(hash, v[n][i]);
-        if (offset[n] > 0) hash = lar_hash_double(hash, offset[n]);
-    }
-    return hash;
-}
-
 /* ---- writing -------------------------------------------------------------------------------- */
+
+static bool all_finite(const double *value, size_t count) {
+    bool finite = true;
+    for (size_t i = 0; i < count; i++) finite = finite && isfinite(value[i]);
+    return finite;
+}
 
 static lar_status check_finite(const char *path, const lar_domain *whole, const lar_state *state,
                                lar_error *error) {
     const lar_mesh *mesh = &whole->model->mesh;
     bool finite = isfinite(state->external) && isfinite(state->damped) && isfinite(state->contact);
-    for (lar_gid g = 0; g < mesh->node_count; g++)
-        for (int i = 0; i < 4; i++) {
-            size_t value = 4 * (size_t)whole->layout.local[g] + (size_t)i;
-            finite = finite && isfinite(state->u[value]) && isfinite(state->v[value]);
-        }
+    for (lar_gid g = 0; g < mesh->node_count; g++) {
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, whole->layout.local[g], value);
+        finite = finite && all_finite(value, LAR_NODE_VALUES);
+    }
     if (finite) return LAR_OK;
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "%s: the state has left the range of numbers and is not saved; go back to an "
@@ -118,7 +111,7 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 
 /* What a file has of the tools: spares up to the last one that is there. */
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
@@ -142,13 +135,11 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    double *offset = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
-    node_vector *u = (node_vector *)(offset + nodes), *v = u + nodes;
+    double *rows = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
     for (lar_gid g = 0; g < nodes; g++) {
-        size_t there = 4 * (size_t)whole->layout.local[g];
-        offset[g] = state->u[there + 3];
-        memcpy(u[g], state->u + there, sizeof u[g]);
-        memcpy(v[g], state->v + there, sizeof v[g]);
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, whole->layout.local[g], value);
+        lar_checkpoint_put(rows, (size_t)nodes, (size_t)g, value);
     }
     file_head head = {.version = shape->version,
                       .byte_order = BYTE_ORDER_MARK,
@@ -157,8 +148,7 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .external = state->external,
                       .damped = state->damped,
                       .contact = state->contact,
-                      .hash = hash_state(state->step, offset, (const node_vector *)u,
-                                         (const node_vector *)v, nodes),
+                      .hash = lar_checkpoint_hash(state->step, rows, (size_t)nodes),
                       .tools = shape->tools,
                       .grasps = shape->grasps};
     memcpy(head.magic, MAGIC, sizeof MAGIC);
@@ -421,18 +411,6 @@ static lar_status check_model(const char *path, const file_head *head, const lar
     return LAR_OK;
 }
 
-static bool all_finite(const double *value, size_t count) {
-    bool finite = true;
-    for (size_t i = 0; i < count; i++) finite = finite && isfinite(value[i]);
-    return finite;
-}
-
-static bool none_negative(const double *value, size_t count) {
-    bool good = true;
-    for (size_t i = 0; i < count; i++) good = good && value[i] >= 0;
-    return good;
-}
-
 /* Numbers of steps are far below this: sums of two of them do not overflow. */
 static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
 
@@ -500,7 +478,7 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
 /* What fill_tools writes; *at moves behind it. */
 static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
                        lar_tools *tools) {
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     *tools =
         (lar_tools){.count = head->tools, .grasp_count = head->grasps, .division = {.base = 1}};
     size_t count = (size_t)tools->count, grasps = (size_t)tools->grasp_count;
@@ -531,7 +509,7 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
 lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
                                 lar_checkpoint *checkpoint, lar_error *error) {
     const lar_model *model = whole->model;
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     size_t nodes = (size_t)model->mesh.node_count;
     file_head head;
     lar_status status = check_file(path, bytes, &head, error);
@@ -556,14 +534,12 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (!take_tools(&head, whole, &at, &found.tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
-    found.offset = (const double *)(const void *)at;
-    found.u = (const node_vector *)(const void *)(found.offset + nodes);
-    found.v = found.u + nodes;
+    found.rows = (const double *)(const void *)at;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    if (!finite || !all_finite(found.offset, 7 * nodes) || !none_negative(found.offset, nodes) ||
-        head.step > STEPS_MAX)
+    if (!finite || !all_finite(found.rows, LAR_NODE_VALUES * nodes) ||
+        !lar_checkpoint_none_negative(found.rows, nodes) || head.step > STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    if (head.hash != hash_state(head.step, found.offset, found.u, found.v, (lar_gid)nodes))
+    if (head.hash != lar_checkpoint_hash(head.step, found.rows, nodes))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
     *checkpoint = found;
     return LAR_OK;
@@ -576,10 +552,10 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
     memset(state->v, 0, values * sizeof *state->v);
     memset(state->force, 0, values * sizeof *state->force);
     for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
-        size_t there = 4 * (size_t)whole->layout.local[g];
-        memcpy(state->u + there, checkpoint->u[g], sizeof checkpoint->u[g]);
-        state->u[there + 3] = checkpoint->offset[g];
-        memcpy(state->v + there, checkpoint->v[g], sizeof checkpoint->v[g]);
+        double value[LAR_NODE_VALUES];
+        lar_checkpoint_get(checkpoint->rows, (size_t)whole->model->mesh.node_count, (size_t)g,
+                           value);
+        lar_state_write(state, whole->layout.local[g], value);
     }
     state->step = checkpoint->step;
     state->part = 0;

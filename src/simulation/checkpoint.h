@@ -2,6 +2,8 @@
  *
  *     | head | division, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
  *
+ * What it has of the nodes, and in which order, stands in the state's table (layout/state.h).
+ *
  * Binary, words of eight bytes, described in docs/formats.md. The nodes are in the mesh's order, so
  * that a checkpoint of one grid goes on on any other; numbers are written as they are, so that the
  * bits are the same. What a state belongs to is hashed part by part (identity.h), for a refusal
@@ -19,8 +21,7 @@ typedef struct lar_checkpoint {
     uint64_t step;
     double external, damped, contact; /* as in lar_state */
     lar_tools tools;
-    const double *offset;          /* [nodes of the mesh] in contact of bodies with themselves */
-    const double (*u)[3], (*v)[3]; /* [nodes of the mesh] */
+    const double *rows; /* of the state's table, [nodes of the mesh] each */
 } lar_checkpoint;
 
 /* State and tools of the whole model as the bytes of a file, which the caller frees. A state that

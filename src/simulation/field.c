@@ -97,8 +97,7 @@ lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *w
 /* The simulation's plan, made when there is none. */
 static lar_status find_plan(const lar_simulation *simulation, lar_field_plan **plan,
                             lar_error *error) {
-    /* Nothing but this call sees it. */
-    lar_field_plan **kept = &((lar_simulation *)simulation)->field;
+    lar_field_plan **kept = &simulation->scratch->field;
     *plan = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
     if (*plan) return LAR_OK;
     lar_field_plan *made;

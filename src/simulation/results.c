@@ -209,7 +209,6 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
     if (!status) status = check_finite(simulation, error);
     if (!status) status = add_frame(results, simulation, error);
     if (!status) status = lar_surface_results_add(&results->surface, simulation, error);
-    /* The force array is scratch between steps: the state that the caller sees stays the same. */
-    if (!status) status = lar_probe_file_add(&results->probes, (lar_simulation *)simulation, error);
+    if (!status) status = lar_probe_file_add(&results->probes, simulation, error);
     return status;
 }

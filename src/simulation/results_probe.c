@@ -54,7 +54,7 @@ static void mean_displacement(const lar_simulation *simulation, const lar_node_l
     }
 }
 
-static lar_status print_values(FILE *line, lar_simulation *simulation, lar_error *error) {
+static lar_status print_values(FILE *line, const lar_simulation *simulation, lar_error *error) {
     const lar_output *output = &simulation->domain.model->output;
     fprintf(line, "%.10g", lar_simulation_time(simulation));
     for (int i = 0; i < output->probe_count; i++) {
@@ -62,8 +62,8 @@ static lar_status print_values(FILE *line, lar_simulation *simulation, lar_error
         double value[3];
         lar_status status = LAR_OK;
         if (probe->what == LAR_PROBE_REACTION)
-            status = lar_measure_reaction(&simulation->domain, &simulation->state, &probe->nodes,
-                                          value, error);
+            status = lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
+                                          &simulation->state, &probe->nodes, value, error);
         else
             mean_displacement(simulation, &probe->nodes, value);
         if (status) return status;
@@ -91,8 +91,8 @@ static lar_status append(lar_probe_file *file, const char *text, size_t size, la
 }
 
 /* The header (without a simulation) or a line of values. */
-static lar_status add_line(lar_probe_file *file, const lar_model *model, lar_simulation *simulation,
-                           lar_error *error) {
+static lar_status add_line(lar_probe_file *file, const lar_model *model,
+                           const lar_simulation *simulation, lar_error *error) {
     char *text = NULL;
     size_t size = 0;
     FILE *line = open_memstream(&text, &size);
@@ -127,7 +127,8 @@ lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model
     return add_line(file, model, NULL, error);
 }
 
-lar_status lar_probe_file_add(lar_probe_file *file, lar_simulation *simulation, lar_error *error) {
+lar_status lar_probe_file_add(lar_probe_file *file, const lar_simulation *simulation,
+                              lar_error *error) {
     return add_line(file, simulation->domain.model, simulation, error);
 }
 

@@ -21,8 +21,9 @@ typedef struct lar_probe_file {
 lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model *model,
                                lar_error *error);
 
-/* Adds the line of the present state. The state's force array is scratch. */
-lar_status lar_probe_file_add(lar_probe_file *file, lar_simulation *simulation, lar_error *error);
+/* Adds the line of the present state. */
+lar_status lar_probe_file_add(lar_probe_file *file, const lar_simulation *simulation,
+                              lar_error *error);
 
 /* Idempotent. */
 lar_status lar_probe_file_close(lar_probe_file *file, lar_error *error);

@@ -18,7 +18,7 @@ lar_options lar_options_default(void) {
 /* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
  * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
 static void set_initial_displacements(lar_simulation *simulation) {
-    const lar_conditions *conditions = &simulation->domain.interactions.conditions;
+    const lar_conditions *conditions = &simulation->domain.surroundings.conditions;
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double value = lar_constraint_value(simulation->domain.model, c, 0);
@@ -30,7 +30,7 @@ static void set_initial_displacements(lar_simulation *simulation) {
  * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
  * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
 static void set_initial_velocities(lar_simulation *simulation) {
-    lar_domain *domain = &simulation->domain;
+    const lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
     const lar_model *model = domain->model;
     double keep = domain->leapfrog.keep, gravity[3];
@@ -41,7 +41,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
                    sizeof initial->velocity);
     }
     lar_fault ignored = {0};
-    lar_step_forces(domain, state, &ignored);
+    lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
     lar_gravity_at(model, NULL, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
@@ -52,8 +52,8 @@ static void set_initial_velocities(lar_simulation *simulation) {
             state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
         }
     memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
-    for (int32_t i = 0; i < domain->interactions.conditions.constraint_count; i++)
-        state->v[domain->interactions.conditions.constraint[i].value] = 0;
+    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++)
+        state->v[domain->surroundings.conditions.constraint[i].value] = 0;
 }
 
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
@@ -131,10 +131,30 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     simulation->measured = simulation->taken = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
     lar_simulation_settle(simulation);
-    lar_interactions_forget(&simulation->domain.interactions);
     set_initial_displacements(simulation);
     set_initial_velocities(simulation);
-    lar_interactions_forget(&simulation->domain.interactions);
+    lar_interactions_forget(&simulation->interactions);
+}
+
+/* The state, and what stands beside it. */
+static lar_status create_state(lar_simulation *simulation, bool search_always, lar_error *error) {
+    const lar_domain *domain = &simulation->domain;
+    lar_interactions *interactions = &simulation->interactions;
+    lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
+    if (!status) status = lar_strained_create(domain, &simulation->strained, error);
+    simulation->state.strained = &simulation->strained;
+    if (!status)
+        status = lar_interactions_create(&domain->surroundings, &simulation->tools, search_always,
+                                         interactions, error);
+    if (!status)
+        status = lar_body_contact_create(&domain->surroundings.bodies, domain->layout.local,
+                                         domain->time_step, domain->stable_step, search_always,
+                                         &interactions->body_contact, error);
+    if (!status && !(simulation->scratch = lar_calloc(1, sizeof *simulation->scratch)))
+        status = lar_fail_memory(error, sizeof *simulation->scratch, "the simulation");
+    return status ? status
+                  : lar_measure_scratch_create(domain, &simulation->tools,
+                                               &simulation->scratch->measure, error);
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,
@@ -147,19 +167,16 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     set_tool_limits(domain, &simulation->list);
     lar_tools_reset(&simulation->list, &simulation->tools);
     domain->interval = lar_interval_length(domain, &simulation->tools);
-    status = lar_tool_contact_create(model, domain->layout.local, NULL, &simulation->list,
-                                     &simulation->tools, &domain->interactions.tool_contact, error);
-    domain->interactions.tool_contact.always = options->search_always != 0;
+    status = lar_surroundings_add_contact(model, domain->layout.local, NULL, &simulation->list,
+                                          &domain->surroundings, error);
     if (!status)
-        status = lar_body_contact_create(
-            model, domain->mass, domain->layout.local, domain->time_step, domain->stable_step,
-            options->search_always != 0, &domain->interactions.body_contact, error);
+        status = lar_surroundings_add_bodies(model, domain->mass, domain->layout.local,
+                                             domain->time_step, domain->stable_step,
+                                             &domain->surroundings, error);
     if (!status) status = check_damping(domain, error);
-    if (!status) status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
-    if (status) return status;
-    lar_simulation_set_start(simulation);
-    simulation->gathered = true;
-    return LAR_OK;
+    if (!status) status = create_state(simulation, options->search_always != 0, error);
+    if (!status) lar_simulation_set_start(simulation);
+    return status;
 }
 
 /* Grid "auto" becomes a grid, or none. */
@@ -187,8 +204,8 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);
     if (!status && lar_division_asked(&chosen))
-        status = lar_computer_create(&made->domain, &made->state, &made->tools, &made->list,
-                                     &chosen, &made->computer, error);
+        status = lar_computer_create(&made->domain, &made->interactions, &made->state, &made->tools,
+                                     &made->list, &chosen, &made->computer, error);
     else if (chosen.listener >= 0)
         close(chosen.listener); /* taken over, and nobody to use it */
     if (status)
@@ -201,7 +218,13 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
 void lar_simulation_destroy(lar_simulation *simulation) {
     if (!simulation) return;
     lar_computer_destroy(simulation->computer);
-    lar_field_plan_destroy(simulation->field);
+    if (simulation->scratch) {
+        lar_measure_scratch_destroy(&simulation->scratch->measure);
+        lar_field_plan_destroy(simulation->scratch->field);
+        free(simulation->scratch);
+    }
+    lar_interactions_destroy(&simulation->interactions);
+    lar_strained_destroy(&simulation->strained);
     lar_state_destroy(&simulation->state);
     lar_domain_destroy(&simulation->domain);
     free(simulation);
@@ -210,21 +233,22 @@ void lar_simulation_destroy(lar_simulation *simulation) {
 /* Steps up to `end`, an interval's or the advance's. False when it shall not go on. */
 static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_callback *callback,
                             void *context) {
-    lar_domain *domain = &simulation->domain;
+    const lar_domain *domain = &simulation->domain;
+    lar_interactions *interactions = &simulation->interactions;
     lar_state *state = &simulation->state;
     lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
-    lar_tool_contact_forget_depths(&domain->interactions.tool_contact);
+    lar_tool_contact_forget_depths(&interactions->tool_contact);
     state->need = 0;
     while (state->step < end && goes_on) {
-        lar_step(domain, state, fault);
+        lar_step(domain, interactions, state, fault);
         if (fault->kind) lar_fault_examine(domain, state, 0, domain->layout.node_count, fault);
         bool whole = state->part == 0;
         goes_on = !fault->kind && (!callback || !whole || callback(context, state->step));
     }
     simulation->report = (lar_report){0};
-    lar_report_add(&simulation->report, &domain->interactions, state);
+    lar_report_add(&simulation->report, interactions, state);
     lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
                          &simulation->tools);
     return goes_on;
@@ -235,7 +259,7 @@ static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
                           lar_step_callback *callback, void *context) {
     const uint64_t *step = &simulation->state.step;
     bool goes_on = true;
-    if (first) lar_report_begin(&simulation->domain.interactions);
+    if (first) lar_report_begin(&simulation->interactions);
     if (first) lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
         lar_interval_decide(&simulation->domain, *step, &simulation->tools);
@@ -284,7 +308,6 @@ static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool
         status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
                                       error);
         simulation->report = computer->report;
-        simulation->gathered = false;
         *goes_on = !computer->called_off;
     } else {
         *goes_on = advance_alone(simulation, end, first, callback, context);
@@ -319,15 +342,14 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
         status = advance(simulation, before + steps, callback, context, error);
         simulation->report_steps = lar_simulation_steps(simulation) - before;
     }
-    if (!status) lar_fault_attribute(&simulation->domain, fault);
+    if (!status) lar_fault_attribute(&simulation->domain, &simulation->tools, fault);
     return status ? status : lar_fault_report(&simulation->domain, fault, error);
 }
 
-lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error) {
-    if (!simulation->computer || simulation->gathered) return LAR_OK;
-    lar_status status = lar_computer_gather(simulation->computer, error);
-    if (!status) simulation->gathered = true;
-    return status;
+/* What the caller sees stays the same: `state` is the computer's copy, which is brought up to date.
+ */
+lar_status lar_simulation_gather(const lar_simulation *simulation, lar_error *error) {
+    return simulation->computer ? lar_computer_gather(simulation->computer, error) : LAR_OK;
 }
 
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
@@ -335,7 +357,6 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
     simulation->report = (lar_report){0};
     simulation->report_steps = 0;
     simulation->measured = simulation->taken = 0;
-    simulation->gathered = true;
     lar_simulation_settle(simulation);
     return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
 }
@@ -373,10 +394,8 @@ lar_status lar_simulation_serve(lar_simulation *simulation, lar_error *error) {
 }
 
 const lar_state *lar_simulation_state(const lar_simulation *simulation) {
-    /* What the caller sees stays the same: the copy is brought up to date. */
-    lar_simulation *own = (lar_simulation *)simulation;
-    lar_simulation_gather(own, NULL);
-    return &own->state;
+    lar_simulation_gather(simulation, NULL);
+    return &simulation->state;
 }
 
 int32_t lar_simulation_processors(const lar_simulation *simulation) {
@@ -425,14 +444,9 @@ void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3
 uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
     uint64_t hash = lar_hash_word(0, state->step);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
-        size_t node = (size_t)domain->layout.local[g];
-#define LAR_STATE_HASH(type, name, values, kept)                                                   \
-    for (int i = 0; kept && i < 3; i++)                                                            \
-        hash = lar_hash_double(hash, (double)state->name[node * (values) + (size_t)i]);
-        LAR_STATE_ARRAYS(LAR_STATE_HASH)
-#undef LAR_STATE_HASH
-        double level = state->u[4 * node + 3];
-        if (level > 0) hash = lar_hash_double(hash, level);
+        double value[LAR_NODE_VALUES];
+        lar_state_read(state, domain->layout.local[g], value);
+        hash = lar_state_hash_values(hash, value);
     }
     return hash;
 }
@@ -446,15 +460,14 @@ void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy)
     if (!energy) return;
     *energy = (lar_energy){0};
     if (!simulation) return;
-    /* The force array is scratch between steps: the state that the caller sees stays the same. */
-    lar_simulation *scratch = (lar_simulation *)simulation;
-    lar_simulation_state(simulation);
-    lar_measure_energy(&scratch->domain, &scratch->state, energy);
+    lar_measure_energy(&simulation->domain, &simulation->scratch->measure,
+                       lar_simulation_state(simulation), energy);
 }
 
 size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
-    const lar_conditions *conditions = &domain->interactions.conditions;
+    const lar_conditions *conditions = &domain->surroundings.conditions;
+    const lar_condition_notes *notes = &simulation->interactions.notes;
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;
@@ -462,9 +475,12 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +
                    nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);
+    size_t moved = (size_t)(conditions->constraint_count - conditions->fixed_count);
     bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
-             (size_t)conditions->force_count * sizeof *conditions->force +
-             (size_t)conditions->pressure_count * sizeof *conditions->pressure;
+             moved * sizeof *notes->moved +
+             (size_t)conditions->force_count * (sizeof *conditions->force + sizeof *notes->force) +
+             (size_t)conditions->pressure_count *
+                 (sizeof *conditions->pressure + sizeof *notes->pressure);
 #define LAR_STATE_BYTES(type, name, values, kept) bytes += nodes * (values) * sizeof(type);
     LAR_STATE_ARRAYS(LAR_STATE_BYTES)
 #undef LAR_STATE_BYTES

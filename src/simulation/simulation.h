@@ -7,24 +7,33 @@
 #include "step/domain.h"
 #include "step/interval.h"
 #include "layout/state.h"
+#include "step/guard.h"
+#include "step/measure.h"
 #include "step/step.h"
 
+/* What looking at a simulation needs, and changes nothing of it. */
+typedef struct lar_simulation_scratch {
+    lar_measure_scratch measure;
+    struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
+} lar_simulation_scratch;
+
 struct lar_simulation {
-    lar_domain domain;
+    lar_domain domain; /* changed by lar_simulation_settle only */
     lar_state state;
+    lar_interactions interactions; /* of an advance without a computer */
+    lar_strained strained;         /* the same */
+    lar_simulation_scratch *scratch;
     lar_fault fault;
     lar_tool_list list;
     lar_tools tools;
     lar_interval interval;  /* of an advance without a computer */
     lar_computer *computer; /* NULL: lar_step advances the whole model */
-    bool gathered;          /* `state` is what the computer has */
     lar_report report;      /* of the last advance, of all processors */
     uint64_t report_steps;  /* how many steps that was */
     double measured;        /* the most energy of the bodies when that was asked [J] */
     double taken;           /* by contacts, as of the last report [J] */
     int32_t sessions;       /* open on it: 0 or 1. Atomic */
     int32_t held;           /* by the thread of a session, which alone may change it. Atomic */
-    struct lar_field_plan *field; /* made when lar_simulation_field is first asked; atomic */
 };
 
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
@@ -35,7 +44,7 @@ const lar_state *lar_simulation_state(const lar_simulation *simulation);
  * processes it can. */
 lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
                                   lar_step_callback *callback, void *context, lar_error *error);
-lar_status lar_simulation_gather(lar_simulation *simulation, lar_error *error);
+lar_status lar_simulation_gather(const lar_simulation *simulation, lar_error *error);
 
 /* A session lets its own thread alone change the simulation, or everyone again. */
 void lar_simulation_reserve(lar_simulation *simulation, bool held);

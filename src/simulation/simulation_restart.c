@@ -55,7 +55,7 @@ lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *s
     memset(simulation->state.force, 0,
            4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
     simulation->tools = *tools;
-    lar_interactions_forget(&simulation->domain.interactions);
+    lar_interactions_forget(&simulation->interactions);
     return lar_simulation_take_up(simulation, error);
 }
 
@@ -66,14 +66,12 @@ static lar_status check_path(const char *path, const char *call, lar_error *erro
 
 lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,
                                lar_error *error) {
-    /* Bringing the state together changes nothing that the caller sees. */
-    lar_simulation *own = (lar_simulation *)simulation;
     if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "%s: is not written: the run has broken off, and would again from here; "
                         "load an earlier checkpoint or go back to the start",
                         path);
-    lar_status status = lar_simulation_gather(own, error);
+    lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
     return lar_checkpoint_pack(path, &simulation->domain, &simulation->state, &simulation->tools,
                                bytes, error);
@@ -87,7 +85,7 @@ lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
         status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
     if (status) return status;
     lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
-    lar_interactions_forget(&simulation->domain.interactions);
+    lar_interactions_forget(&simulation->interactions);
     return lar_simulation_take_up(simulation, error);
 }
 

@@ -62,9 +62,9 @@ static void find_place(const room *around, int32_t place, lar_tool *tool) {
 /* A face feels tools at 6 x 6 points at most (contact/tool_contact.h): what is thinner could slip
  * between four of them. */
 static double min_radius(const lar_simulation *simulation) {
-    const lar_tool_contact *contact = &simulation->domain.interactions.tool_contact;
+    const lar_tool_faces *faces = &simulation->domain.surroundings.faces;
     double edge = 0;
-    for (int32_t f = 0; f < contact->face_count; f++) edge = fmax(edge, contact->face[f].edge);
+    for (int32_t f = 0; f < faces->face_count; f++) edge = fmax(edge, faces->face[f].edge);
     return edge / LAR_POINTS_ALONG_EDGE * sqrt(0.5);
 }
 

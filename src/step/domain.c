@@ -185,15 +185,11 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
     if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
-    domain->strained = lar_calloc(elements, sizeof *domain->strained);
-    domain->strained_count = lar_calloc((size_t)domain->run_count, sizeof *domain->strained_count);
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
-    domain->strain = lar_calloc(elements, sizeof *domain->strain);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
     if (!domain->blocks || (domain->more_bytes && !domain->more) || !domain->base ||
-        !domain->corner_limit || !domain->strained || !domain->strained_count || !domain->strain ||
-        !domain->rest)
+        !domain->corner_limit || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -393,8 +389,8 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     }
     if (!status)
         status = lar_conditions_create(model, domain->layout.local, NULL,
-                                       &domain->interactions.conditions, error);
-    double largest = status ? 0 : lar_conditions_largest(&domain->interactions.conditions);
+                                       &domain->surroundings.conditions, error);
+    double largest = status ? 0 : lar_conditions_largest(&domain->surroundings.conditions);
     if (!status && largest * domain->scale > 0x1p58)
         status = lar_fail(error, LAR_ERROR_MODEL,
                           "%s: a nodal force of %g N is far beyond what this material can bear; "
@@ -451,7 +447,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
 }
 
 void lar_domain_destroy(lar_domain *domain) {
-    lar_interactions_destroy(&domain->interactions);
+    lar_surroundings_destroy(&domain->surroundings);
     lar_layout_destroy(&domain->layout);
     free(domain->run);
     free(domain->run_first);
@@ -460,9 +456,6 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->material);
     free(domain->base);
     free(domain->corner_limit);
-    free(domain->strained);
-    free(domain->strained_count);
-    free(domain->strain);
     free(domain->rest);
     if (!domain->rate_lent) free(domain->rate);
     free(domain->spare);

@@ -5,15 +5,15 @@
  *     nodes 0..N-1                    ---->     local nodes, those of a row one after the other,
  *                                               and spare ones for even beginnings and empty lanes
  *
- * Constant once compiled, but for the scratch that the conditions need within one step, and for the
- * stiffness of materials, which lar_domain_stiffen changes between steps; the state
- * (layout/state.h) is separate. The element kinds that are not hex8 keep their elements in the
- * plain list `element` and go the slow way.
+ * Constant: a step changes nothing of it. What the steps change stands beside it: the state
+ * (layout/state.h), what contact knows of that (contact/interactions.h), and the strained elements
+ * (step/guard.h). Between steps lar_domain_stiffen compiles materials anew. The element kinds that
+ * are not hex8 keep their elements in the plain list `element` and go the slow way.
  */
 #ifndef LAR_STEP_DOMAIN_H
 #define LAR_STEP_DOMAIN_H
 
-#include "contact/interactions.h"
+#include "contact/surroundings.h"
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
@@ -46,13 +46,10 @@ typedef struct lar_domain {
     double factor[LAR_FACTORS_MAX];  /* of their stiffness (model/settings.h); atomic */
     double fastest[LAR_FACTORS_MAX]; /* square of the highest frequency at rest among the
                                          elements of these materials [1/s^2]; a whole's */
-    double *corner_limit;    /* [8 for each block] lar_hex8_corner_limit, in squared force units */
-    double *rest;            /* [layout.node_padded][4] where nodes are at rest [m] */
-    int32_t *strained;       /* [8 for each block] what the guard looks at in every step, */
-    int32_t *strained_count; /* [run_count] the first of a run's place; scratch (step/guard.h) */
-    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
-    lar_element_rate *rate;              /* [elements of the model] */
-    bool rate_lent;                      /* `rate` belongs to the whole */
+    double *corner_limit;   /* [8 for each block] lar_hex8_corner_limit, in squared force units */
+    double *rest;           /* [layout.node_padded][4] where nodes are at rest [m] */
+    lar_element_rate *rate; /* [elements of the model] */
+    bool rate_lent;         /* `rate` belongs to the whole */
     size_t block_bytes;
     lar_block_more *more; /* [blocks] of models that have a law with so many parameters, or NULL */
     size_t more_bytes;
@@ -71,7 +68,7 @@ typedef struct lar_domain {
     lar_hex8_limits limits;
     lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 
-    lar_interactions interactions;
+    lar_surroundings surroundings; /* of a part: none, they belong to its threads */
 } lar_domain;
 
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic

@@ -29,42 +29,45 @@ static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
     return lar_tool_contact_distance(&body, tool->radius, place);
 }
 
-static double holding_distance(const lar_domain *domain, int32_t tool, const double rest[3]) {
-    const lar_tool_contact *contact = &domain->interactions.tool_contact;
+static double holding_distance(const lar_domain *domain, const lar_tools *tools, int32_t tool,
+                               const double rest[3]) {
+    const lar_tool_faces *faces = &domain->surroundings.faces;
     double nearest = INFINITY;
-    for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
-        const lar_grasp *grasp = &contact->tools->grasps[i];
+    for (int32_t i = 0; i < tools->grasp_count; i++) {
+        const lar_grasp *grasp = &tools->grasps[i];
         if (grasp->tool != tool) continue;
         double point[3], square = 0;
-        lar_face_mean(contact->face[contact->face_of[grasp->face]].rest, grasp->weight, point);
+        lar_face_mean(faces->face[faces->face_of[grasp->face]].rest, grasp->weight, point);
         for (int k = 0; k < 3; k++) square += (point[k] - rest[k]) * (point[k] - rest[k]);
         nearest = fmin(nearest, sqrt(square));
     }
     return nearest;
 }
 
-void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
-    const lar_tool_contact *contact = &domain->interactions.tool_contact;
+void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
+    const lar_tool_faces *faces = &domain->surroundings.faces;
+    const lar_tool_list *list = domain->surroundings.list;
     bool moves = fault->kind == LAR_FAULT_SPEED || fault->kind == LAR_FAULT_TOO_FAST;
     bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     if (fault->attributed || !(moves || of_element)) return;
     fault->attributed = true;
-    if (contact->face_count == 0 || fault->element < 0) return;
+    if (faces->face_count == 0 || fault->element < 0) return;
     double rest[3], edge = 0, closest = 1;
     if (of_element) {
         edge = element_at_rest(domain, fault->element, rest);
     } else {
         memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
-        edge = contact->face[0].edge;
+        edge = faces->face[0].edge;
     }
-    for (int32_t t = 0; t < contact->list->count; t++) {
-        const lar_tool *tool = &contact->list->tool[t];
+    for (int32_t t = 0; t < list->count; t++) {
+        const lar_tool *tool = &list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
         if (tool->shape == LAR_TOOL_NONE) continue;
-        lar_tool_at(&contact->tools->motion[t], fault->step, domain->time_step, &pose, velocity);
-        double holding = holding_distance(domain, t, rest) / (PULLING * edge), touching = INFINITY;
-        const lar_tool_motion *motion = &contact->tools->motion[t];
+        lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
+        double holding = holding_distance(domain, tools, t, rest) / (PULLING * edge),
+               touching = INFINITY;
+        const lar_tool_motion *motion = &tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
         if (tool->shape != LAR_TOOL_HAND)
             touching = touching_distance(tool, &pose, fault->place) /
@@ -81,7 +84,7 @@ void lar_fault_attribute(const lar_domain *domain, lar_fault *fault) {
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_tool *tool = &domain->interactions.tool_contact.list->tool[fault->tool - 1];
+    const lar_tool *tool = &domain->surroundings.list->tool[fault->tool - 1];
     bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
     char motion[80];

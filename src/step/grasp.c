@@ -47,10 +47,10 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
                           double max, int32_t every, int32_t tool, lar_tools *tools,
                           double *nearest) {
-    const lar_tool_contact *contact = &whole->interactions.tool_contact;
+    const lar_tool_faces *faces = &whole->surroundings.faces;
     int32_t count = 0;
     for (int32_t s = 0; s < whole->model->surface.face_count; s++) {
-        const lar_tool_contact_face *face = &contact->face[contact->face_of[s]];
+        const lar_tool_contact_face *face = &faces->face[faces->face_of[s]];
         double x[4][3], weight[4], point[3], own[3];
         lar_tool_contact_corners(face, state->u, x);
         int n = lar_tool_contact_points(face, reach->tool->radius);
@@ -88,7 +88,7 @@ static void take(const lar_domain *whole, const lar_state *state, const lar_tool
     int32_t before = tools->grasp_count, room = room_of(list, tools);
     double max = INFINITY, nearest = INFINITY;
     bool hand = reach.tool->shape == LAR_TOOL_HAND;
-    if (whole->interactions.tool_contact.face_count == 0 || room <= 0) return;
+    if (whole->surroundings.faces.face_count == 0 || room <= 0) return;
     if (hand) {
         max = reach.tool->radius;
     } else {
@@ -147,7 +147,7 @@ int32_t lar_grasp_count(const lar_tools *tools, int32_t tool) {
 
 void lar_grasp_ease(const lar_domain *whole, const lar_tool_list *list, int32_t tool,
                     double opening, lar_tools *tools) {
-    const lar_tool_contact *contact = &whole->interactions.tool_contact;
+    const lar_tool_faces *faces = &whole->surroundings.faces;
     if (list->tool[tool].shape != LAR_TOOL_GRASPER) return;
     lar_contact_law law = lar_contact_law_for(whole->time_step, whole->stable_step);
     double share = fmax(0, fmin(1, (OPEN - opening) / (OPEN - CLOSED)));
@@ -156,7 +156,7 @@ void lar_grasp_ease(const lar_domain *whole, const lar_tool_list *list, int32_t 
         lar_grasp *grasp = &tools->grasps[i];
         if (grasp->tool != tool) continue;
         /* Of what it really has, or softening would begin unseen. */
-        double max = lar_grasp_stiffness_limit(&contact->face[contact->face_of[grasp->face]],
+        double max = lar_grasp_stiffness_limit(&faces->face[faces->face_of[grasp->face]],
                                                list->tool[tool].radius, &law, whole->mass);
         grasp->stiffness = share * fmin(wanted, max);
     }

@@ -1,6 +1,7 @@
 #include "step/guard.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "mechanics/hex8_guard.h"
 
@@ -11,6 +12,25 @@ static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
 
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
 static const double LEAD = 0.5;
+
+lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error) {
+    size_t lanes = LAR_BLOCK * (size_t)domain->layout.block_count;
+    size_t runs = (size_t)domain->run_count;
+    *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
+                               .count = lar_calloc(runs, sizeof *strained->count),
+                               .strain = lar_calloc(lanes, sizeof *strained->strain)};
+    if (strained->lane && strained->count && strained->strain) return LAR_OK;
+    lar_strained_destroy(strained);
+    return lar_fail_memory(error, lanes * (sizeof *strained->lane + sizeof *strained->strain),
+                           "the strained elements");
+}
+
+void lar_strained_destroy(lar_strained *strained) {
+    free(strained->lane);
+    free(strained->count);
+    free(strained->strain);
+    *strained = (lar_strained){0};
+}
 
 static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
                        double rest[8][3], double now[8][3]) {
@@ -80,7 +100,7 @@ void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monito
         lanes &= below >> LAR_BLOCK;
         if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
     }
-    domain->strained_count[r] = count;
+    state->strained->count[r] = count;
 }
 
 /* In whole units, which sum to nothing. */
@@ -128,8 +148,8 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
-    const int32_t *list = domain->strained + LAR_BLOCK * (size_t)domain->run_first[r];
-    for (int32_t i = 0; i < domain->strained_count[r]; i++) {
+    const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
+    for (int32_t i = 0; i < state->strained->count[r]; i++) {
         int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
         unsigned below =

@@ -12,6 +12,17 @@
 #include "step/domain.h"
 #include "layout/state.h"
 
+/* The strained elements of a domain's runs, beside the state: each run has the places of its
+ * blocks, and is one thread's. */
+struct lar_strained {
+    int32_t *lane;  /* [8 for each block] what is looked at in every step */
+    int32_t *count; /* [run_count] of these, from the first of a run's places on */
+    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
+};
+
+lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);
+void lar_strained_destroy(lar_strained *strained); /* idempotent */
+
 /* What the kernel has listed of run r becomes what is looked at in every step. `measures`: how fast
  * they are counts for state->need. */
 void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monitor *monitor,

@@ -148,7 +148,7 @@ void lar_model_identify(const lar_domain *whole, lar_model_identity *identity) {
                                      .materials = hash_materials(model),
                                      .conditions = hash_model_conditions(model),
                                      .contact = hash_contacts(model),
-                                     .tools = hash_tools(whole->interactions.tool_contact.list)};
+                                     .tools = hash_tools(whole->surroundings.list)};
 }
 
 /* ---- of a computer ------------------------------------------------------------------------- */
@@ -161,11 +161,11 @@ uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t 
     hash = hash_doubles(hash, &whole->time_step, 1);
     hash = hash_motion(hash, model);
     hash = lar_hash_word(hash, hash_contacts(model));
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     hash = lar_hash_word(hash, hash_tools(list));
     if (list && list->spares > 0) hash = lar_hash_word(hash, (uint64_t)list->spares);
     hash = hash_doubles(hash, whole->push, nodes);
     hash = hash_doubles(hash, start->u, 4 * nodes);
     hash = hash_doubles(hash, start->v, 4 * nodes);
-    return hash_blocks(hash_conditions(hash, &whole->interactions.conditions), whole);
+    return hash_blocks(hash_conditions(hash, &whole->surroundings.conditions), whole);
 }

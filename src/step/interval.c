@@ -82,7 +82,7 @@ static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
 }
 
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
-    const lar_tool_list *list = whole->interactions.tool_contact.list;
+    const lar_tool_list *list = whole->surroundings.list;
     lar_step_division *division = &tools->division;
     if (!list) return false;
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)

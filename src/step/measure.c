@@ -20,93 +20,136 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
            lar_guard_energy(domain, state, e);
 }
 
-static double damping_of(const lar_domain *domain) {
-    return lar_damping_of(domain->model, lar_settings_of(&domain->interactions));
+/* ---- scratch ------------------------------------------------------------------------------- */
+
+lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools *tools,
+                                      lar_measure_scratch *scratch, lar_error *error) {
+    const lar_surroundings *surroundings = &domain->surroundings;
+    size_t values = 4 * (size_t)domain->layout.node_padded;
+    lar_interactions *interactions = &scratch->interactions;
+    *scratch = (lar_measure_scratch){0};
+    lar_status status = lar_interactions_create(surroundings, tools, false, interactions, error);
+    if (!status)
+        status =
+            lar_body_contact_create(&surroundings->bodies, domain->layout.local, domain->time_step,
+                                    domain->stable_step, false, &interactions->body_contact, error);
+    if (status) return status;
+    scratch->force = lar_calloc_aligned(values, sizeof *scratch->force);
+    if (scratch->force) return LAR_OK;
+    return lar_fail_memory(error, values * sizeof *scratch->force, "force sums for energies");
 }
 
-static void gravity_at(const lar_domain *domain, double time, double gravity[3]) {
-    lar_gravity_at(domain->model, lar_settings_of(&domain->interactions), time, gravity);
+void lar_measure_scratch_destroy(lar_measure_scratch *scratch) {
+    lar_interactions_destroy(&scratch->interactions);
+    free(scratch->force);
+    *scratch = (lar_measure_scratch){0};
+}
+
+/* A look at a state: displacements and velocities are the state's, all else is of the look. */
+typedef struct look {
+    const lar_domain *domain;
+    lar_interactions *interactions;
+    lar_condition_context context;
+    lar_state state;
+    double gravity[3]; /* at the time of the state [m/s^2] */
+} look;
+
+/* Loads and internal forces stand in look->state.force. */
+static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
+                       const lar_state *state, look *l) {
+    lar_fault ignored = {0};
+    *l = (look){.domain = domain,
+                .interactions = &scratch->interactions,
+                .context = lar_domain_context(domain),
+                .state = *state};
+    l->state.force = scratch->force;
+    lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
+                   l->gravity);
+    lar_step_enter(domain, l->interactions, &l->context, &l->state);
+    lar_step_forces(domain, l->interactions, &l->state, &ignored);
+}
+
+static void end_look(look *l) {
+    memset(l->state.force, 0, 4 * (size_t)l->domain->layout.node_padded * sizeof *l->state.force);
+}
+
+static double damping_of(const look *l) {
+    return lar_damping_of(l->domain->model, lar_settings_of(l->interactions));
 }
 
 /* That of which forces change the velocities next: between the last part and the next one. */
-static double mean_step(const lar_domain *domain, const lar_state *state) {
-    return lar_mean_step(domain, lar_division_of(&domain->interactions), state);
+static double mean_step(const look *l) {
+    return lar_mean_step(l->domain, lar_division_of(l->interactions), &l->state);
 }
 
+/* ---- motion -------------------------------------------------------------------------------- */
+
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
-static double next_velocity(const lar_domain *domain, const lar_state *state, int32_t value,
-                            const double gravity[3]) {
-    lar_leapfrog leapfrog = lar_step_leapfrog(domain, &domain->interactions, state);
-    double step = mean_step(domain, state);
-    double half = 0.5 * damping_of(domain) * step;
-    double drift = gravity[value % 4] * step / (1 + half);
-    return leapfrog.keep * state->v[value] + drift -
-           leapfrog.push * domain->push[value / 4] * (double)state->force[value];
+static double next_velocity(const look *l, int32_t value) {
+    lar_leapfrog leapfrog = lar_step_leapfrog(l->domain, l->interactions, &l->state);
+    double step = mean_step(l);
+    double half = 0.5 * damping_of(l) * step;
+    double drift = l->gravity[value % 4] * step / (1 + half);
+    return leapfrog.keep * l->state.v[value] + drift -
+           leapfrog.push * l->domain->push[value / 4] * (double)l->state.force[value];
 }
 
 /* Length of the next step, or of its parts. */
-static double part_of_step(const lar_domain *domain) {
-    return domain->time_step / lar_division_of(&domain->interactions)->parts;
+static double part_of_step(const look *l) {
+    return l->domain->time_step / lar_division_of(l->interactions)->parts;
 }
 
 /* Kinetic energy of one value, and half of the present step's share of damping. */
-static void add_kinetic(const lar_domain *domain, const lar_state *state, int32_t value,
-                        double ahead, lar_energy *energy) {
-    double mass = domain->mass[value / 4], behind = state->v[value];
+static void add_kinetic(const look *l, int32_t value, double ahead, lar_energy *energy) {
+    double mass = l->domain->mass[value / 4], behind = l->state.v[value];
     energy->kinetic += 0.5 * mass * behind * ahead;
-    energy->damping +=
-        0.25 * damping_of(domain) * mean_step(domain, state) * mass * behind * (behind + ahead);
+    energy->damping += 0.25 * damping_of(l) * mean_step(l) * mass * behind * (behind + ahead);
 }
 
 /* What a support exerts on a value: all that the rest of the equation of motion leaves open. */
-static double support_force(const lar_domain *domain, const lar_state *state,
-                            const lar_constraint *constraint, double ahead,
-                            const double gravity[3]) {
+static double support_force(const look *l, const lar_constraint *constraint, double ahead) {
     int32_t value = constraint->value;
-    double behind = state->v[value];
-    double inertia =
-        (ahead - behind) / mean_step(domain, state) + 0.5 * damping_of(domain) * (ahead + behind);
-    return domain->mass[value / 4] * (inertia - gravity[value % 4]) +
-           (double)state->force[value] / domain->scale;
+    double behind = l->state.v[value];
+    double inertia = (ahead - behind) / mean_step(l) + 0.5 * damping_of(l) * (ahead + behind);
+    return l->domain->mass[value / 4] * (inertia - l->gravity[value % 4]) +
+           (double)l->state.force[value] / l->domain->scale;
 }
 
-static double gravity_potential(const lar_domain *domain, const lar_state *state,
-                                const double gravity[3]) {
+static double gravity_potential(const look *l) {
     double work = 0;
-    for (int32_t n = 0; n < domain->layout.node_count; n++)
-        for (int i = 0; i < 3; i++) work += domain->mass[n] * gravity[i] * state->u[4 * n + i];
+    for (int32_t n = 0; n < l->domain->layout.node_count; n++)
+        for (int i = 0; i < 3; i++)
+            work += l->domain->mass[n] * l->gravity[i] * l->state.u[4 * n + i];
     return work;
 }
 
 /* The velocity half a step ahead of a supported value. */
-static double supported_velocity(const lar_domain *domain, const lar_state *state,
-                                 const lar_constraint *constraint) {
-    double time = lar_state_time(domain, state), dt = part_of_step(domain);
-    return (lar_constraint_value(domain->model, constraint, time + dt) -
-            lar_constraint_value(domain->model, constraint, time)) /
+static double supported_velocity(const look *l, const lar_constraint *constraint) {
+    double time = lar_state_time(l->domain, &l->state), dt = part_of_step(l);
+    return (lar_constraint_value(l->domain->model, constraint, time + dt) -
+            lar_constraint_value(l->domain->model, constraint, time)) /
            dt;
 }
 
 /* Nodes that planes stop in this step: what add_kinetic has counted for them as free nodes, and
  * half of what the stop takes. */
-static void add_stops(const lar_domain *domain, const lar_state *state, const double gravity[3],
-                      lar_energy *energy) {
-    const lar_plane_contact *plane_contact = &domain->interactions.tool_contact.plane_contact;
-    lar_condition_context context = lar_domain_context(domain);
-    context.time_step = part_of_step(domain);
-    double half = 0.5 * damping_of(domain) * mean_step(domain, state);
-    for (int32_t entry = 0; entry < plane_contact->count;) {
-        int32_t value = plane_contact->node[entry].value;
-        double free[3], ahead[3], mass = domain->mass[value / 4];
+static void add_stops(const look *l, lar_energy *energy) {
+    const lar_planes *planes = &l->domain->surroundings.planes;
+    lar_condition_context context = l->context;
+    context.time_step = part_of_step(l);
+    double half = 0.5 * damping_of(l) * mean_step(l);
+    for (int32_t entry = 0; entry < planes->count;) {
+        int32_t value = planes->node[entry].value;
+        double free[3], ahead[3], mass = l->domain->mass[value / 4];
         for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
-            const lar_plane_way *way = &plane_contact->way[plane_contact->node[entry].way];
+            const lar_plane_way *way = &planes->way[planes->node[entry].way];
             bool held = way->slide[i] == 0 && way->normal[i] != 0;
-            free[i] = held ? state->v[value + i] : next_velocity(domain, state, value + i, gravity);
+            free[i] = held ? l->state.v[value + i] : next_velocity(l, value + i);
             ahead[i] = free[i];
         }
-        entry = lar_plane_contact_ahead(plane_contact, &context, state, entry, ahead);
+        entry = lar_planes_ahead(planes, &context, &l->state, entry, ahead);
         for (int i = 0; i < 3; i++) {
-            double change = ahead[i] - free[i], behind = state->v[value + i];
+            double change = ahead[i] - free[i], behind = l->state.v[value + i];
             energy->kinetic += 0.5 * mass * behind * change;
             energy->damping += 0.5 * half * mass * behind * change;
             energy->contact -= 0.5 * mass * (1 + half) * change * behind;
@@ -115,60 +158,52 @@ static void add_stops(const lar_domain *domain, const lar_state *state, const do
 }
 
 /* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
-static void add_motion(const lar_domain *domain, const lar_state *state, const double gravity[3],
-                       lar_energy *energy) {
-    const lar_conditions *conditions = &domain->interactions.conditions;
+static void add_motion(const look *l, lar_energy *energy) {
+    const lar_domain *domain = l->domain;
+    const lar_conditions *conditions = &domain->surroundings.conditions;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             int32_t value = 4 * domain->layout.local[g] + i;
             if (conditions->held[g] >> i & 1) continue;
-            add_kinetic(domain, state, value, next_velocity(domain, state, value, gravity), energy);
+            add_kinetic(l, value, next_velocity(l, value), energy);
         }
-    add_stops(domain, state, gravity, energy);
+    add_stops(l, energy);
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
-        double ahead = supported_velocity(domain, state, c);
-        add_kinetic(domain, state, c->value, ahead, energy);
+        double ahead = supported_velocity(l, c);
+        add_kinetic(l, c->value, ahead, energy);
         if (c->curve >= 0)
-            energy->external += 0.5 * mean_step(domain, state) * state->v[c->value] *
-                                support_force(domain, state, c, ahead, gravity);
+            energy->external +=
+                0.5 * mean_step(l) * l->state.v[c->value] * support_force(l, c, ahead);
     }
 }
 
+/* ---- energies and forces ------------------------------------------------------------------- */
+
 /* The first half of the present step's work of tools and bodies, as the loads'. */
-static void add_contact(const lar_domain *domain, const lar_condition_context *context,
-                        lar_state *state, lar_energy *energy) {
-    double external = state->external, contact = state->contact;
-    lar_tool_contact_half_work(&domain->interactions.tool_contact, context, state);
-    lar_body_contact_half_work(&domain->interactions.body_contact, context, state);
-    energy->external += state->external - external;
-    energy->contact += state->contact - contact;
-    state->external = external;
-    state->contact = contact;
+static void add_contact(look *l, lar_energy *energy) {
+    double external = l->state.external, contact = l->state.contact;
+    lar_tool_contact_half_work(&l->interactions->tool_contact, &l->context, &l->state);
+    lar_body_contact_half_work(&l->interactions->body_contact, &l->context, &l->state);
+    energy->external += l->state.external - external;
+    energy->contact += l->state.contact - contact;
 }
 
-static void clear_forces(const lar_domain *domain, lar_state *state) {
-    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
-}
-
-void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy) {
-    lar_condition_context context = lar_domain_context(domain);
-    double time = lar_state_time(domain, state), gravity[3];
-    lar_step_enter(domain, &domain->interactions, &context, state);
-    gravity_at(domain, time, gravity);
-    lar_fault ignored = {0};
-    lar_step_forces(domain, state, &ignored);
-
+void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
+                        const lar_state *state, lar_energy *energy) {
+    look l;
+    begin_look(domain, scratch, state, &l);
     *energy = (lar_energy){.external = state->external,
                            .contact = state->contact,
                            .damping = 0.25 * domain->time_step * state->damped};
-    energy->external +=
-        lar_conditions_half_work(&domain->interactions.conditions, &context, time, state);
-    add_contact(domain, &context, state, energy);
-    if (!lar_gravity_varies(domain->model, lar_settings_of(&domain->interactions)))
-        energy->external += gravity_potential(domain, state, gravity);
-    add_motion(domain, state, gravity, energy);
-    clear_forces(domain, state);
+    energy->external += lar_conditions_half_work(&domain->surroundings.conditions, &l.context,
+                                                 lar_state_time(domain, &l.state),
+                                                 &l.interactions->notes, &l.state);
+    add_contact(&l, energy);
+    if (!lar_gravity_varies(domain->model, lar_settings_of(l.interactions)))
+        energy->external += gravity_potential(&l);
+    add_motion(&l, energy);
+    end_look(&l);
 
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
         double hourglass;
@@ -201,25 +236,23 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
     return lar_law_energy(material, F);
 }
 
-lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
-                                double sum[3], lar_error *error) {
-    const lar_conditions *conditions = &domain->interactions.conditions;
+lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
+                                const lar_state *state, const lar_node_list *nodes, double sum[3],
+                                lar_error *error) {
+    const lar_conditions *conditions = &domain->surroundings.conditions;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
     for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
-    double gravity[3];
-    gravity_at(domain, lar_state_time(domain, state), gravity);
-    lar_fault ignored = {0};
-    lar_step_forces(domain, state, &ignored);
+    look l;
+    begin_look(domain, scratch, state, &l);
     memset(sum, 0, 3 * sizeof *sum);
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         if (!wanted[c->value / 4]) continue;
-        double ahead = supported_velocity(domain, state, c);
-        sum[c->value % 4] += support_force(domain, state, c, ahead, gravity);
+        sum[c->value % 4] += support_force(&l, c, supported_velocity(&l, c));
     }
-    clear_forces(domain, state);
+    end_look(&l);
     free(wanted);
     return LAR_OK;
 }

@@ -5,10 +5,23 @@
 
 #include "step/step.h"
 
+/* What forces are found with that nobody feels: interactions and force sums of their own, so that
+ * who looks at a state changes nothing of it, nor of what its steps know. */
+typedef struct lar_measure_scratch {
+    lar_interactions interactions;
+    int64_t *force; /* [nodes of the state][4] force units, zero between two looks */
+} lar_measure_scratch;
+
+/* `tools` may be NULL. What cannot be made is cleared by lar_measure_scratch_destroy. */
+lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools *tools,
+                                      lar_measure_scratch *scratch, lar_error *error);
+void lar_measure_scratch_destroy(lar_measure_scratch *scratch); /* idempotent */
+
 /* Energies at the time of the state. Kinetic energy is sum m v-.v+ / 2 over the half steps before
- * and after, the form that central differences conserve exactly for linear bodies. The force array
- * of the state is used and left zero; no memory is asked for. */
-void lar_measure_energy(lar_domain *domain, lar_state *state, lar_energy *energy);
+ * and after, the form that central differences conserve exactly for linear bodies. No memory is
+ * asked for. */
+void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
+                        const lar_state *state, lar_energy *energy);
 
 /* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
 double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
@@ -19,9 +32,9 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
                           double cauchy[6]);
 
 /* Sum over some global nodes of the forces that their supports exert on them [N]; axes without a
- * support add nothing. The force array of the state is used and left zero. Fails only for want of
- * memory. */
-lar_status lar_measure_reaction(lar_domain *domain, lar_state *state, const lar_node_list *nodes,
-                                double sum[3], lar_error *error);
+ * support add nothing. Fails only for want of memory. */
+lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
+                                const lar_state *state, const lar_node_list *nodes, double sum[3],
+                                lar_error *error);
 
 #endif

@@ -48,8 +48,8 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
         lar_hex8_monitor monitor = {.limit = domain->corner_limit + place,
-                                    .lane = domain->strained + place,
-                                    .strain = domain->strain + place};
+                                    .lane = state->strained->lane + place,
+                                    .strain = state->strained->strain + place};
         int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
                                                  &domain->limits, watches ? &monitor : NULL);
         if (watches) lar_guard_select(domain, r, &monitor, due, state);
@@ -167,8 +167,8 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
                        lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts = interactions->body_contact.surface ||
-                    interactions->tool_contact.plane_contact.count > 0 ||
-                    interactions->tool_contact.face_count > 0;
+                    interactions->surroundings->planes.count > 0 ||
+                    interactions->surroundings->faces.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     const lar_model *model = domain->model;
     const lar_settings *settings = lar_settings_of(interactions);
@@ -192,10 +192,11 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
     state->damped += damping * damped * (mean / domain->time_step);
 }
 
-static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
+static void apply_loads(const lar_domain *domain, lar_interactions *interactions,
                         const lar_condition_context *context, double time, lar_state *state,
                         lar_fault *fault) {
-    int32_t beyond = lar_conditions_load(conditions, context, time, state);
+    int32_t beyond = lar_conditions_load(&interactions->surroundings->conditions, context, time,
+                                         &interactions->notes, state);
     if (beyond >= 0 && !fault->kind)
         *fault = (lar_fault){
             .kind = LAR_FAULT_LOAD, .element = domain->layout.global[beyond], .step = state->step};
@@ -204,15 +205,15 @@ static void apply_loads(const lar_domain *domain, lar_conditions *conditions,
 /* Loads, tools and planes; half of their work when the nodes are about to move. */
 static void act(const lar_domain *domain, lar_interactions *interactions,
                 const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    apply_loads(domain, &interactions->conditions, context, lar_state_time(domain, state), state,
-                fault);
+    apply_loads(domain, interactions, context, lar_state_time(domain, state), state, fault);
     lar_tool_contact_apply(&interactions->tool_contact, context, state);
 }
 
 static void add_half_work(const lar_domain *domain, const lar_interactions *interactions,
                           const lar_condition_context *context, lar_state *state) {
-    state->external += lar_conditions_half_work(&interactions->conditions, context,
-                                                lar_state_time(domain, state), state);
+    state->external +=
+        lar_conditions_half_work(&interactions->surroundings->conditions, context,
+                                 lar_state_time(domain, state), &interactions->notes, state);
     lar_tool_contact_half_work(&interactions->tool_contact, context, state);
 }
 
@@ -224,18 +225,13 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault) {
+void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_state *state,
+                     lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_tool_contact_saved note;
-    lar_step_enter(domain, &domain->interactions, &context, state);
-    lar_tool_contact_remember(&domain->interactions.tool_contact, &note);
-    lar_contact_info counted = domain->interactions.body_contact.info;
-    act(domain, &domain->interactions, &context, state, fault);
-    lar_body_contact_forget(&domain->interactions.body_contact);
-    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
-    lar_body_contact_forget(&domain->interactions.body_contact);
-    domain->interactions.body_contact.info = counted;
-    lar_tool_contact_restore(&domain->interactions.tool_contact, &note);
+    lar_step_enter(domain, scratch, &context, state);
+    lar_interactions_forget(scratch);
+    act(domain, scratch, &context, state, fault);
+    add_body_contact(&scratch->body_contact, &context, state, fault);
     if (domain->kind != LAR_ELEMENT_HEX8) {
         lar_step_recover(domain, 0, domain->run_count, state, fault);
         return;
@@ -253,12 +249,13 @@ void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
 
 void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    lar_conditions *conditions = &interactions->conditions;
+    const lar_conditions *conditions = &interactions->surroundings->conditions;
     double time = lar_state_time(domain, state);
-    lar_conditions_observe(conditions, context, state);
+    lar_conditions_observe(conditions, context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
     move_nodes(domain, interactions, context, time, state, fault);
-    state->external += lar_conditions_impose(conditions, context, time, state);
+    state->external +=
+        lar_conditions_impose(conditions, context, time, &interactions->notes, state);
     lar_tool_contact_stop(&interactions->tool_contact, context, state);
     lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
 }
@@ -278,13 +275,14 @@ void lar_step_end(const lar_domain *domain, const lar_interactions *interactions
     state->step++;
 }
 
-void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault) {
+void lar_step(const lar_domain *domain, lar_interactions *interactions, lar_state *state,
+              lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
-    lar_step_enter(domain, &domain->interactions, &context, state);
-    lar_step_begin(domain, &domain->interactions, &context, state, fault);
-    add_body_contact(&domain->interactions.body_contact, &context, state, fault);
-    lar_body_contact_half_work(&domain->interactions.body_contact, &context, state);
+    lar_step_enter(domain, interactions, &context, state);
+    lar_step_begin(domain, interactions, &context, state, fault);
+    add_body_contact(&interactions->body_contact, &context, state, fault);
+    lar_body_contact_half_work(&interactions->body_contact, &context, state);
     lar_step_recover(domain, 0, domain->run_count, state, fault);
-    lar_step_move(domain, &domain->interactions, &context, state, fault);
-    lar_step_end(domain, &domain->interactions, &context, state, fault);
+    lar_step_move(domain, interactions, &context, state, fault);
+    lar_step_end(domain, interactions, &context, state, fault);
 }

@@ -12,6 +12,7 @@
 #ifndef LAR_STEP_STEP_H
 #define LAR_STEP_STEP_H
 
+#include "contact/interactions.h"
 #include "step/domain.h"
 #include "layout/state.h"
 
@@ -48,7 +49,8 @@ typedef struct lar_fault {
 enum { LAR_PARK_INTERVAL = 32 };
 
 /* Advances the state by one step, or by a part of a divided one. */
-void lar_step(lar_domain *domain, lar_state *state, lar_fault *fault);
+void lar_step(const lar_domain *domain, lar_interactions *interactions, lar_state *state,
+              lar_fault *fault);
 
 /* The parts of a step. What acts, and the state's sums (force, damped, external, contact), are one
  * thread's; u and v may be shared with the threads that move other nodes. */
@@ -84,8 +86,10 @@ void lar_step_end(const lar_domain *domain, const lar_interactions *interactions
                   const lar_condition_context *context, lar_state *state, lar_fault *fault);
 
 /* Adds loads and internal forces at the present displacements to state->force (which is zero
- * between steps): the residual internal - external. */
-void lar_step_forces(lar_domain *domain, lar_state *state, lar_fault *fault);
+ * between steps): the residual internal - external. `scratch` are interactions of this domain that
+ * take part in no step: contact is looked for anew. */
+void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_state *state,
+                     lar_fault *fault);
 
 /* Time of the state [s]. */
 static inline double lar_state_time(const lar_domain *domain, const lar_state *state) {
@@ -93,12 +97,11 @@ static inline double lar_state_time(const lar_domain *domain, const lar_state *s
     return ((double)state->step + part) * domain->time_step;
 }
 
-/* What the conditions need of a domain, for the nodes first .. end - 1. */
+/* What the conditions need of a domain (and lar_step_enter of the step), for the nodes first .. end
+ * - 1. */
 static inline lar_condition_context lar_domain_context_of(const lar_domain *domain, lar_lid first,
                                                           lar_lid end) {
-    const lar_tools *tools = domain->interactions.tool_contact.tools;
     return (lar_condition_context){.model = domain->model,
-                                   .settings = tools ? &tools->settings : NULL,
                                    .scale = domain->scale,
                                    .time_step = domain->time_step,
                                    .whole_step = domain->time_step,
@@ -124,7 +127,7 @@ void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid
 
 /* Looks for the tool that has to do with an examined fault, once. `domain` is the whole model's;
  * the tools still move as they did. */
-void lar_fault_attribute(const lar_domain *domain, lar_fault *fault);
+void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault);
 
 /* The sentence for an examined fault: element or node, place, time, cause and remedy. */
 lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error);

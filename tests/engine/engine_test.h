@@ -219,7 +219,7 @@ TEST_UNUSED static double *residual_forces(lar_simulation *simulation) {
     size_t values = 4 * (size_t)simulation->domain.layout.node_padded;
     double *force = lar_calloc(values, sizeof *force);
     lar_fault fault = {0};
-    lar_step_forces(&simulation->domain, state, &fault);
+    lar_step_forces(&simulation->domain, &simulation->scratch->measure.interactions, state, &fault);
     for (size_t i = 0; i < values; i++)
         force[i] = (double)state->force[i] / simulation->domain.scale;
     memset(state->force, 0, values * sizeof *state->force);

@@ -90,9 +90,9 @@ static void forces_come_in_pairs(void **unused) {
     for (int32_t n = first; n < model->mesh.node_count; n++)
         s->state.u[4 * layout->local[n] + 2] = -0.002;
     lar_condition_context context = lar_domain_context(domain);
-    lar_body_contact_forget(&domain->interactions.body_contact);
-    lar_body_contact_apply(&domain->interactions.body_contact, &context, &s->state);
-    assert_true(domain->interactions.body_contact.info.touching > 10);
+    lar_body_contact_forget(&s->interactions.body_contact);
+    lar_body_contact_apply(&s->interactions.body_contact, &context, &s->state);
+    assert_true(s->interactions.body_contact.info.touching > 10);
     int64_t sum[3] = {0};
     double moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
@@ -408,6 +408,61 @@ static void a_strip_that_closes_on_itself_holds(void **unused) {
     finish(s, model);
 }
 
+/* ---- looking -------------------------------------------------------------------------------- */
+
+/* Who asks for energies has contact of its own: the steps search and count as if nobody had. */
+static void looking_is_not_felt(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&lower_brick, &upper_brick, 0.001, true);
+    memcpy(model->gravity, (double[]){0.5, 0, -9.81}, 24);
+    lar_simulation *plain = start(model), *asked = start(model);
+    lar_contact_info one, other;
+    for (int i = 0; i < 400; i++) {
+        lar_energy energy;
+        advance(plain, 1);
+        advance(asked, 1);
+        lar_simulation_energy(asked, &energy);
+    }
+    lar_simulation_contact(plain, &one);
+    lar_simulation_contact(asked, &other);
+    assert_true(one.touching > 0);
+    assert_true(lar_simulation_hash(plain) == lar_simulation_hash(asked));
+    assert_int_equal(one.searches, other.searches);
+    assert_int_equal(one.tested, other.tested);
+    assert_int_equal(one.touching, other.touching);
+    for (int i = 0; i < 4 * asked->state.node_count; i++)
+        assert_int_equal(asked->state.force[i], 0);
+    lar_simulation_destroy(asked);
+    finish(plain, model);
+}
+
+/* A node that is taken elsewhere by the rows of the table leaves nothing behind. */
+static void rows_hold_all_of_a_node(void **unused) {
+    (void)unused;
+    enum { NODES = 2 };
+    lar_state from, to;
+    double value[LAR_NODE_VALUES];
+    assert_int_equal(lar_state_create(&from, NODES, NULL), LAR_OK);
+    assert_int_equal(lar_state_create(&to, NODES, NULL), LAR_OK);
+    for (int i = 0; i < 4 * NODES; i++) {
+        from.u[i] = 1 + i;
+        from.v[i] = i % 4 < 3 ? 0.5 + i : 0;
+    }
+    for (int32_t n = 0; n < NODES; n++) {
+        lar_state_read(&from, n, value);
+        lar_state_write(&to, n, value);
+    }
+    assert_memory_equal(from.u, to.u, 4 * NODES * sizeof *to.u);
+    assert_memory_equal(from.v, to.v, 4 * NODES * sizeof *to.v);
+    /* The contact level is in the hash where there is one, and only there. */
+    uint64_t with = lar_state_hash_values(0, value), without;
+    value[LAR_NODE_VALUES - 1] = 0;
+    without = lar_state_hash_values(0, value);
+    assert_true(with == lar_hash_double(without, 8));
+    lar_state_destroy(&from);
+    lar_state_destroy(&to);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_collision_keeps_momentum),
@@ -420,6 +475,8 @@ int main(void) {
         cmocka_unit_test(corners_that_graze_add_no_energy),
         cmocka_unit_test(every_joule_of_contact_is_accounted_for),
         cmocka_unit_test(prediction_changes_no_bit),
+        cmocka_unit_test(looking_is_not_felt),
+        cmocka_unit_test(rows_hold_all_of_a_node),
         cmocka_unit_test(a_strip_that_closes_on_itself_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

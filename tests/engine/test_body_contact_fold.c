@@ -126,7 +126,7 @@ static double deepest_inside(const lar_simulation *s, int *count) {
 static double put(lar_simulation *s, int32_t node, int32_t face, double depth, double sinks) {
     lar_domain *domain = &s->domain;
     const lar_model *model = domain->model;
-    const lar_body_contact *contact = &domain->interactions.body_contact;
+    const lar_body_contact *contact = &s->interactions.body_contact;
     static const double even[4] = {0.25, 0.25, 0.25, 0.25};
     double corner[4][3], middle[3], normal[3], length = 0, force = 0;
     int32_t value = 4 * domain->layout.local[node];
@@ -140,12 +140,12 @@ static double put(lar_simulation *s, int32_t node, int32_t face, double depth, d
         s->state.v[value + i] = -sinks * way / domain->time_step;
     }
     lar_condition_context context = lar_domain_context(domain);
-    lar_body_contact_forget(&domain->interactions.body_contact);
-    lar_body_contact_apply(&domain->interactions.body_contact, &context, &s->state);
+    lar_body_contact_forget(&s->interactions.body_contact);
+    lar_body_contact_apply(&s->interactions.body_contact, &context, &s->state);
     for (int32_t p = 0; p < contact->part_count; p++)
         for (int i = 0; i < 3 && contact->part[p].value[0] == value; i++)
             force += contact->part[p].force[0][i] * normal[i] / sqrt(length);
-    lar_body_contact_moved(&domain->interactions.body_contact, &s->state, 0);
+    lar_body_contact_moved(&s->interactions.body_contact, &s->state, 0);
     memset(s->state.force, 0, 4 * (size_t)s->state.node_count * sizeof *s->state.force);
     return force;
 }

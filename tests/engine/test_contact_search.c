@@ -7,6 +7,7 @@
 static const brick one_brick = {{5, 4, 3}, 0.01, 0.1, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
 static const brick other_brick = {{4, 4, 2}, 0.008, 0.1, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
 
+static lar_contact_tree tree;
 static lar_contact_search search;
 
 static void create(lar_model *model) {
@@ -19,7 +20,8 @@ static void create(lar_model *model) {
         local[n] = (int32_t)n;
         mass[n] = 1;
     }
-    if (lar_contact_search_create(model, mass, local, &search, &error))
+    if (lar_contact_tree_create(model, mass, local, &tree, &error) ||
+        (tree.surface.node_count > 0 && lar_contact_search_create(&tree, &search, &error)))
         fail_msg("%s", error.message);
     free(mass);
     free(local);
@@ -29,10 +31,10 @@ static void create(lar_model *model) {
 static double distance(const double (*x)[3], int32_t node, int32_t face) {
     double corner[4][3], at[3], weight[2];
     int32_t parent[2];
-    lar_contact_parents(&search.surface, node, parent, weight);
+    lar_contact_parents(&tree.surface, node, parent, weight);
     for (int i = 0; i < 3; i++) at[i] = weight[0] * x[parent[0]][i] + weight[1] * x[parent[1]][i];
     for (int a = 0; a < 4; a++)
-        memcpy(corner[a], x[search.surface.face[face].corner[a]], sizeof corner[a]);
+        memcpy(corner[a], x[tree.surface.face[face].corner[a]], sizeof corner[a]);
     return lar_face_distance(at, (const double(*)[3])corner);
 }
 
@@ -46,14 +48,14 @@ static bool listed(int32_t node, int32_t face) {
 
 /* Points of edges meet no face of their own body. */
 static bool kept_apart(int32_t node, int32_t face) {
-    const lar_contact_surface *s = &search.surface;
+    const lar_contact_surface *s = &tree.surface;
     if (node < s->node_count) return lar_contact_apart(s, node, face);
     return s->node[node].body == s->face[face].body;
 }
 
 /* Pairs that belong together and are nearer than the reach, all of them listed. */
 static int32_t check_complete(const double (*x)[3]) {
-    const lar_contact_surface *s = &search.surface;
+    const lar_contact_surface *s = &tree.surface;
     int32_t near = 0;
     for (int32_t n = 0; n < s->point_count; n++)
         for (int32_t f = 0; f < s->face_count; f++) {
@@ -67,9 +69,9 @@ static int32_t check_complete(const double (*x)[3]) {
 }
 
 static double (*places(void))[3] {
-    size_t nodes = (size_t)search.surface.node_count;
+    size_t nodes = (size_t)tree.surface.node_count;
     double(*x)[3] = lar_calloc(nodes, sizeof *x);
-    memcpy(x, search.surface.rest, nodes * sizeof *x);
+    memcpy(x, tree.surface.rest, nodes * sizeof *x);
     return x;
 }
 
@@ -82,15 +84,15 @@ static void nothing_is_missed(void **unused) {
         const double skin = 0.004;
         double(*x)[3] = places(), (*moved)[3] = places();
         /* The upper body sinks into the lower one, which bulges. */
-        for (int32_t n = 0; n < search.surface.node_count; n++) {
-            if (search.surface.node[n].body > 0) x[n][2] -= 0.006;
+        for (int32_t n = 0; n < tree.surface.node_count; n++) {
+            if (tree.surface.node[n].body > 0) x[n][2] -= 0.006;
             for (int i = 0; i < 3; i++) x[n][i] += 0.002 * noise((uint32_t)(3 * n + i));
         }
         assert_true(lar_contact_search_run(&search, (const double(*)[3])x, skin));
         assert_true(search.list.skin == skin);
         assert_true(check_complete((const double(*)[3])x) > 100);
         for (int trial = 0; trial < 20; trial++) {
-            for (int32_t n = 0; n < search.surface.node_count; n++)
+            for (int32_t n = 0; n < tree.surface.node_count; n++)
                 for (int i = 0; i < 3; i++)
                     moved[n][i] =
                         x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? 0.5 * skin
@@ -100,6 +102,7 @@ static void nothing_is_missed(void **unused) {
         free(x);
         free(moved);
         lar_contact_search_clear(&search);
+        lar_contact_tree_clear(&tree);
         lar_model_destroy(model);
     }
 }
@@ -130,6 +133,7 @@ static void in_parts_it_is_the_same(void **unused) {
     free(face);
     free(x);
     lar_contact_search_clear(&search);
+    lar_contact_tree_clear(&tree);
     lar_model_destroy(model);
 }
 
@@ -140,7 +144,7 @@ static void gaps_are_no_more_than_that(void **unused) {
     create(model);
     double(*x)[3] = places();
     assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.02));
-    const lar_contact_surface *s = &search.surface;
+    const lar_contact_surface *s = &tree.surface;
     int32_t outside = 0;
     for (int32_t g = 0; g < search.list.group_count; g++) {
         const lar_contact_group *group = &search.list.group[g];
@@ -155,6 +159,7 @@ static void gaps_are_no_more_than_that(void **unused) {
     assert_true(outside > 10);
     free(x);
     lar_contact_search_clear(&search);
+    lar_contact_tree_clear(&tree);
     lar_model_destroy(model);
 }
 
@@ -171,21 +176,22 @@ static void the_shape_of_a_body_is_no_contact(void **unused) {
     }
     touch_self(model);
     create(model);
-    assert_true(lar_contact_search_run(&search, (const double(*)[3])search.surface.rest, 0));
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])tree.surface.rest, 0));
     for (int32_t g = 0; g < search.list.group_count; g++) {
         const lar_contact_group *group = &search.list.group[g];
         for (int32_t i = group->first; i < group->first + group->count; i++) {
-            const lar_contact_face *f = &search.surface.face[search.list.face[i]];
+            const lar_contact_face *f = &tree.surface.face[search.list.face[i]];
             lar_face_point point;
             double corner[4][3];
             for (int a = 0; a < 4; a++)
-                memcpy(corner[a], search.surface.rest[f->corner[a]], sizeof corner[a]);
-            lar_face_closest(search.surface.rest[group->node], (const double(*)[3])corner, 1e-11,
+                memcpy(corner[a], tree.surface.rest[f->corner[a]], sizeof corner[a]);
+            lar_face_closest(tree.surface.rest[group->node], (const double(*)[3])corner, 1e-11,
                              &point);
-            assert_true(point.distance > search.surface.body[0].reach[0] || point.height > -1e-9);
+            assert_true(point.distance > tree.surface.body[0].reach[0] || point.height > -1e-9);
         }
     }
     lar_contact_search_clear(&search);
+    lar_contact_tree_clear(&tree);
     lar_model_destroy(model);
 }
 
@@ -193,9 +199,10 @@ static void without_contact_there_is_nothing(void **unused) {
     (void)unused;
     lar_model *model = brick_model(&one_brick);
     create(model);
-    assert_int_equal(search.surface.node_count, 0);
-    assert_null(search.patch);
+    assert_int_equal(tree.surface.node_count, 0);
+    assert_null(tree.patch);
     lar_contact_search_clear(&search);
+    lar_contact_tree_clear(&tree);
     lar_model_destroy(model);
 }
 

@@ -162,8 +162,8 @@ static void looking_does_not_change_the_run(void **unused) {
         advance(simulation, 25);
         lar_simulation_energy(simulation, &energy);
         lar_measure_stress(&simulation->domain, &simulation->state, i, stress);
-        lar_measure_reaction(&simulation->domain, &simulation->state, &model->fix[0].nodes,
-                             reaction, NULL);
+        lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
+                             &model->fix[0].nodes, reaction, NULL);
     }
     assert_true(lar_simulation_hash(simulation) == run(model, LAR_ISA_AUTO, STEPS, &name));
     finish(simulation, model);

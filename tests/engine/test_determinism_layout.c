@@ -55,9 +55,14 @@ static uint64_t run(const lar_model *model, lar_isa isa, lar_layout_style style,
     options.isa = isa;
     lar_simulation simulation = {0};
     lar_error error;
+    const lar_domain *domain = &simulation.domain;
     if (lar_domain_create_styled(model, &options, style, &simulation.domain, &error) ||
-        lar_state_create(&simulation.state, simulation.domain.layout.node_padded, &error))
+        lar_state_create(&simulation.state, domain->layout.node_padded, &error) ||
+        lar_strained_create(domain, &simulation.strained, &error) ||
+        lar_interactions_create(&domain->surroundings, NULL, false, &simulation.interactions,
+                                &error))
         fail_msg("%s", error.message);
+    simulation.state.strained = &simulation.strained;
     *fast = 0;
     for (int r = 0; r < simulation.domain.run_count; r++) {
         const lar_block_run *blocks = &simulation.domain.run[r];
@@ -65,6 +70,8 @@ static uint64_t run(const lar_model *model, lar_isa isa, lar_layout_style style,
     }
     advance(&simulation, (uint64_t)(STEPS / test_every(5)));
     uint64_t hash = lar_simulation_hash(&simulation);
+    lar_interactions_destroy(&simulation.interactions);
+    lar_strained_destroy(&simulation.strained);
     lar_state_destroy(&simulation.state);
     lar_domain_destroy(&simulation.domain);
     return hash;

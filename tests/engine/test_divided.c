@@ -102,7 +102,7 @@ static course plain(const lar_model *model) {
         before = tools->division.parts;
         if (before > max) max = before;
         const lar_domain *d = &simulation->domain;
-        for (int32_t r = 0; r < d->run_count; r++) barriers += d->strained_count[r];
+        for (int32_t r = 0; r < d->run_count; r++) barriers += simulation->strained.count[r];
         if (!middle && before > 1 && lagging && (step + 1) % interval == interval / 2)
             if (tools->follower[BALL].felt.steps > 0 && step % MOVE_STEPS > 5) middle = step + 1;
     }

@@ -159,7 +159,7 @@ static void vanish(lar_simulation *simulation) {
     tools->grasp_count = 0;
     tools->motion[0] = (lar_tool_motion){.from = away, .to = away};
     tools->follower[0] = (lar_tool_follower){.hand = tools->motion[0]};
-    lar_tool_contact_forget(&simulation->domain.interactions.tool_contact);
+    lar_tool_contact_forget(&simulation->interactions.tool_contact);
 }
 
 typedef struct release {

@@ -85,7 +85,7 @@ static void set_going(lar_simulation *s, lar_model *model, int32_t first, double
     for (int32_t n = first; n < model->mesh.node_count; n++)
         s->state.v[4 * domain->layout.local[n]] += speed;
     s->state.fastest = speed;
-    lar_body_contact_forget(&domain->interactions.body_contact);
+    lar_body_contact_forget(&s->interactions.body_contact);
 }
 
 static outcome slide(const ride *r) {

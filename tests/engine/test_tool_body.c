@@ -131,7 +131,7 @@ static void hardness_grows_with_time(void **unused) {
     const lar_step_room room = {.max = 0.9};
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.interactions.tool_contact.list;
+    const lar_tool_list *list = simulation->domain.surroundings.list;
     lar_tools tools = simulation->tools;
     for (int n = 1; n <= 100; n++) {
         double before = tools.division.hardness;
@@ -158,7 +158,7 @@ static void nothing_holds_what_leaves_the_tissue(void **unused) {
     static const double SECONDS = 4e-4, UNIT = 1e-12;
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.interactions.tool_contact.list;
+    const lar_tool_list *list = simulation->domain.surroundings.list;
     const double limit = list->limits[0].force, inside[3] = {0.016, 0.014, 0.010};
     double went[2];
     for (int g = 0; g < 2; g++) {

@@ -38,7 +38,7 @@ static void drop(const brick *b, double speed, bool tilted, double share_of_stab
         highest = fmax(highest, now / start);
         lowest = fmin(lowest, now / start);
         error = fmax(error, fabs(now + e.damping + e.contact - e.external - start) / start);
-        info = simulation->domain.interactions.tool_contact.seen;
+        info = simulation->interactions.tool_contact.seen;
         if (info.touching > touching) touching = info.touching;
         deepest = fmax(deepest, info.deepest);
     }
@@ -133,7 +133,7 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
     place(simulation, 2, (double[]){0.004, 0.01, 0.031}, upright, 1, 200);
     advance(simulation, 200);
     lar_condition_context context = lar_domain_context(domain);
-    lar_tool_contact *contact = &domain->interactions.tool_contact;
+    lar_tool_contact *contact = &simulation->interactions.tool_contact;
     for (int tool = 0; tool < 3; tool++) memset(&contact->sum[tool], 0, sizeof contact->sum[tool]);
     memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
     lar_tool_contact_apply(contact, &context, &simulation->state);

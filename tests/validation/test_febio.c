@@ -45,8 +45,8 @@ static double free_norm(const lar_simulation *simulation) {
     for (int32_t g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++)
             square += displacement(simulation, g, i) * displacement(simulation, g, i);
-    for (int32_t i = 0; i < domain->interactions.conditions.constraint_count; i++) {
-        double u = simulation->state.u[domain->interactions.conditions.constraint[i].value];
+    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++) {
+        double u = simulation->state.u[domain->surroundings.conditions.constraint[i].value];
         square -= u * u;
     }
     return sqrt(square);

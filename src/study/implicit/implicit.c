@@ -24,6 +24,7 @@ struct lar_implicit {
     double unit;  /* [N] what a force is measured against where nothing acts */
     lar_state state;
     lar_conditions conditions;
+    lar_condition_notes notes;
     lar_hex8 *element;
     lar_sparse matrix;
     int32_t *local; /* [nodes] n: what the conditions take */
@@ -135,7 +136,7 @@ static lar_status external(lar_implicit *m, const double *u, double time, double
     lar_gravity_at(m->model, NULL, time, gravity);
     memset(m->state.force, 0, 4 * (size_t)m->state.node_count * sizeof *m->state.force);
     for (int32_t r = 0; r < m->rows; r++) m->state.u[4 * (r / 3) + r % 3] = u[r];
-    int32_t beyond = lar_conditions_load(&m->conditions, &context, time, &m->state);
+    int32_t beyond = lar_conditions_load(&m->conditions, &context, time, &m->notes, &m->state);
     if (beyond >= 0)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the load on node %lld is too large at %g s; check its unit",
@@ -355,6 +356,7 @@ lar_status lar_implicit_create(const lar_model *model, const lar_implicit_option
     if (!status) status = allocate(m, error);
     for (int32_t n = 0; !status && n < model->mesh.node_count; n++) m->local[n] = n;
     if (!status) status = lar_conditions_create(model, m->local, NULL, &m->conditions, error);
+    if (!status) status = lar_condition_notes_create(&m->conditions, &m->notes, error);
     if (!status) status = lar_state_create(&m->state, (model->mesh.node_count + 1) / 2 * 2, error);
     if (!status) {
         prepare_elements(m);
@@ -372,6 +374,7 @@ void lar_implicit_destroy(lar_implicit *m) {
     if (!m) return;
     lar_state_destroy(&m->state);
     lar_conditions_destroy(&m->conditions);
+    lar_condition_notes_destroy(&m->notes);
     lar_sparse_destroy(&m->matrix);
     free(m->element);
     free(m->local);
