@@ -56,7 +56,7 @@ typedef struct simulation {
     double (*half_end)[2];              /* [processors] of the first half, and of all steps */
     lar_network_span *start;            /* links in the first step; recorded only */
     size_t starts, start_room;
-    double link_busy;                   /* in the steps that count */
+    double link_busy; /* in the steps that count */
     event *heap;
     size_t events, heap_room;
     lar_network_result *result;
@@ -248,8 +248,9 @@ static void leave(simulation *s, event e) {
     int64_t to = s->wiring.partner[e.transfer];
     double begin = occupy(s, &s->leaving_free[from], e.time, packet_bytes(packet));
     if (counts(s, e.step)) s->link_busy += s->leaving_free[from] - begin;
-    const lar_network_span span = {from,  -1, LAR_SPAN_LINK, lar_wiring_processor(&s->wiring, to),
-                                   begin, s->leaving_free[from]};
+    const lar_network_span span = {from,          -1,
+                                   LAR_SPAN_LINK, lar_wiring_processor(&s->wiring, to),
+                                   begin,         s->leaving_free[from]};
     if (e.step == 1) keep_span(s, &s->start, &s->starts, &s->start_room, span);
     if (e.step + 2 >= s->steps)
         keep_span(s, &s->result->span, &s->result->span_count, &s->span_room, span);

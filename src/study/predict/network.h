@@ -16,7 +16,8 @@
  * only "not before" holds, the pace that it comes to lies between the slowest and the fastest that
  * any processor has over any stretch (Collatz and Wielandt's bound; Baccelli et al.,
  * Synchronization and Linearity, 1992, chapter 3). Links that serve whoever comes first are not
- * quite such a system. Steps are doubled from 8 until both differ by a quarter of a percent at most.
+ * quite such a system. Steps are doubled from 8 until both differ by a quarter of a percent at
+ * most.
  *
  * Larger grids than have schedules. In a body of equal blocks, one per processor, what a processor
  * does depends on its neighbours alone: whether it is at the lower end, the upper end or between
@@ -85,7 +86,7 @@ typedef struct lar_network_result {
     double start_step;                /* [s] the first step, which all begin together */
     double start_slice[LAR_NETWORK_START_SLICES]; /* occupation over it; recorded only */
     lar_network_processor *of;                    /* [processors], owned as span is */
-    lar_network_span *span;           /* of one step, cut to 0..step; recorded only */
+    lar_network_span *span;                       /* of one step, cut to 0..step; recorded only */
     size_t span_count;
 } lar_network_result;
 

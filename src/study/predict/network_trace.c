@@ -84,8 +84,9 @@ static void occupation(const picture *p) {
     double bin = r->start_step / LAR_NETWORK_START_SLICES, bottom = p->top + p->height;
     fprintf(p->out, "<path fill=\"#888\" stroke=\"#000\" d=\"M%.2f %.2f", p->left, bottom);
     for (int k = 0; k < LAR_NETWORK_START_SLICES; k++)
-        fprintf(p->out, "L%.2f %.2fL%.2f %.2f", x_of(p, k * bin), bottom - r->start_slice[k] * p->height,
-                x_of(p, (k + 1) * bin), bottom - r->start_slice[k] * p->height);
+        fprintf(p->out, "L%.2f %.2fL%.2f %.2f", x_of(p, k * bin),
+                bottom - r->start_slice[k] * p->height, x_of(p, (k + 1) * bin),
+                bottom - r->start_slice[k] * p->height);
     fprintf(p->out, "L%.2f %.2fz\"/>\n", x_of(p, r->start_step), bottom);
     for (int tenth = 0; tenth <= 10; tenth += 2) {
         char label[16];
@@ -95,7 +96,8 @@ static void occupation(const picture *p) {
         text(p, p->left - 8, y + 4, "end", label);
     }
     line(p, p->left, p->top, p->left, bottom, 1);
-    text(p, p->left, p->top - 8, "start", "links that send, of all, in a step that all begin together");
+    text(p, p->left, p->top - 8, "start",
+         "links that send, of all, in a step that all begin together");
     time_axis(p, bottom, "time from the common start [us]");
 }
 
@@ -123,7 +125,8 @@ static void bars(const picture *p) {
         text(p, p->left - 8, y + p->bar * 0.75, "end", label);
     }
     line(p, p->left, p->bars, p->left, bottom, 1);
-    time_axis(p, bottom, "time in a later step, from when the last thread ended the one before [us]");
+    time_axis(p, bottom,
+              "time in a later step, from when the last thread ended the one before [us]");
 }
 
 lar_status lar_network_write_svg(const char *path, const lar_network_result *r, const char *title,
