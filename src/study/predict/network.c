@@ -15,7 +15,7 @@ const char *const lar_span_kind_name[LAR_SPAN_KINDS] = {"compute", "exchange", "
 /* How much processors' paces may differ, and for how many steps of how many processors together we
  * look for that: some ten seconds. */
 static const double SAME_PACE = 0.0025;
-enum { WORK_MAX = 640000 };
+enum { WORK_MAX = 320000 };
 
 /* Where a thread goes on: part of its batch, and which wait, packet or the like of it. */
 typedef enum part { RECOVER, WAIT, RECEIVE, POSITIONS, SEND, DONE } part;
