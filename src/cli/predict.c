@@ -203,6 +203,7 @@ static int predict_critical(const predict_settings *s) {
                                     .threads =
                                         s->parallel.threads ? (int32_t)s->parallel.threads : 1,
                                     .edge_max = CRITICAL_EDGE,
+                                    .steps = (int32_t)s->steps,
                                     .efficiency = 0.9,
                                     .tell = tell_edge};
     while (s->elements && options.edge_max > 1 &&
@@ -248,8 +249,9 @@ static int check_mode(const predict_settings *s) {
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--measure, --trace, --svg, --grid, --distribution and --schedules "
                             "need a scene");
-    if (without && !s->scale && s->steps)
-        return cli_complain(&cli_predict, CLI_USAGE, "--steps belongs to a scene or to --scale-to");
+    if (s->list && s->steps)
+        return cli_complain(&cli_predict, CLI_USAGE,
+                            "--steps belongs to a scene, --scale-to or --critical");
     if (!s->scene && !s->scale && s->parallel.scheme >= 0)
         return cli_complain(&cli_predict, CLI_USAGE,
                             "--scheme belongs to a scene or to --scale-to; --critical tries all");
@@ -318,8 +320,10 @@ static int predict_main(int argc, char **argv) {
                  &s.parallel.distribution),
         CLI_TEXT("--schedules", "DIR", "the schedule files of lariat partition instead",
                  &s.parallel.schedules),
-        CLI_COUNT("--steps", "N", "that are simulated; the later half counts (8)", &s.steps, 2,
-                  1000),
+        CLI_COUNT("--steps", "N",
+                  "that are simulated; the later half counts (as many as it\ntakes until all "
+                  "processors go at the same pace)",
+                  &s.steps, 2, LAR_NETWORK_STEPS_MAX),
         CLI_FLAG("--measure", "the machine is this one, measured now", &s.measure),
         CLI_CHOICE("--comm", "NAME", "that --measure measures: threads (default), shm",
                    &s.parallel.comm, comm_names),

@@ -6,7 +6,8 @@ expect 0 "$LARIAT" demo-model demo
 
 expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2 --json
 has_keys scheme channels machine.name machine.element.source --numbers processors threads elements \
-    nodes step_us alone_us real_time_factor speed_up efficiency occupation machine.latency.value
+    nodes step_us alone_us real_time_factor speed_up efficiency occupation machine.latency.value \
+    steps fastest_us slowest_us start_step_us occupation_from_start.99
 [ "$(value_of processors)$(value_of threads)" = 122 ] || fail "not 12 processors with 2 threads"
 expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2 --trace step.csv --svg step.svg
 says 'real-time factor'
@@ -14,7 +15,8 @@ says 'links that send'
 grep -q '^link,11,-1,' step.csv || fail "no packets of processor 11 in the trace"
 grep -q '^compute,0,1,' step.csv || fail "nothing computed by thread 1 in the trace"
 grep -q '</svg>' step.svg || fail "the picture has no end"
-grep -q 'time in the step \[us\]' step.svg || fail "the picture's axis has no unit"
+grep -q 'time from the common start \[us\]' step.svg || fail "occupation is not from a common start"
+grep -q 'the one before \[us\]' step.svg || fail "the picture's axis has no unit"
 [ ! -e step.svg.part ] || fail "a half file is left"
 
 # What is given goes before the machine; one processor is alone.
@@ -70,7 +72,16 @@ expect 2 "$LARIAT" predict demo/uterus.yaml --check
 expect 2 "$LARIAT" predict demo/uterus.yaml --measure --machine thesis
 expect 2 "$LARIAT" predict demo/uterus.yaml --channels concurrent
 expect 2 "$LARIAT" predict --scale-to 10 --channels concurrent
-expect 2 "$LARIAT" predict --critical --steps 4
+expect 0 "$LARIAT" predict --critical --machine thesis --elements-per-processor 27 --steps 4
+expect 2 "$LARIAT" predict --list-machines --steps 4
+complains '--steps belongs'
+# A start that shows is said, and where: with two steps it always does.
+expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2 --steps 2
+says 'not settled'
+expect 0 "$LARIAT" predict --scale-to 8,27 --steps 2 --machine ethernet --scheme local
+says '^local sequential, 27 processors, 2 steps: not settled'
+expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2
+grep -q 'not settled' "$SCRATCH/out" && fail "the organ on the cluster settles"
 expect 2 "$LARIAT" predict --critical --scheme two
 complains 'tries all'
 expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x2

@@ -53,6 +53,22 @@ void predict_machines_print(void) {
     }
 }
 
+/* ---- how long the simulation went on -------------------------------------------------------- */
+
+static void write_settled(json_writer *json, int32_t steps, bool settled, double fastest,
+                          double slowest) {
+    json_integer(json, "steps", steps);
+    json_boolean(json, "settled", settled);
+    json_number(json, "fastest_us", 1e6 * fastest);
+    json_number(json, "slowest_us", 1e6 * slowest);
+}
+
+static void print_unsettled(const char *what, double fastest, double slowest) {
+    printf("%s: not settled. After so many steps processors still go at %.4g to %.4g us a step; "
+           "with more (--steps) the step may change.\n",
+           what, 1e6 * fastest, 1e6 * slowest);
+}
+
 /* ---- a model -------------------------------------------------------------------------------- */
 
 static void write_processor(json_writer *json, const lar_network_processor *p) {
@@ -95,6 +111,7 @@ void predict_report_json(const predict_report *report) {
     json_integer(&json, "nodes", p->nodes);
     write_machine(&json, "machine", report->machine);
     json_number(&json, "step_us", 1e6 * r->step);
+    write_settled(&json, r->steps, r->settled, r->fastest, r->slowest);
     json_number(&json, "alone_us", 1e6 * p->alone);
     json_number(&json, "time_step", p->time_step);
     json_number(&json, "real_time_factor", p->real_time_factor);
@@ -103,6 +120,10 @@ void predict_report_json(const predict_report *report) {
     json_number(&json, "occupation", r->occupation);
     json_open(&json, "occupation_over_step", '[');
     for (int i = 0; i < LAR_NETWORK_SLICES; i++) json_number(&json, NULL, r->slice[i]);
+    json_close(&json);
+    json_number(&json, "start_step_us", 1e6 * r->start_step);
+    json_open(&json, "occupation_from_start", '[');
+    for (int i = 0; i < LAR_NETWORK_START_SLICES; i++) json_number(&json, NULL, r->start_slice[i]);
     json_close(&json);
     json_open(&json, "by_processor", '[');
     for (int32_t i = 0; i < r->processors; i++) write_processor(&json, &r->of[i]);
@@ -159,6 +180,8 @@ void predict_report_print(const predict_report *report) {
            strcmp(report->scheme, "local") ? "" : report->channels);
     printf("%-17s%.2f us predicted; one processor with one thread %.2f us\n", "step", 1e6 * r->step,
            1e6 * p->alone);
+    printf("%-17s%d simulated, the later half counts\n", "steps", (int)r->steps);
+    if (!r->settled) print_unsettled("step", r->fastest, r->slowest);
     printf("%-17s%.2f, efficiency %.1f %%\n", "speed-up", p->speed_up, 100 * p->efficiency);
     if (p->time_step > 0)
         printf("%-17s%.3f (a step simulates %.4g us)\n", "real-time factor", p->real_time_factor,
@@ -186,6 +209,7 @@ void predict_scaling_json(const predict_scaling *s) {
         json_integer(&json, "elements_per_processor",
                      (int64_t)b->edge[0] * b->edge[1] * b->edge[2]);
         json_number(&json, "step_us", 1e6 * b->step);
+        write_settled(&json, b->steps, b->settled, b->fastest, b->slowest);
         json_number(&json, "alone_us", 1e6 * b->alone);
         json_number(&json, "efficiency", b->efficiency);
         json_number(&json, "occupation", b->occupation);
@@ -213,6 +237,15 @@ void predict_scaling_print(const predict_scaling *s) {
                (int)s->processors[i / s->scheme_count], grid, 1e6 * b->step, 100 * b->efficiency,
                100 * b->occupation, b->packets_max, b->bytes_max);
     }
+    for (int32_t i = 0; i < s->rows * s->scheme_count; i++) {
+        const lar_block_prediction *b = &s->row[i];
+        char what[64];
+        if (b->settled) continue;
+        snprintf(what, sizeof what, "%s, %d processors, %d steps",
+                 lar_predict_scheme_name[s->schemes[i % s->scheme_count]],
+                 (int)s->processors[i / s->scheme_count], (int)b->steps);
+        print_unsettled(what, b->fastest, b->slowest);
+    }
 }
 
 /* ---- critical sub-domain -------------------------------------------------------------------- */
@@ -231,6 +264,7 @@ void predict_critical_json(const lar_critical_options *o, const lar_critical *cr
             json_text(&json, "scheme", lar_predict_scheme_name[s]);
             json_integer(&json, "elements_per_processor", critical[m].elements[s]);
             json_number(&json, "efficiency", critical[m].efficiency[s]);
+            json_boolean(&json, "settled", !critical[m].unsettled[s]);
             json_close(&json);
         }
     json_end(&json);
@@ -255,4 +289,10 @@ void predict_critical_print(const lar_critical_options *o, const lar_critical *c
         }
         printf("\n");
     }
+    for (int32_t m = 0; m < o->machines; m++)
+        for (int s = 0; s < LAR_PREDICT_SCHEMES; s++)
+            if (critical[m].unsettled[s])
+                printf("%s, %s: not settled. Some block is on both sides of %g %%; with more steps "
+                       "(--steps) the answer may change.\n",
+                       o->machine[m].name, lar_predict_scheme_name[s], 100 * o->efficiency);
 }

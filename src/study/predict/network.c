@@ -12,7 +12,10 @@
 
 const char *const lar_span_kind_name[LAR_SPAN_KINDS] = {"compute", "exchange", "wait", "link"};
 
-enum { STEPS = 8, STEPS_MAX = 1000 };
+/* How much processors' paces may differ, and for how many steps of how many processors together we
+ * look for that: some ten seconds. */
+static const double SAME_PACE = 0.0025;
+enum { WORK_MAX = 320000 };
 
 /* Where a thread goes on: part of its batch, and which wait, packet or the like of it. */
 typedef enum part { RECOVER, WAIT, RECEIVE, POSITIONS, SEND, DONE } part;
@@ -50,7 +53,10 @@ typedef struct simulation {
     stamp (*arrived)[2];                /* [transfers] of receivers, by half */
     double *leaving_free, *coming_free; /* [processors] links */
     double *step_end;                   /* [steps + 1] */
-    double link_busy;                   /* in the steps that count */
+    double (*half_end)[2];              /* [processors] of the first half, and of all steps */
+    lar_network_span *start;            /* links in the first step; recorded only */
+    size_t starts, start_room;
+    double link_busy; /* in the steps that count */
     event *heap;
     size_t events, heap_room;
     lar_network_result *result;
@@ -104,15 +110,20 @@ static event pop(simulation *s) {
 
 /* ---- what is written down ------------------------------------------------------------------- */
 
+static void keep_span(simulation *s, lar_network_span **list, size_t *count, size_t *room,
+                      lar_network_span span) {
+    if (!s->options->record || span.end <= span.begin) return;
+    if (LAR_GROW(*list, *room, *count))
+        (*list)[(*count)++] = span;
+    else
+        fail(s, *count * sizeof span, "the course of a step");
+}
+
 static void record(simulation *s, int32_t processor, int32_t thread, lar_span_kind kind,
                    int32_t peer, double begin, double end) {
     lar_network_result *r = s->result;
-    if (!s->options->record || end <= begin) return;
-    if (!LAR_GROW(r->span, s->span_room, r->span_count)) {
-        fail(s, r->span_count * sizeof *r->span, "the course of a step");
-        return;
-    }
-    r->span[r->span_count++] = (lar_network_span){processor, thread, kind, peer, begin, end};
+    keep_span(s, &r->span, &r->span_count, &s->span_room,
+              (lar_network_span){processor, thread, kind, peer, begin, end});
 }
 
 /* A thread does something until a moment. */
@@ -170,6 +181,10 @@ static bool await(simulation *s, runner *t, int32_t batch) {
 
 static void end_step(simulation *s, runner *t, const lar_schedule *schedule) {
     s->step_end[t->step] = fmax(s->step_end[t->step], t->clock);
+    if (t->step == s->steps / 2 || t->step == s->steps) {
+        double *end = &s->half_end[t->processor][t->step == s->steps];
+        *end = fmax(*end, t->clock);
+    }
     t->batch = schedule->thread_first[t->thread];
     t->at = t->step++ == s->steps ? DONE : RECOVER;
     if (t->at != DONE) pass(s, t, LAR_SPAN_COMPUTE, t->clock + s->number[LAR_CLUSTER_STEP]);
@@ -233,9 +248,12 @@ static void leave(simulation *s, event e) {
     int64_t to = s->wiring.partner[e.transfer];
     double begin = occupy(s, &s->leaving_free[from], e.time, packet_bytes(packet));
     if (counts(s, e.step)) s->link_busy += s->leaving_free[from] - begin;
+    const lar_network_span span = {from,          -1,
+                                   LAR_SPAN_LINK, lar_wiring_processor(&s->wiring, to),
+                                   begin,         s->leaving_free[from]};
+    if (e.step == 1) keep_span(s, &s->start, &s->starts, &s->start_room, span);
     if (e.step + 2 >= s->steps)
-        record(s, from, -1, LAR_SPAN_LINK, lar_wiring_processor(&s->wiring, to), begin,
-               s->leaving_free[from]);
+        keep_span(s, &s->result->span, &s->result->span_count, &s->span_room, span);
     e.time = begin + s->number[LAR_CLUSTER_LATENCY];
     e.arriving = true;
     push(s, e);
@@ -268,14 +286,29 @@ static void cut_spans(simulation *s) {
         if (span.end > span.begin) r->span[kept++] = span;
     }
     r->span_count = kept;
-    for (size_t i = 0; i < kept; i++) {
-        const lar_network_span *span = &r->span[i];
-        for (int k = 0; span->kind == LAR_SPAN_LINK && k < LAR_NETWORK_SLICES; k++) {
-            double slice = length / LAR_NETWORK_SLICES, from = slice * k;
-            double both = fmin(span->end, from + slice) - fmax(span->begin, from);
-            if (both > 0) r->slice[k] += both / slice / r->processors;
+}
+
+/* The share of the links that is busy in each of `slices` parts of 0..length. */
+static void slice_links(const lar_network_span *span, size_t spans, int32_t processors,
+                        double length, double *share, int slices) {
+    double slice = length / slices;
+    for (size_t i = 0; i < spans; i++)
+        for (int k = 0; span[i].kind == LAR_SPAN_LINK && k < slices; k++) {
+            double both = fmin(span[i].end, slice * (k + 1)) - fmax(span[i].begin, slice * k);
+            if (both > 0) share[k] += both / slice / processors;
         }
+}
+
+/* Every processor's own pace, and whether all have the same (network.h). */
+static void compare_paces(simulation *s) {
+    lar_network_result *r = s->result;
+    r->fastest = INFINITY;
+    for (int32_t p = 0; p < r->processors; p++) {
+        double pace = (s->half_end[p][1] - s->half_end[p][0]) / (s->steps - s->steps / 2);
+        r->fastest = fmin(r->fastest, pace);
+        r->slowest = fmax(r->slowest, pace);
     }
+    r->settled = r->slowest - r->fastest <= SAME_PACE * r->slowest;
 }
 
 static void finish(simulation *s) {
@@ -292,7 +325,16 @@ static void finish(simulation *s) {
         of->bytes_sent /= counted;
         of->bytes_received /= counted;
     }
-    if (s->options->record) cut_spans(s);
+    r->steps = s->steps;
+    r->start_step = s->step_end[1];
+    compare_paces(s);
+    if (!s->options->record) return;
+    slice_links(s->start, s->starts, r->processors, r->start_step, r->start_slice,
+                LAR_NETWORK_START_SLICES);
+    cut_spans(s);
+    slice_links(r->span, r->span_count, r->processors,
+                s->step_end[s->steps - 1] - s->step_end[s->steps - 2], r->slice,
+                LAR_NETWORK_SLICES);
 }
 
 static lar_status check_end(simulation *s) {
@@ -331,8 +373,9 @@ static lar_status prepare(simulation *s) {
     s->leaving_free = lar_calloc(processors, sizeof(double));
     s->coming_free = lar_calloc(processors, sizeof(double));
     s->step_end = lar_calloc((size_t)s->steps + 1, sizeof(double));
+    s->half_end = lar_calloc(processors, sizeof *s->half_end);
     if (!r->of || !s->runner || !s->mark || !s->arrived || !s->leaving_free || !s->coming_free ||
-        !s->step_end)
+        !s->step_end || !s->half_end)
         return lar_fail_memory(s->error, processors * threads * sizeof *s->runner,
                                "the processors of a prediction");
     for (size_t p = 0; p < processors; p++)
@@ -345,18 +388,15 @@ static lar_status prepare(simulation *s) {
     return LAR_OK;
 }
 
-lar_status lar_network_simulate(const lar_network_options *options, lar_network_result *result,
-                                lar_error *error) {
+static lar_status simulate(const lar_network_options *options, int32_t steps,
+                           lar_network_result *result, lar_error *error) {
     lar_network_result made = {0};
     simulation s = {.options = options,
                     .number = options->machine->number,
                     .threads = options->schedules->of[0].threads,
-                    .steps = options->steps ? options->steps : STEPS,
+                    .steps = steps,
                     .result = &made,
                     .error = error};
-    if (s.steps < 2 || s.steps > STEPS_MAX)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "%d steps; take 2 to %d", (int)s.steps,
-                        STEPS_MAX);
     s.status = lar_cluster_check(options->machine, error);
     if (!s.status) s.status = lar_wiring_make(options, &s.wiring, error);
     if (!s.status) s.status = prepare(&s);
@@ -367,6 +407,8 @@ lar_status lar_network_simulate(const lar_network_options *options, lar_network_
     free(s.leaving_free);
     free(s.coming_free);
     free(s.step_end);
+    free(s.half_end);
+    free(s.start);
     free(s.heap);
     lar_wiring_clear(&s.wiring);
     if (s.status)
@@ -374,6 +416,24 @@ lar_status lar_network_simulate(const lar_network_options *options, lar_network_
     else
         *result = made;
     return s.status;
+}
+
+lar_status lar_network_simulate(const lar_network_options *options, lar_network_result *result,
+                                lar_error *error) {
+    lar_network_result made = {0};
+    int32_t steps = options->steps ? options->steps : LAR_NETWORK_STEPS_MIN;
+    if (steps < 2 || steps > LAR_NETWORK_STEPS_MAX)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%d steps; take 2 to %d", (int)steps,
+                        LAR_NETWORK_STEPS_MAX);
+    lar_status status = simulate(options, steps, &made, error);
+    while (!status && !options->steps && !made.settled) {
+        steps *= 2;
+        if (steps > LAR_NETWORK_STEPS_MAX || steps > WORK_MAX / made.processors) break;
+        lar_network_clear(&made);
+        status = simulate(options, steps, &made, error);
+    }
+    if (!status) *result = made;
+    return status;
 }
 
 void lar_network_clear(lar_network_result *result) {

@@ -6,8 +6,18 @@
  *
  * Every thread of every processor goes through the batches of its schedule as parallel/batch.c
  * does, but that its work is a time of the machine instead of work. Links carry one packet after
- * the other, in the order in which packets come to them. Nobody begins together: processors run
- * apart as far as their packets allow, so several steps are simulated, and the later ones count.
+ * the other, in the order in which packets come to them. Processors run apart as far as their
+ * packets allow: all begin the first step together, and that is forgotten after some more, so
+ * several are simulated and the later half counts.
+ *
+ * How many. A start is forgotten from neighbour to neighbour: the inside of a large grid steps
+ * evenly at a wrong pace until what its surface does has come to it, so the step alone does not
+ * show whether it will change. That all processors go at the same pace does: in a system where
+ * only "not before" holds, the pace that it comes to lies between the slowest and the fastest that
+ * any processor has over any stretch (Collatz and Wielandt's bound; Baccelli et al.,
+ * Synchronization and Linearity, 1992, chapter 3). Links that serve whoever comes first are not
+ * quite such a system. Steps are doubled from 8 until both differ by a quarter of a percent at
+ * most.
  *
  * Larger grids than have schedules. In a body of equal blocks, one per processor, what a processor
  * does depends on its neighbours alone: whether it is at the lower end, the upper end or between
@@ -22,14 +32,21 @@
 #include "divide/schedule/schedule.h"
 #include "study/predict/cluster.h"
 
-enum { LAR_NETWORK_SLICES = 20, LAR_NETWORK_PROCESSORS_MAX = 100000 };
+enum {
+    LAR_NETWORK_SLICES = 20,
+    LAR_NETWORK_START_SLICES = 100,
+    LAR_NETWORK_STEPS_MIN = 8,
+    LAR_NETWORK_STEPS_MAX = 1000,
+    LAR_NETWORK_PROCESSORS_MAX = 100000
+};
 
 typedef struct lar_network_options {
     const lar_cluster *machine;
     const lar_schedule_set *schedules;
     int32_t grid[3]; /* of processors; an edge is that of the schedules, or longer where theirs is
                         3. All 0: that of the schedules */
-    int32_t steps;   /* simulated, 2 or more; the later half counts. 0: 8 */
+    int32_t steps;   /* simulated, 2 to LAR_NETWORK_STEPS_MAX; the later half counts. 0: until all
+                        processors go at the same pace, or it would take too long */
     bool record;     /* keep the spans of a step */
 } lar_network_options;
 
@@ -60,11 +77,16 @@ typedef struct lar_network_processor {
 
 typedef struct lar_network_result {
     int32_t grid[3], processors, threads;
-    double step;                      /* [s] */
+    int32_t steps;                    /* simulated */
+    double step;                      /* [s] mean of the later half */
+    double fastest, slowest;          /* [s] the same of any one processor */
+    bool settled;                     /* both differ by a quarter of a percent at most */
     double occupation;                /* of the links, mean over the step */
     double slice[LAR_NETWORK_SLICES]; /* the same over its course; recorded only */
-    lar_network_processor *of;        /* [processors], owned as span is */
-    lar_network_span *span;           /* of one step, cut to 0..step; recorded only */
+    double start_step;                /* [s] the first step, which all begin together */
+    double start_slice[LAR_NETWORK_START_SLICES]; /* occupation over it; recorded only */
+    lar_network_processor *of;                    /* [processors], owned as span is */
+    lar_network_span *span;                       /* of one step, cut to 0..step; recorded only */
     size_t span_count;
 } lar_network_result;
 

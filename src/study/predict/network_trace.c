@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "study/output.h"
 
-enum { BARS_MAX = 256, BINS = 100 };
+enum { BARS_MAX = 256 };
 
 lar_status lar_network_write_csv(const char *path, const lar_network_result *r, lar_error *error) {
     lar_output o;
@@ -32,7 +32,7 @@ typedef struct picture {
     double left, width; /* of both diagrams */
     double top, height; /* of the occupation */
     double bars, bar;   /* top of the threads' bars, height of one */
-    double span;        /* time from left to right [us] */
+    double span;        /* time from left to right [us], of the longer diagram */
     int32_t rows;
 } picture;
 
@@ -81,20 +81,13 @@ static void time_axis(const picture *p, double y, const char *name) {
 
 static void occupation(const picture *p) {
     const lar_network_result *r = p->result;
-    double share[BINS] = {0}, bin = r->step / BINS, bottom = p->top + p->height;
-    for (size_t i = 0; i < r->span_count; i++) {
-        const lar_network_span *s = &r->span[i];
-        if (s->kind != LAR_SPAN_LINK) continue;
-        for (int k = (int)(s->begin / bin); k < BINS && k * bin < s->end; k++) {
-            double both = fmin(s->end, (k + 1) * bin) - fmax(s->begin, k * bin);
-            if (both > 0) share[k] += both / bin / r->processors;
-        }
-    }
+    double bin = r->start_step / LAR_NETWORK_START_SLICES, bottom = p->top + p->height;
     fprintf(p->out, "<path fill=\"#888\" stroke=\"#000\" d=\"M%.2f %.2f", p->left, bottom);
-    for (int k = 0; k < BINS; k++)
-        fprintf(p->out, "L%.2f %.2fL%.2f %.2f", x_of(p, k * bin), bottom - share[k] * p->height,
-                x_of(p, (k + 1) * bin), bottom - share[k] * p->height);
-    fprintf(p->out, "L%.2f %.2fz\"/>\n", x_of(p, r->step), bottom);
+    for (int k = 0; k < LAR_NETWORK_START_SLICES; k++)
+        fprintf(p->out, "L%.2f %.2fL%.2f %.2f", x_of(p, k * bin),
+                bottom - r->start_slice[k] * p->height, x_of(p, (k + 1) * bin),
+                bottom - r->start_slice[k] * p->height);
+    fprintf(p->out, "L%.2f %.2fz\"/>\n", x_of(p, r->start_step), bottom);
     for (int tenth = 0; tenth <= 10; tenth += 2) {
         char label[16];
         double y = bottom - p->height * tenth / 10;
@@ -103,8 +96,9 @@ static void occupation(const picture *p) {
         text(p, p->left - 8, y + 4, "end", label);
     }
     line(p, p->left, p->top, p->left, bottom, 1);
-    text(p, p->left, p->top - 8, "start", "links that send, of all");
-    time_axis(p, bottom, "time in the step [us]");
+    text(p, p->left, p->top - 8, "start",
+         "links that send, of all, in a step that all begin together");
+    time_axis(p, bottom, "time from the common start [us]");
 }
 
 static void bars(const picture *p) {
@@ -112,7 +106,7 @@ static void bars(const picture *p) {
     const lar_network_result *r = p->result;
     double bottom = p->bars + p->rows * p->bar;
     text(p, p->left, p->bars - 8, "start",
-         "threads of processors: grey computes, black exchanges, white waits");
+         "threads of processors in a later step: grey computes, black exchanges, white waits");
     for (size_t i = 0; i < r->span_count; i++) {
         const lar_network_span *s = &r->span[i];
         int32_t row = s->processor * r->threads + s->thread;
@@ -131,7 +125,8 @@ static void bars(const picture *p) {
         text(p, p->left - 8, y + p->bar * 0.75, "end", label);
     }
     line(p, p->left, p->bars, p->left, bottom, 1);
-    time_axis(p, bottom, "time in the step [us]");
+    time_axis(p, bottom,
+              "time in a later step, from when the last thread ended the one before [us]");
 }
 
 lar_status lar_network_write_svg(const char *path, const lar_network_result *r, const char *title,
@@ -148,7 +143,7 @@ lar_status lar_network_write_svg(const char *path, const lar_network_result *r, 
                  .top = 50,
                  .height = 180,
                  .bar = r->threads > 1 ? 10 : 14,
-                 .span = 1e6 * r->step,
+                 .span = 1e6 * fmax(r->step, r->start_step),
                  .rows = r->processors * r->threads};
     if (p.rows > BARS_MAX) p.rows = BARS_MAX;
     p.bars = p.top + p.height + 70;

@@ -1,7 +1,8 @@
 /* The course of a predicted step in files: figures 5.2 to 5.4 of the thesis, and who waits when.
  *
- *     CSV    kind,processor,thread,peer,begin_us,end_us     a line per span
- *     SVG    occupation of the network over the step; below, a bar per thread
+ *     CSV    kind,processor,thread,peer,begin_us,end_us     a line per span, of a later step
+ *     SVG    occupation of the network in the first step, which all begin together, as the thesis
+ *            draws it; below, a bar per thread in a later step
  *
  * Readable in black and white: computing is grey, exchanging black, waiting empty.
  */

@@ -116,7 +116,12 @@ static lar_status simulate_blocks(const blocks *b, const lar_cluster *machine, i
                                    .grid = {b->grid[0], b->grid[1], b->grid[2]}};
     lar_status status = lar_network_simulate(&options, &r, error);
     if (status) return status;
-    *out = (lar_block_prediction){.step = r.step, .occupation = r.occupation};
+    *out = (lar_block_prediction){.step = r.step,
+                                  .occupation = r.occupation,
+                                  .steps = r.steps,
+                                  .fastest = r.fastest,
+                                  .slowest = r.slowest,
+                                  .settled = r.settled};
     out->alone = alone_time(b, machine) / r.processors / r.threads;
     out->efficiency = out->alone / r.step;
     for (int i = 0; i < 3; i++) {
@@ -178,8 +183,10 @@ static lar_status try_edge(const lar_critical_options *o, int scheme, int32_t ed
     for (int32_t m = 0; m < o->machines && !status; m++) {
         lar_block_prediction p;
         if (out[m].elements[scheme]) continue;
-        status = simulate_blocks(&b, &o->machine[m], 0, &p, error);
+        status = simulate_blocks(&b, &o->machine[m], o->steps, &p, error);
         if (status) break;
+        out[m].unsettled[scheme] |= !p.settled && p.alone / p.slowest < o->efficiency &&
+                                    p.alone / p.fastest >= o->efficiency;
         if (p.efficiency < o->efficiency) {
             first[m] = 0;
             out[m].efficiency[scheme] = p.efficiency;

@@ -27,7 +27,8 @@ typedef struct lar_prediction {
     double real_time_factor; /* simulated by needed time; 0: no time step */
 } lar_prediction;
 
-/* The parallel part of lar_options says how the model is divided. Clear the prediction. */
+/* The parallel part of lar_options says how the model is divided; `steps` as in
+ * lar_network_options. Clear the prediction. */
 lar_status lar_predict_model(const lar_model *model, const lar_options *options,
                              const lar_cluster *machine, int32_t steps, lar_prediction *out,
                              lar_error *error);
@@ -40,7 +41,7 @@ typedef struct lar_block_options {
     int32_t processors; /* a near cube of so many, exactly */
     int32_t threads;    /* of a processor; 0: 1 */
     int scheme;         /* 0..LAR_PREDICT_SCHEMES - 1 */
-    int32_t steps;      /* simulated, as in lar_network_options; 0: 8 */
+    int32_t steps;      /* as in lar_network_options */
 } lar_block_options;
 
 enum { LAR_PREDICT_BLOCK_MAX = 64000 };
@@ -49,6 +50,9 @@ typedef struct lar_block_prediction {
     int32_t grid[3], edge[3]; /* processors; elements of a block */
     double step, alone;       /* [s]; alone: one processor's share of it all */
     double efficiency, occupation;
+    int32_t steps; /* simulated; the others as in lar_network_result */
+    double fastest, slowest;
+    bool settled;
     int64_t bytes_max, packets_max; /* a processor sends per step */
 } lar_block_prediction;
 
@@ -63,6 +67,8 @@ void lar_predict_grid(int32_t processors, int32_t grid[3]);
 typedef struct lar_critical {
     int32_t elements[LAR_PREDICT_SCHEMES];  /* smallest cube with the efficiency, 0: none is */
     double efficiency[LAR_PREDICT_SCHEMES]; /* there, or of the largest tried */
+    bool unsettled[LAR_PREDICT_SCHEMES];    /* paces of some block did not settle, and lie on both
+                                               sides of the efficiency */
 } lar_critical;
 
 /* For `machines` machines at once: cubes of 1, 2^3, ... edge_most^3 elements (beyond 12 not every
@@ -71,6 +77,7 @@ typedef struct lar_critical {
 typedef struct lar_critical_options {
     const lar_cluster *machine;
     int32_t machines, processors, threads, edge_max;
+    int32_t steps; /* as in lar_network_options */
     double efficiency;
     void (*tell)(void *context, int scheme, int32_t edge); /* before each block; may be NULL */
     void *context;
