@@ -5,7 +5,8 @@
  *       4  2  version, 1                       4  2  version, 1
  *       6  2  kind, 1                          6  2  kind, 2
  *       8  4  sequence number                  8  4  sequence number that is answered
- *      12  4  buttons                         12  4  flags
+ *      12  2  buttons                         12  2  flags
+ *      14  2  word of the last answer, or 0   14  2  word
  *      16  8  the device's time [us]          16  8  the device's time that is answered
  *      24 16  token, zeros behind             24  8  step of the engine
  *      40 24  position x y z [m]              32 24  force x y z [N]
@@ -25,6 +26,9 @@
 #include "lariat.h"
 
 enum { LAR_PACKET_BYTES = 104, LAR_PACKET_VERSION = 1, LAR_PACKET_TOKEN = 16 };
+
+/* The upper half of flags is a word, which who hears sends back in the upper half of buttons. */
+enum { LAR_PACKET_WORD = 16 };
 
 enum {                      /* buttons */
        LAR_BUTTON_CLOSE = 1 /* takes hold, whatever the opening says */

@@ -209,6 +209,10 @@ lar_status lar_comm_check(lar_comm *comm, uint64_t step, lar_error *error) {
                     lost, reasons[verdict >> 32], complete, lost);
 }
 
+lar_status lar_comm_look(lar_comm *comm, lar_error *error) {
+    return lar_comm_check(comm, 0, error);
+}
+
 /* Who is waited for may wait himself: the one at the end of the chain holds up all. */
 static int32_t end_of_chain(const lar_comm *comm, int32_t processor) {
     for (int32_t hops = 0; comm->waiting && hops < comm->options.count; hops++) {

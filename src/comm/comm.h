@@ -147,6 +147,10 @@ void lar_comm_number_steps(lar_comm *comm, int64_t ahead);
  * waits for orders or answers. No other thread uses the connection meanwhile. */
 void lar_comm_complete(lar_comm *comm, uint64_t steps);
 
+/* LAR_ERROR_PEER with the sentence when a processor is known to be lost: for who waits for nothing
+ * just now. */
+lar_status lar_comm_look(lar_comm *comm, lar_error *error);
+
 /* ---- the backends of this build ---------------------------------------------------------- */
 
 /* How its processors are started, and by what they find each other. */

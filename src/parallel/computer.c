@@ -426,6 +426,13 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
     return status;
 }
 
+lar_status lar_computer_look(lar_computer *computer, lar_error *error) {
+    if (!computer->control || computer->broken) return LAR_OK;
+    lar_status status = lar_comm_look(computer->processor[0].comm, error);
+    if (status) computer->broken = true;
+    return status;
+}
+
 /* ---- the other processes ------------------------------------------------------------------- */
 
 static lar_status refuse_order(lar_error *error) {

@@ -105,6 +105,9 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
 
+/* Between advances: LAR_ERROR_PEER when a processor of another process has been lost meanwhile. */
+lar_status lar_computer_look(lar_computer *computer, lar_error *error);
+
 /* Every other process: does what processor zero says until it ends. */
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 

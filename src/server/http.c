@@ -48,6 +48,22 @@ bool lar_server_trusts(const lar_server *server, struct lws *wsi) {
            strncmp(origin, "http://", 7) == 0 && strcmp(origin + 7, host) == 0;
 }
 
+/* ---- patience -------------------------------------------------------------------------------- */
+
+/* A request takes a moment, and a page with its files and then the viewer some; libwebsockets' own
+ * limits do not hold for everything that can be asked (a tunnel waits for ever). */
+static const int64_t PATIENCE = 5 * LAR_SECOND_NS, LIFE = 30 * LAR_SECOND_NS;
+
+/* A file of the viewer is on its way, which may take longer than a request; never more than LIFE
+ * together. */
+static void have_patience(lar_server *server, const struct lws *wsi, int64_t patience) {
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
+        if (server->connection[i].wsi != wsi) continue;
+        int64_t end = server->connection[i].since + LIFE, until = lar_clock_ns() + patience;
+        server->connection[i].until = until < end ? until : end;
+    }
+}
+
 /* ---- answers --------------------------------------------------------------------------------- */
 
 static int refuse(struct lws *wsi, unsigned code, const char *sentence) {
@@ -84,6 +100,7 @@ static int begin_file(struct lws *wsi, lar_download *download, const lar_file *f
     if (failed || lws_finalize_write_http_header(wsi, begin, &at, end)) return 1;
     if (!body) return lws_http_transaction_completed(wsi) ? -1 : 0;
     *download = (lar_download){.file = file};
+    have_patience(server_of(wsi), wsi, LIFE);
     lws_callback_on_writable(wsi);
     return 0;
 }
@@ -102,6 +119,7 @@ static int send_part(struct lws *wsi, lar_download *download) {
         return 0;
     }
     download->file = NULL;
+    have_patience(server_of(wsi), wsi, PATIENCE);
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
@@ -134,16 +152,26 @@ static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
 
 /* ---- connections ----------------------------------------------------------------------------- */
 
-/* A page, its files and then the viewer take a moment; libwebsockets' own limits do not hold for
- * everything that can be asked (a tunnel waits for ever). */
-static const int64_t LIFE = 30 * LAR_SECOND_NS;
+/* The same number for who is the same: all of IPv4, of IPv6 the network, which one person may have
+ * all of. */
+static uint64_t number_of(const struct sockaddr_storage *address) {
+    uint64_t number = 0;
+    if (address->ss_family != AF_INET6)
+        return ((const struct sockaddr_in *)(const void *)address)->sin_addr.s_addr;
+    const struct in6_addr *six = &((const struct sockaddr_in6 *)(const void *)address)->sin6_addr;
+    memcpy(&number, six->s6_addr + (IN6_IS_ADDR_V4MAPPED(six) ? 8 : 0), sizeof number);
+    return number;
+}
 
-static void add_connection(lar_server *server, struct lws *wsi) {
+static void add_connection(lar_server *server, struct lws *wsi, uint64_t from) {
     for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
         if (server->connection[i].wsi) continue;
+        int64_t now = lar_clock_ns();
         server->connection[i].wsi = wsi;
-        server->connection[i].since = lar_clock_ns();
-        server->connection[i].viewer = server->connection[i].leaves = false;
+        server->connection[i].from = from;
+        server->connection[i].since = now;
+        server->connection[i].until = now + PATIENCE;
+        server->connection[i].viewer = false;
         server->connections++;
         return;
     }
@@ -163,54 +191,87 @@ void lar_server_promote(lar_server *server, const struct lws *wsi) {
 }
 
 static bool is_stranger(const lar_server *server, int i) {
-    return server->connection[i].wsi && !server->connection[i].viewer &&
-           !server->connection[i].leaves;
+    return server->connection[i].wsi && !server->connection[i].viewer;
 }
 
+/* At once: its place is free then. Never for a connection from within its own callback. */
 static void show_out(lar_server *server, int i) {
-    server->connection[i].leaves = true;
-    lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+    lws_set_timeout(server->connection[i].wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_SYNC);
 }
 
 void lar_server_sweep(lar_server *server, int64_t now) {
     for (int i = 0; i < LAR_CONNECTIONS_MAX; i++)
-        if (is_stranger(server, i) && now - server->connection[i].since > LIFE) show_out(server, i);
+        if (is_stranger(server, i) && now > server->connection[i].until) show_out(server, i);
 }
 
-/* Who opens many connections and says nothing keeps nobody out: the oldest of those that have not
- * become viewers makes room for one that comes. */
-static void make_room(lar_server *server) {
-    int strangers = 0, oldest = -1;
+/* Strangers of connection i's address, and the oldest of them. */
+static int count_strangers(const lar_server *server, uint64_t from, int *oldest) {
+    int count = 0;
+    *oldest = -1;
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
+        if (!is_stranger(server, i) || server->connection[i].from != from) continue;
+        count++;
+        if (*oldest < 0 || server->connection[i].since < server->connection[*oldest].since)
+            *oldest = i;
+    }
+    return count;
+}
+
+/* Who opens many connections and says nothing keeps nobody out: of those that have not become
+ * viewers the oldest of the same address makes room for one that comes; where there are too many of
+ * too many addresses, the oldest of the address that has the most. */
+static void make_room(lar_server *server, uint64_t from) {
+    int all = 0, most = 0, oldest, victim = -1;
+    if (count_strangers(server, from, &oldest) >= LAR_STRANGERS_EACH) {
+        show_out(server, oldest);
+        return;
+    }
+    for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) all += is_stranger(server, i);
+    if (all < LAR_STRANGERS_MAX) return;
     for (int i = 0; i < LAR_CONNECTIONS_MAX; i++) {
         if (!is_stranger(server, i)) continue;
-        strangers++;
-        if (oldest < 0 || server->connection[i].since < server->connection[oldest].since)
-            oldest = i;
+        int count = count_strangers(server, server->connection[i].from, &oldest);
+        if (count <= most) continue;
+        most = count;
+        victim = oldest;
     }
-    if (strangers >= LAR_STRANGERS_MAX) show_out(server, oldest);
+    show_out(server, victim);
 }
 
-/* All that have come. When the process has no numbers for sockets left, the spare one takes the
- * connection and drops it: it would wait at the door, and wake us, forever. */
-static void accept_all(lar_server *server) {
+/* The next that has come; -1: nobody. When the process has no numbers for sockets left, the spare
+ * one takes the connection and drops it: it would wait at the door, and wake us, forever. */
+static int accept_next(lar_server *server, struct sockaddr_storage *from) {
     for (;;) {
-        int on = 1, fd = accept4(server->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
-        if (fd < 0 && (errno == EMFILE || errno == ENFILE) && server->spare >= 0) {
-            close(server->spare);
-            fd = accept4(server->listener, NULL, NULL, SOCK_CLOEXEC);
-            if (fd >= 0) close(fd);
-            server->spare = dup(server->listener);
-            if (fd >= 0) continue;
-        }
+        socklen_t size = sizeof *from;
+        *from = (struct sockaddr_storage){0};
+        int fd =
+            accept4(server->listener, (struct sockaddr *)from, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (fd >= 0 || (errno != EMFILE && errno != ENFILE) || server->spare < 0) return fd;
+        close(server->spare);
+        fd = accept4(server->listener, NULL, NULL, SOCK_CLOEXEC);
+        if (fd >= 0) close(fd);
+        server->spare = dup(server->listener);
+        if (fd < 0) return -1;
+    }
+}
+
+/* Those that have come, some at a time: between them others have their turn, also to say what they
+ * want before they have to make room. */
+static void accept_some(lar_server *server) {
+    enum { SOME = LAR_STRANGERS_EACH / 2 };
+    struct sockaddr_storage from;
+    for (int i = 0; i < SOME; i++) {
+        int on = 1, fd = accept_next(server, &from);
         if (fd < 0) return;
-        make_room(server);
+        uint64_t number = number_of(&from);
+        make_room(server, number);
         if (server->connections >= LAR_CONNECTIONS_MAX) {
             close(fd);
             continue;
         }
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
         struct lws *wsi = lws_adopt_socket_vhost(server->vhost, fd);
-        if (wsi) add_connection(server, wsi);
+        if (wsi) add_connection(server, wsi, number);
     }
 }
 
@@ -220,7 +281,7 @@ int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *use
     (void)length;
     switch (reason) {
     case LWS_CALLBACK_RAW_RX_FILE:
-        accept_all(server);
+        accept_some(server);
         return 0;
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
         lar_server_collect(server);

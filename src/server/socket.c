@@ -63,7 +63,7 @@ static void welcome(lar_server *server, lar_viewer *viewer) {
 }
 
 static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
-    int32_t others = __atomic_fetch_add(&server->viewers, 1, __ATOMIC_RELAXED);
+    int32_t others = __atomic_load_n(&server->viewers, __ATOMIC_RELAXED);
     int64_t now = lar_clock_ns();
     *viewer = (lar_viewer){.wsi = wsi,
                            .next = server->first,
@@ -74,14 +74,17 @@ static void begin(lar_server *server, lar_viewer *viewer, struct lws *wsi) {
                            .allowance = LAR_MESSAGES_A_SECOND,
                            .allowed_at = now};
     server->first = viewer;
-    lar_server_promote(server, wsi);
-    if (!viewer->token_is_right)
+    if (!viewer->token_is_right) {
         lar_viewer_close(viewer, LAR_CLOSE_TOKEN,
                          "the token is missing or wrong; open the address that the engine printed");
-    else if (others >= LAR_VIEWERS_MAX)
+    } else if (others >= LAR_VIEWERS_MAX) {
         lar_viewer_close(viewer, LAR_CLOSE_FULL, "too many viewers; close another one first");
-    else
+    } else {
+        viewer->counted = true;
+        __atomic_fetch_add(&server->viewers, 1, __ATOMIC_RELAXED);
+        lar_server_promote(server, wsi);
         welcome(server, viewer);
+    }
 }
 
 static void end(lar_server *server, lar_viewer *viewer) {
@@ -89,7 +92,7 @@ static void end(lar_server *server, lar_viewer *viewer) {
     while (*link && *link != viewer) link = &(*link)->next;
     if (!*link) return;
     *link = viewer->next;
-    __atomic_fetch_sub(&server->viewers, 1, __ATOMIC_RELAXED);
+    if (viewer->counted) __atomic_fetch_sub(&server->viewers, 1, __ATOMIC_RELAXED);
     lar_hands_leave(&server->hands, viewer->number);
     for (int i = 0; i < viewer->notes; i++) free(viewer->note[i]);
     viewer->notes = 0;

@@ -29,6 +29,7 @@ enum {
     LAR_VIEWERS_MAX = 64,
     LAR_CONNECTIONS_MAX = 192, /* viewers and others, also half open ones */
     LAR_STRANGERS_MAX = 64,    /* of them: those that are no viewers */
+    LAR_STRANGERS_EACH = 16,   /* of one address */
     LAR_NOTES_MAX = 8,         /* that wait for a viewer */
     LAR_SAVE_NUMBERS = 1000,
     LAR_SAVES_MAX = 64, /* of a kind, that can be named */
@@ -65,7 +66,8 @@ typedef struct lar_viewer {
     bool token_is_right;
     bool watches; /* and may do nothing else */
     lar_close closing;
-    bool told; /* why */
+    bool told;    /* why */
+    bool counted; /* in `viewers`: who is not let in is none */
     char reason[LAR_REASON_BYTES];
 
     bool asks; /* for a picture */
@@ -112,10 +114,10 @@ struct lar_server {
     int32_t viewers; /* atomic */
     int connections;
     struct {
-        struct lws *wsi; /* NULL: free */
-        int64_t since;
+        struct lws *wsi;      /* NULL: free */
+        uint64_t from;        /* the address */
+        int64_t since, until; /* it came; it has to have become a viewer */
         bool viewer;
-        bool leaves; /* it is being closed */
     } connection[LAR_CONNECTIONS_MAX];
 
     /* The server's thread's. */

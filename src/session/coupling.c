@@ -11,7 +11,6 @@ static const double FEEL_MAX = 8;                  /* [N] */
 static const double TORQUE_MAX = 0.2;              /* [N m] */
 static const double TURN_MAX = 20;                 /* [rad/s] */
 static const double LEVER_MIN = 0.05;              /* [m] */
-static const double RATE_LEVER = 0.05;             /* of torques beside forces [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
 static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
 static const double JUMP = 0.005;                  /* no hand goes so far in a tick [m] */
@@ -74,7 +73,7 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
     c->held = 0;
     c->energy = c->credit;
     c->share = 1;
-    c->given = c->tissue_stiffness = 0;
+    c->given = c->tissue_stiffness = c->held_back = 0;
     for (int i = 0; i < 3; i++)
         c->hand_velocity[i] = c->tool_velocity[i] = c->tissue[i] = c->way[i] = c->spring[i] =
             c->felt[i] = c->turned[i] = c->step[i] = 0;
@@ -202,11 +201,11 @@ static void pay(lar_coupling *c) {
     /* A force that the hand works against pays for itself. */
     double earned = income(c, c->felt);
     double share = earned >= 0 ? 1 : fmax(0, fmin(1, c->energy / -earned));
+    c->held_back = 1 - share;
     for (int i = 0; i < 3; i++) c->felt[i] *= share;
 }
 
-/* From what was felt towards what is wanted, by `max`. */
-static void approach(double felt[3], const double wanted[3], double max) {
+void lar_coupling_approach(double felt[3], const double wanted[3], double max) {
     double change[3];
     for (int i = 0; i < 3; i++) change[i] = wanted[i] - felt[i];
     shorten(change, max);
@@ -217,22 +216,23 @@ void lar_coupling_set_rate(lar_coupling *coupling, double rate) {
     coupling->rate = rate;
 }
 
-void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_tool_force *felt) {
+void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, double passed,
+                       lar_tool_force *felt) {
     lar_coupling *c = coupling;
     settle(c, dot(force->force, c->way));
     see_stiffness(c, force->force);
     memcpy(c->tissue, force->force, sizeof c->tissue);
     c->held = force->held;
-    double wanted[3], torque[3], max = c->rate * c->seconds;
+    double wanted[3], torque[3], max = c->rate * passed;
     for (int i = 0; i < 3; i++) wanted[i] = -c->spring[i];
     shorten(wanted, c->feel);
-    approach(c->felt, wanted, max);
+    lar_coupling_approach(c->felt, wanted, max);
     pay(c);
     double all = length_of(wanted);
     c->share = all > 0 ? fmin(1, length_of(c->felt) / all) : 1;
     memcpy(torque, force->torque, sizeof torque);
     shorten(torque, c->feel_torque);
-    approach(c->turned, torque, RATE_LEVER * max);
+    lar_coupling_approach(c->turned, torque, LAR_COUPLING_RATE_LEVER * max);
     *felt = *force;
     memcpy(felt->force, c->felt, sizeof felt->force);
     memcpy(felt->torque, c->turned, sizeof felt->torque);

@@ -36,7 +36,8 @@
 
 #include "lariat.h"
 
-static const double LAR_COUPLING_RATE = 500; /* [N/s] */
+static const double LAR_COUPLING_RATE = 500;        /* [N/s] */
+static const double LAR_COUPLING_RATE_LEVER = 0.05; /* of torques beside forces [m] */
 
 typedef struct lar_coupling_limits {
     double tool_speed; /* [m/s] */
@@ -69,6 +70,7 @@ typedef struct lar_coupling {
     double turned[3];      /* the torque that it feels [N m] */
     double credit, energy; /* at the beginning; that went in and was not given back [J] */
     double share;          /* of the spring that the hand feels, 0..1 */
+    double held_back;      /* share of what it would feel that nobody paid for, last, 0..1 */
     double given;          /* to the tissue, and paid by nobody [J] */
     bool begun;            /* the hand has been seen since the reset */
 } lar_coupling;
@@ -80,8 +82,8 @@ void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
 /* The tool goes no faster than `speed` from now on, nor than its limits: INFINITY takes these. */
 void lar_coupling_set_speed(lar_coupling *coupling, double speed);
 
-/* What the hand feels changes by no more than so many N/s, a torque by that times 5 cm; but what
- * nobody paid for is held back at once. Without it LAR_COUPLING_RATE. */
+/* What the hand feels changes by no more than so many N/s of the clock, a torque by that times 5
+ * cm; but what nobody paid for is held back at once. Without it LAR_COUPLING_RATE. */
 void lar_coupling_set_rate(lar_coupling *coupling, double rate);
 
 /* The tool has been put somewhere: it rests at `pose`, and goes to its hand from there. */
@@ -93,7 +95,12 @@ void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);
 void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_tool_pose *tool);
 
 /* The tick is done and the tissue pushed the tool with `force`: what the hand feels. Counts are
- * copied. */
-void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, lar_tool_force *felt);
+ * copied. `passed`: time of the clock since the last call [s], which is not the tick's at another
+ * pace, or when ticks are late. Nothing that the tool does depends on it. */
+void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, double passed,
+                       lar_tool_force *felt);
+
+/* From what is felt towards what is wanted, by no more than `max`. */
+void lar_coupling_approach(double felt[3], const double wanted[3], double max);
 
 #endif

@@ -94,6 +94,7 @@ struct lar_session {
     lar_recorder *recorder; /* NULL: none */
     lar_player *player;     /* NULL: none */
     uint64_t hashed;        /* step of the latest hash in the recording */
+    int64_t felt_at;        /* when hands last felt something, by the clock [ns]; 0: never */
     bool ended;
 };
 
@@ -147,6 +148,8 @@ void lar_session_take_tools(lar_session *session);
 lar_status lar_session_move_tools(lar_session *session, lar_error *error);
 /* Behind it: forces, to the hands and into the history. */
 void lar_session_feel_tools(lar_session *session);
+/* The run has broken off: tools feel nothing. What devices were told fades as in a pause. */
+void lar_session_drop_forces(lar_session *session);
 /* Instead of both while nothing moves: forces shrink to `share` of what they are. True when there
  * is a device, which wants to be looked after in every tick. */
 bool lar_session_idle_tools(lar_session *session, double share);

@@ -5,8 +5,10 @@
 #include "base/clock.h"
 #include "session/session.h"
 
-/* How long a force takes to fade when the engine pauses [s]. */
+/* How long a force takes to fade when the engine pauses or stops [s]. */
 static const double FADE = 0.05;
+/* How often a session that does not advance looks whether the other processes live [ns]. */
+static const int64_t LOOK = 200000000;
 static const int64_t LONG = 3600000000000; /* [ns] */
 /* A tick that is due later than this is not just waited for [ns]. */
 static const int64_t FAR = 20000000;
@@ -68,7 +70,7 @@ void lar_session_stop(lar_session *session, const lar_error *error) {
     session->status.error = error->status;
     memcpy(session->status.message, error->message, sizeof session->status.message);
     lar_pace_stop(&session->pace, lar_clock_ns());
-    lar_session_idle_tools(session, 0);
+    lar_session_drop_forces(session);
     lar_session_publish(session, true);
 }
 
@@ -178,18 +180,38 @@ static bool snapshot_is_wanted(void *context) {
     return lar_snapshots_wanted(&session->snapshots);
 }
 
+/* A processor of another process that is lost is noticed where something is waited for; while
+ * nothing is, somebody has to look. Returns when to look again. */
+static int64_t look_for_losses(lar_session *session, int64_t now) {
+    lar_error error;
+    if (!lar_simulation_has_peers(session->simulation)) return now + LONG;
+    if (lar_simulation_look(session->simulation, &error)) lar_session_stop(session, &error);
+    return now + LOOK;
+}
+
+/* Forces fade by the clock: how much is left of the time, and since when. */
+typedef struct fading {
+    double left; /* [s] */
+    int64_t at;  /* [ns] */
+} fading;
+
+static fading fade_from_now(void) {
+    return (fading){FADE, lar_clock_ns()};
+}
+
 /* Not playing: the forces fade, and then nothing happens until somebody asks for something, or a
  * device has to be looked after. */
-static void rest(lar_session *session, double *fade) {
+static void rest(lar_session *session, fading *fade) {
     double seconds = (double)session->tick_steps * session->time_step;
-    double left = fmax(0, *fade - seconds);
-    int64_t wake = lar_clock_ns() + (int64_t)(1e9 * fmin(seconds, FADE));
-    bool device = lar_session_idle_tools(session, *fade > 0 ? left / *fade : 0);
+    int64_t now = lar_clock_ns(), wake = now + (int64_t)(1e9 * fmin(seconds, FADE));
+    double left = fmax(0, fade->left - 1e-9 * (double)(now - fade->at));
+    bool device = lar_session_idle_tools(session, fade->left > 0 ? left / fade->left : 0);
     if (device) session->pace.total.exchanges++;
-    bool look = lar_pace_look(&session->pace, lar_clock_ns());
-    if (*fade > 0 || look) lar_session_publish(session, look);
-    if (*fade <= 0 && !device) wake += LONG;
-    *fade = left;
+    bool look = lar_pace_look(&session->pace, now);
+    if (fade->left > 0 || look) lar_session_publish(session, look);
+    int64_t again = look_for_losses(session, now);
+    if (fade->left <= 0 && !device) wake = again;
+    *fade = (fading){left, now};
     serve_snapshots(session);
     lar_requests_sleep(&session->requests, snapshot_is_wanted, session, wake);
 }
@@ -201,8 +223,11 @@ static void wait_for_tick(lar_session *session) {
     while (!session->ended && session->status.state == LAR_SESSION_PLAYING && pace->pace > 0 &&
            pace->deadline.due - lar_clock_ns() > FAR) {
         serve_snapshots(session);
+        int64_t wake = pace->deadline.due - FAR;
+        int64_t look = look_for_losses(session, lar_clock_ns());
+        if (session->status.state != LAR_SESSION_PLAYING) return;
         lar_requests_sleep(&session->requests, snapshot_is_wanted, session,
-                           pace->deadline.due - FAR);
+                           look < wake ? look : wake);
         execute_requests(session);
     }
     if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);
@@ -210,7 +235,7 @@ static void wait_for_tick(lar_session *session) {
 
 void *lar_session_run(void *argument) {
     lar_session *session = argument;
-    double fade = FADE;
+    fading fade = fade_from_now();
     lar_simulation_reserve_here(session->simulation);
     lar_clock_be_prompt();
     if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
@@ -224,8 +249,8 @@ void *lar_session_run(void *argument) {
                 hurry(session);
             else
                 play_tick(session);
-            fade = FADE;
             wait_for_tick(session);
+            fade = fade_from_now();
         } else {
             rest(session, &fade);
         }

@@ -127,10 +127,13 @@ lar_status lar_session_move_tools(lar_session *session, lar_error *error) {
 }
 
 static void tell_devices(lar_session *session) {
-    const lar_device_tick now = tick_of(session);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
-        if (tool->device) lar_device_feel(tool->device, &now, &tool->felt, &tool->place);
+        if (!tool->device) continue;
+        lar_device_tick now = tick_of(session); /* each by the clock when it is told */
+        now.held_back = now.paused ? 0 : tool->coupling.held_back;
+        lar_device_feel(tool->device, &now, &tool->felt, &tool->place);
+        lar_device_told(tool->device, (uint64_t)lar_clock_ns());
     }
 }
 
@@ -145,17 +148,29 @@ static void record_load(lar_session_tool *tool) {
 
 void lar_session_feel_tools(lar_session *session) {
     lar_session_look_at_spares(session); /* a recording that is played adds and removes, too */
+    int64_t now = lar_clock_ns();
+    double passed = session->felt_at ? 1e-9 * (double)(now - session->felt_at) : 0;
+    session->felt_at = now;
     lar_history_begin(&session->history);
     for (int32_t i = 0; i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         lar_simulation_tool_force(session->simulation, i, &tool->force, NULL);
         lar_simulation_tool_pose(session->simulation, i, &tool->place, NULL);
         record_load(tool);
-        if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, &tool->felt);
+        if (tool->led) lar_coupling_feel(&tool->coupling, &tool->force, passed, &tool->felt);
         lar_history_put(&session->history, i, tool->force.force);
     }
     lar_history_end(&session->history);
     tell_devices(session);
+}
+
+void lar_session_drop_forces(lar_session *session) {
+    for (int32_t i = 0; i < session->tools; i++) {
+        lar_tool_force *force = &session->tool[i].force;
+        memset(force->force, 0, sizeof force->force);
+        memset(force->torque, 0, sizeof force->torque);
+        force->grasp_force = 0;
+    }
 }
 
 static void shrink(lar_tool_force *force, double share) {

@@ -352,6 +352,14 @@ lar_status lar_simulation_gather(const lar_simulation *simulation, lar_error *er
     return simulation->computer ? lar_computer_gather(simulation->computer, error) : LAR_OK;
 }
 
+bool lar_simulation_has_peers(const lar_simulation *simulation) {
+    return simulation->computer && simulation->computer->control;
+}
+
+lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error) {
+    return simulation->computer ? lar_computer_look(simulation->computer, error) : LAR_OK;
+}
+
 lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) {
     simulation->fault = (lar_fault){0};
     simulation->report = (lar_report){0};

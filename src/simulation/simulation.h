@@ -46,6 +46,11 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
                                   lar_step_callback *callback, void *context, lar_error *error);
 lar_status lar_simulation_gather(const lar_simulation *simulation, lar_error *error);
 
+/* Whether other processes compute parts of it; and, between advances, when nothing is waited for,
+ * LAR_ERROR_PEER once one of them is lost. */
+bool lar_simulation_has_peers(const lar_simulation *simulation);
+lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error);
+
 /* A session lets its own thread alone change the simulation, or everyone again. */
 void lar_simulation_reserve(lar_simulation *simulation, bool held);
 /* Called by that thread: it is the one. */

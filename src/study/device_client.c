@@ -29,6 +29,7 @@ typedef struct client {
     lar_tool_script script;
     int64_t sent_at[WINDOW]; /* [ns] by sequence number; 0: answered, or never sent */
     uint32_t sequence;       /* of the last packet */
+    uint32_t word;           /* of the last answer, in its place: it goes back */
     uint64_t first_step;
     double force_sum;
     lar_histogram trip;
@@ -82,7 +83,8 @@ static lar_status reach(client *c, lar_error *error) {
 }
 
 static void send_position(client *c, double time) {
-    lar_position_packet packet = {.sequence = ++c->sequence, .time = (uint64_t)(1e6 * time)};
+    lar_position_packet packet = {
+        .sequence = ++c->sequence, .buttons = c->word, .time = (uint64_t)(1e6 * time)};
     unsigned char bytes[LAR_PACKET_BYTES];
     if (c->options->token)
         memcpy(packet.token, c->options->token, strnlen(c->options->token, LAR_PACKET_TOKEN));
@@ -102,6 +104,7 @@ static void take_answer(client *c, const lar_force_packet *packet) {
     lar_device_client_report *r = c->report;
     int64_t *sent_at = &c->sent_at[packet->sequence % WINDOW];
     /* While a force fades the last answer is sent again, with less force. */
+    c->word = packet->flags >> LAR_PACKET_WORD << LAR_PACKET_WORD;
     bool first = *sent_at && c->sequence - packet->sequence < WINDOW;
     if (first) {
         int64_t trip = lar_clock_ns() - *sent_at;

@@ -132,6 +132,36 @@ for signal in KILL STOP; do
     nothing_left "$pid"
 done
 
+# A session that rests waits for nobody, and notices all the same; so does one in slow motion, where
+# the next tick is due a second later.
+if "$LARIAT" view organ/uterus_live.yaml --port 0 --seconds 0.1 --json >/dev/null 2>&1; then
+    for case in 'shm --paused' 'tcp --paused' 'shm --pace 0.001'; do
+        # shellcheck disable=SC2086
+        "$LARIAT" view organ/uterus_live.yaml --port 0 --grid 2x1x1 --json --comm $case >out 2>err &
+        zero=$!
+        await_other 1
+        for _ in $(seq 150); do
+            grep -q '^http' err && break
+            sleep 0.2
+        done
+        sleep 1
+        began=$(date +%s)
+        kill -KILL "$pid" || fail "no processor 1 to lose at rest"
+        for _ in $(seq 40); do
+            ended $zero && break
+            sleep 0.2
+        done
+        ended $zero || fail "a session ($case) goes on without processor 1"
+        kill -TERM $zero 2>/dev/null
+        wait $zero
+        status=$?
+        [ $status -eq 1 ] || fail "exit status $status instead of 1 ($case)"
+        [ $(($(date +%s) - began)) -lt 5 ] || fail "noticed late ($case)"
+        complains 'processor 1 is lost: its process or its connection ended'
+        nothing_left "$pid"
+    done
+fi
+
 # By hand; and who does not belong to it.
 port=$((20000 + $$ % 12000)) # below those that the system gives out by itself
 by_hand() {

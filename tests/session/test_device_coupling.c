@@ -55,7 +55,7 @@ static void tick(world *w, double x, double z) {
     double speed = hypot(to - from, w->tool.position[0] - from_x) / TICK;
     w->fastest = fmax(w->fastest, speed);
     lar_tool_force tissue = {.force = {0, 0, wall_force(&w->wall, from, to)}, .held = w->wall.held};
-    lar_coupling_feel(&w->coupling, &tissue, &w->felt);
+    lar_coupling_feel(&w->coupling, &tissue, TICK, &w->felt);
 }
 
 static world start(const lar_tool_info *tool, double stiffness, double z) {
@@ -277,6 +277,27 @@ static void test_force_changes_no_faster(void **state) {
     assert_true(steepest[2] > 2 * LAR_COUPLING_RATE); /* without a limit it would be a blow */
 }
 
+/* The rate is the clock's, not the simulation's; and where the tool goes is not the clock's. */
+static void test_rate_is_the_clocks(void **state) {
+    (void)state;
+    lar_coupling coupling[2] = {couple(&PROBE, 1, 5), couple(&PROBE, 1, 5)};
+    lar_tool_pose hand = PROBE.rest, tool[2];
+    lar_tool_force felt[2] = {{.held = 0}, {.held = 0}};
+    seed = 5;
+    for (int i = 0; i < 400; i++) {
+        double passed = i % 7 ? 1e-4 * any() : 0.02, before = felt[1].force[2];
+        hand.position[2] = -1e-4 * i;
+        for (int k = 0; k < 2; k++) {
+            lar_coupling_follow(&coupling[k], &hand, &tool[k]);
+            lar_tool_force tissue = {.force = {0, 0, -2000 * tool[k].position[2]}};
+            lar_coupling_feel(&coupling[k], &tissue, k ? passed : TICK, &felt[k]);
+        }
+        assert_memory_equal(&tool[0], &tool[1], sizeof tool[0]);
+        assert_true(felt[1].force[2] - before <= LAR_COUPLING_RATE * passed * (1 + 1e-9));
+    }
+    assert_true(felt[1].force[2] > 1);
+}
+
 static void test_hand_pulls_no_harder(void **state) {
     (void)state;
     const double stiffness[] = {50, 500, 5000};
@@ -385,7 +406,7 @@ static void test_reset_forgets(void **state) {
     lar_tool_pose pose = {.position = {0, 0, 0.05}, .orientation = {1}};
     lar_coupling_reset(&w.coupling, &pose);
     lar_coupling_follow(&w.coupling, &pose, &w.tool);
-    lar_coupling_feel(&w.coupling, &(lar_tool_force){.held = 0}, &w.felt);
+    lar_coupling_feel(&w.coupling, &(lar_tool_force){.held = 0}, TICK, &w.felt);
     assert_true(w.felt.force[2] == 0);
     assert_true(w.tool.position[2] == 0.05);
 }
@@ -400,6 +421,7 @@ int main(void) {
         cmocka_unit_test(test_device_rests_on_stiff_wall),
         cmocka_unit_test(test_force_and_speed_are_bounded),
         cmocka_unit_test(test_force_changes_no_faster),
+        cmocka_unit_test(test_rate_is_the_clocks),
         cmocka_unit_test(test_hand_pulls_no_harder),
         cmocka_unit_test(test_strong_hand_feels_no_more),
         cmocka_unit_test(test_tool_arrives_without_swinging),

@@ -50,10 +50,15 @@ static int reach(const rig *r) {
     return s;
 }
 
+/* The word of the last answer, which who hears sends back. */
+static uint32_t heard;
+
 static void send_position(int s, uint32_t sequence, double x, const char *token) {
     unsigned char bytes[LAR_PACKET_BYTES];
-    lar_position_packet packet = {
-        .sequence = sequence, .time = sequence, .pose = {{x, 0, 0}, {1, 0, 0, 0}, 1}};
+    lar_position_packet packet = {.sequence = sequence,
+                                  .buttons = heard,
+                                  .time = sequence,
+                                  .pose = {{x, 0, 0}, {1, 0, 0, 0}, 1}};
     if (token) memcpy(packet.token, token, strnlen(token, sizeof packet.token));
     lar_position_packet_encode(&packet, bytes);
     /* Who is shut out is told that nobody listens, by the send after that. */
@@ -66,6 +71,7 @@ static bool receive(int s, lar_force_packet *packet) {
     long size = recv(s, bytes, sizeof bytes, MSG_DONTWAIT);
     if (size < 0) return false;
     assert_true(lar_force_packet_decode(bytes, (size_t)size, packet));
+    heard = packet->flags & 0xffff0000u;
     return true;
 }
 
@@ -136,18 +142,107 @@ static void test_silent_device_is_told_zero(void **state) {
     lar_device_close(r.device);
 }
 
-/* A single packet, which anybody may have sent under this address, is answered once. */
-static void test_single_packet_is_answered_once(void **state) {
-    (void)state;
+enum { ECHO_NOTHING, ECHO_WRONG, ECHO_RIGHT };
+
+/* Sends so many packets, one every `gap` ticks, and counts what comes within the next 200. */
+static int answers_to(uint32_t packets, int gap, int echo) {
     rig r = open_rig("udp:127.0.0.1:0");
     int s = reach(&r), answers = 0;
     lar_force_packet answer;
-    send_position(s, 1, 0, NULL);
-    for (int i = 0; i < 200; i++) {
+    heard = 0;
+    for (uint32_t i = 1; i <= packets; i++) {
+        if (echo == ECHO_NOTHING) heard = 0;
+        if (echo == ECHO_WRONG) heard ^= 0x10000;
+        send_position(s, i, 0, NULL);
+        for (int k = 0; k < (i < packets ? gap : 200); k++) {
+            tick(&r);
+            while (receive(s, &answer)) answers++;
+        }
+    }
+    close(s);
+    lar_device_close(r.device);
+    heard = 0;
+    return answers;
+}
+
+/* Whoever has not shown that it hears the answers may have sent under somebody else's address: no
+ * packet brings more than one answer there. */
+static void test_one_answer_per_packet(void **state) {
+    (void)state;
+    static const uint32_t packets[] = {1, 2, 5, 10};
+    static const int gaps[] = {1, 30, 200, 600};
+    for (int p = 0; p < 4; p++)
+        for (int g = 0; g < 4; g++)
+            for (int echo = ECHO_NOTHING; echo <= ECHO_WRONG; echo++)
+                assert_int_equal(answers_to(packets[p], gaps[g], echo), packets[p]);
+    /* The first packet cannot echo anything; who then does is told of every fading. */
+    assert_int_equal(answers_to(1, 1, ECHO_RIGHT), 1);
+    assert_true(answers_to(2, 1, ECHO_RIGHT) > 2 + 3);
+}
+
+/* Another sender has to show it anew. */
+static void test_proof_is_the_owners(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0");
+    int first = reach(&r), second = reach(&r), answers = 0;
+    lar_force_packet answer;
+    for (uint32_t i = 1; i <= 3; i++) {
+        send_position(first, i, 0, NULL);
         tick(&r);
-        while (receive(s, &answer)) answers++;
+        assert_true(receive(first, &answer));
+    }
+    uint32_t word = heard;
+    assert_true(word != 0);
+    r.now += 1100 * MS;
+    tick(&r);
+    heard = word;
+    send_position(second, 1, 0, NULL);
+    for (int k = 0; k < 200; k++) {
+        tick(&r);
+        while (receive(second, &answer)) answers++;
     }
     assert_int_equal(answers, 1);
+    assert_true(heard != word);
+    heard = 0;
+    close(first);
+    close(second);
+    lar_device_close(r.device);
+}
+
+/* What a device is told changes by no more than its rate times the time since it was last told,
+ * however ticks come, and whatever the force does. */
+static void test_rate_holds_at_the_packet(void **state) {
+    (void)state;
+    rig r = open_rig("udp:127.0.0.1:0,rate=200");
+    int s = reach(&r);
+    lar_force_packet answer;
+    uint32_t sequence = 0;
+    double before = 0;
+    uint64_t told = 0;
+    heard = 0;
+    for (int i = 0; i < 6000; i++) {
+        bool late = i > 3000; /* held up for 15 ms, and then 15 ticks in 3 ms */
+        r.now += (late ? (i % 15 ? 200 : 15000) : 100) * MS / 1000 - MS; /* tick adds it */
+        r.force.force[2] = (i / 700) % 2 ? -8 : 8;
+        r.force.torque[1] = r.force.force[2] / 40;
+        uint64_t now = r.now;
+        if (i % 3 == 0 || i < 100) send_position(s, ++sequence, 0.02, NULL);
+        if (i % 50 == 0) send_position(s, ++sequence, 0.02, NULL);
+        tick(&r);
+        double max = told ? 200 * 1e-9 * (double)(now - told) : 0;
+        while (receive(s, &answer)) {
+            double change = fabs(answer.force[2] - before);
+            if (change > max * (1 + 1e-9) + 1e-12)
+                fail_msg("packet %u: from %g to %g N, at most %g N", sequence, before,
+                         answer.force[2], max);
+            before = answer.force[2];
+            assert_true(fabs(answer.torque[1] - before / 40) < 0.2);
+            told = now;
+            max = 0;
+        }
+        if (i == 3499) assert_true(fabs(before) > 7.9); /* it does get there */
+    }
+    heard = 0;
     close(s);
     lar_device_close(r.device);
 }
@@ -237,7 +332,7 @@ static void test_reset_is_smooth(void **state) {
     lar_device_reset(r.device);
     r.pose = PROBE.rest;
     r.force = (lar_tool_force){0}; /* nothing is felt where it begins anew */
-    lar_device_feel(r.device, &(lar_device_tick){.now = r.now}, &r.force, &r.pose);
+    lar_device_feel(r.device, &(lar_device_tick){.now = r.now - MS / 2}, &r.force, &r.pose);
     while (receive(s, &answer)) continue; /* that it begins to fade */
     double before = 2;
     for (uint32_t i = 351; i <= 410; i++) { /* what was felt fades in 50 ms, packet by packet */
@@ -269,7 +364,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_position_in_force_out),
         cmocka_unit_test(test_silent_device_is_told_zero),
-        cmocka_unit_test(test_single_packet_is_answered_once),
+        cmocka_unit_test(test_one_answer_per_packet),
+        cmocka_unit_test(test_proof_is_the_owners),
+        cmocka_unit_test(test_rate_holds_at_the_packet),
         cmocka_unit_test(test_strangers_and_floods),
         cmocka_unit_test(test_token_on_any_address),
         cmocka_unit_test(test_port_in_use),

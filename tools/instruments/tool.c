@@ -170,5 +170,7 @@ lar_status lar_guide_follow(lar_guide *guide, lar_simulation *simulation, const 
 void lar_guide_feel(lar_guide *guide, const lar_simulation *simulation) {
     lar_tool_force force, felt;
     lar_simulation_tool_force(simulation, guide->tool, &force, NULL);
-    if (guide->coupled) lar_coupling_feel(&guide->coupling, &force, &felt);
+    /* As at pace 1, with no tick late. */
+    if (guide->coupled)
+        lar_coupling_feel(&guide->coupling, &force, guide->coupling.seconds, &felt);
 }

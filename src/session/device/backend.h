@@ -37,6 +37,7 @@ typedef struct lar_device_backend {
     /* NULL: feels nothing. Force and pose in the device's axes. */
     void (*feel)(void *state, const lar_device_tick *tick, const lar_tool_force *force,
                  const lar_tool_pose *pose);
+    void (*told)(void *state, uint64_t now);                      /* may be NULL */
     void (*reset)(void *state);                                   /* may be NULL */
     void (*report)(const void *state, lar_device_status *status); /* may be NULL */
 } lar_device_backend;

@@ -264,6 +264,10 @@ void lar_device_feel(lar_device *device, const lar_device_tick *tick, const lar_
     device->backend->feel(device->state, tick, &own, &there);
 }
 
+void lar_device_told(lar_device *device, uint64_t now) {
+    if (device->backend->told) device->backend->told(device->state, now);
+}
+
 void lar_device_reset(lar_device *device) {
     if (device->backend->reset) device->backend->reset(device->state);
 }

@@ -20,11 +20,12 @@
 
 /* One exchange with the engine. */
 typedef struct lar_device_tick {
-    uint64_t step;  /* steps done */
-    double time;    /* simulated, since the start or the last reset [s] */
-    double seconds; /* length of a tick [s] */
-    uint64_t now;   /* CLOCK_MONOTONIC [ns] */
-    bool paused;    /* nothing moves: devices may be answered, scripts stand still */
+    uint64_t step;    /* steps done */
+    double time;      /* simulated, since the start or the last reset [s] */
+    double seconds;   /* length of a tick [s] */
+    uint64_t now;     /* CLOCK_MONOTONIC [ns] */
+    bool paused;      /* nothing moves: devices may be answered, scripts stand still */
+    double held_back; /* to feel: share of the force that nobody paid for, which falls at once */
 } lar_device_tick;
 
 typedef struct lar_device lar_device;
@@ -49,6 +50,9 @@ bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_p
  * with `now` of now. */
 void lar_device_feel(lar_device *device, const lar_device_tick *tick, const lar_tool_force *force,
                      const lar_tool_pose *pose);
+
+/* What it was told last has left by now, CLOCK_MONOTONIC [ns]. Without this call: at the tick's. */
+void lar_device_told(lar_device *device, uint64_t now);
 
 /* The simulation went back or was loaded: time and tool have jumped. */
 void lar_device_reset(lar_device *device);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/quaternion.h"
+#include "session/coupling.h"
 
 static const uint64_t MILLISECOND = 1000000;
 enum { SILENCE = 20, FADE = 50, APPROACH = 300, LEAVE = 1000 }; /* [ms] */
@@ -11,7 +12,8 @@ enum { SILENCE = 20, FADE = 50, APPROACH = 300, LEAVE = 1000 }; /* [ms] */
 enum { JUMP_MAX = 10000 };
 
 void lar_link_create(lar_link *link, const char *token, const lar_tool_pose *tool) {
-    *link = (lar_link){.tool = *tool, .pose = *tool, .from = *tool, .silent = true};
+    *link = (lar_link){
+        .tool = *tool, .pose = *tool, .from = *tool, .silent = true, .rate = LAR_COUPLING_RATE};
     if (token) memcpy(link->token, token, strnlen(token, sizeof link->token));
 }
 
@@ -31,6 +33,27 @@ static lar_link_verdict refuse(lar_link *link) {
     return LAR_LINK_REFUSED;
 }
 
+/* A word that nobody can guess who does not hear (Steele, Lea and Flood 2014: SplitMix64). */
+static uint32_t another_word(lar_link *link) {
+    uint32_t word;
+    do {
+        uint64_t z = link->dice += 0x9e3779b97f4a7c15u;
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        word = (uint32_t)((z ^ z >> 31) >> 48);
+    } while (word == 0 || word == link->word);
+    return word;
+}
+
+static void take_owner(lar_link *link, const lar_link_address *from) {
+    link->owned = true;
+    link->owner = *from;
+    link->word = another_word(link);
+    link->proved = false;
+    link->told_at = 0; /* it was told nothing yet */
+    for (int i = 0; i < 3; i++) link->force[i] = link->torque[i] = 0;
+}
+
 lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, const void *bytes,
                                size_t size, uint64_t now) {
     lar_position_packet packet;
@@ -38,9 +61,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
         return refuse(link);
     if (link->owned && is_gone(link, now)) link->owned = false;
     if (!link->owned) {
-        link->owned = true;
-        link->owner = *from;
-        link->packets = 0;
+        take_owner(link, from);
     } else {
         if (memcmp(&link->owner, from, sizeof *from)) return refuse(link);
         /* Numbers go round after 2^32; what lies less than half of that ahead is newer. */
@@ -51,12 +72,12 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
         }
         if (ahead > JUMP_MAX) return refuse(link);
         link->lost += ahead - 1;
+        link->proved = link->proved || packet.buttons >> LAR_PACKET_WORD == link->word;
     }
     if (packet.buttons & LAR_BUTTON_CLOSE) packet.pose.opening = 0;
     link->newest = packet;
     link->last_packet = now;
     link->received++;
-    link->packets++;
     return LAR_LINK_TAKEN;
 }
 
@@ -106,11 +127,21 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
     return true;
 }
 
-void lar_link_feel(lar_link *link, const double force[3], const double torque[3]) {
+void lar_link_feel(lar_link *link, const double force[3], const double torque[3],
+                   double held_back) {
     for (int i = 0; i < 3; i++) {
-        link->force[i] = link->strength * force[i] + link->left * link->left_force[i];
-        link->torque[i] = link->strength * torque[i] + link->left * link->left_torque[i];
+        link->wanted[i] = link->strength * force[i] + link->left * link->left_force[i];
+        link->wanted_torque[i] = link->strength * torque[i] + link->left * link->left_torque[i];
+        link->force[i] *= 1 - held_back;
     }
+}
+
+void lar_link_tell(lar_link *link, uint64_t now) {
+    uint64_t passed = link->told_at && now > link->told_at ? now - link->told_at : 0;
+    double max = link->rate * 1e-9 * (double)passed;
+    lar_coupling_approach(link->force, link->wanted, max);
+    lar_coupling_approach(link->torque, link->wanted_torque, LAR_COUPLING_RATE_LEVER * max);
+    if (link->told_at < now) link->told_at = now;
 }
 
 void lar_link_jump(lar_link *link) {

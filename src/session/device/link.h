@@ -16,6 +16,12 @@
  *
  * An engine that was held up for longer than 20 ms has been silent itself, and comes back likewise.
  *
+ * Whatever comes of all that, what is told changes from packet to packet by no more than a rate
+ * times the time between them: ticks may be shorter than the clock's, or come in bunches.
+ *
+ * Anybody can send under somebody else's address. Every answer carries a word that belongs to the
+ * owner; who sends it back hears. Until then each packet is answered and nothing else is said.
+ *
  * Time is CLOCK_MONOTONIC in ns, as a number that the caller gives: no clock, no socket, no memory
  * in here, so that a test and the fuzzer can play everything that a network does.
  */
@@ -39,7 +45,9 @@ typedef struct lar_link {
     char token[LAR_PACKET_TOKEN]; /* zeros: none is asked for */
     bool owned;
     lar_link_address owner;
-    uint64_t packets;                     /* of the owner */
+    uint32_t word;                        /* in answers to the owner: 16 bits, never 0 */
+    bool proved;                          /* the owner has sent it back: it hears */
+    uint64_t dice;                        /* for words; start it from something unknown */
     uint64_t last_packet;                 /* of the owner [ns] */
     uint64_t last_time;                   /* of the last call of lar_link_advance [ns] */
     double last_gap;                      /* between the last two calls of lar_link_advance [ms] */
@@ -48,7 +56,10 @@ typedef struct lar_link {
     double approach;                      /* 0..1: share of the way to the hand */
     double left;                          /* 0..1: share of what was felt before a jump */
     double left_force[3], left_torque[3]; /* [N] [N m] */
-    double force[3], torque[3];           /* what was felt last */
+    double wanted[3], wanted_torque[3];   /* what the device should feel now */
+    double force[3], torque[3];           /* what it was told last */
+    double rate;                          /* of that, at most [N/s] */
+    uint64_t told_at;                     /* [ns]; 0: never */
     lar_position_packet newest;
     lar_tool_pose tool; /* where the tool is; the caller's to keep */
     lar_tool_pose from; /* where the approach began: where the tool was */
@@ -68,8 +79,12 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
  * it stays where it was). */
 bool lar_link_advance(lar_link *link, bool paused, uint64_t now);
 
-/* What the device gets of this force and torque now: link->force and ->torque. */
-void lar_link_feel(lar_link *link, const double force[3], const double torque[3]);
+/* What the device should get of this force and torque now. `held_back`: the share of the force
+ * before that nobody has paid for, and that it loses at once. */
+void lar_link_feel(lar_link *link, const double force[3], const double torque[3], double held_back);
+
+/* A packet leaves: what it says, link->force and ->torque, as near to that as the rate allows. */
+void lar_link_tell(lar_link *link, uint64_t now);
 
 /* The simulation has jumped. */
 void lar_link_jump(lar_link *link);

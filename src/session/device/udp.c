@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -48,8 +49,8 @@ typedef struct udp_state {
     int due; /* answers */
     udp_answer answer[READ_MAX];
     udp_answer last;  /* taken: what is said while a force fades */
+    bool tells;       /* something has left in the last udp_feel */
     int said_nothing; /* answers of zero since the force has faded */
-    uint64_t unasked; /* answers that no packet asked for, since the last one */
     uint64_t answered;
     lar_histogram answer_time;
     struct mmsghdr message[READ_MAX];
@@ -58,6 +59,12 @@ typedef struct udp_state {
     unsigned char bytes[READ_MAX][ROOM];
     _Alignas(struct cmsghdr) unsigned char control[READ_MAX][CONTROL];
 } udp_state;
+
+static int64_t real_time(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_REALTIME, &at);
+    return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
+}
 
 /* ---- opening ----------------------------------------------------------------------------------
  */
@@ -135,6 +142,10 @@ static lar_status udp_open(lar_device_spec *spec, void **data, lar_error *error)
     state->socket = -1;
     lar_link_create(&state->link, spec->token,
                     &(lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1});
+    if (spec->rate > 0) state->link.rate = spec->rate;
+    /* Without a source of random numbers the clock has to do. */
+    if (getrandom(&state->link.dice, sizeof state->link.dice, GRND_NONBLOCK) < 0)
+        state->link.dice = (uint64_t)real_time();
     for (int i = 0; i < READ_MAX; i++) {
         state->vector[i].iov_base = state->bytes[i];
         state->message[i].msg_hdr = (struct msghdr){.msg_iov = &state->vector[i],
@@ -147,12 +158,6 @@ static lar_status udp_open(lar_device_spec *spec, void **data, lar_error *error)
 
 /* ---- packets in -------------------------------------------------------------------------------
  */
-
-static int64_t real_time(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_REALTIME, &at);
-    return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
-}
 
 static int64_t arrival(struct msghdr *message) {
     struct cmsghdr *control = CMSG_FIRSTHDR(message);
@@ -194,7 +199,6 @@ static void take(udp_state *state, int i, uint64_t now) {
                                .came = arrival(head)};
     if (state->due < READ_MAX) state->answer[state->due++] = state->last;
     state->said_nothing = 0;
-    state->unasked = 0;
 }
 
 /* Listens to everybody again, or to the owner alone. */
@@ -239,7 +243,8 @@ static lar_force_packet force_packet(const udp_state *state, const lar_device_ti
     packet.flags = (tick->paused ? 0 : LAR_ANSWER_PLAYING) |
                    (force->touching ? LAR_ANSWER_TOUCHING : 0) |
                    (force->held ? LAR_ANSWER_HOLDING : 0) |
-                   (state->link.strength < 1 || state->link.left > 0 ? LAR_ANSWER_FADING : 0);
+                   (state->link.strength < 1 || state->link.left > 0 ? LAR_ANSWER_FADING : 0) |
+                   state->link.word << LAR_PACKET_WORD;
     for (int i = 0; i < 3; i++) {
         packet.force[i] = state->link.force[i];
         packet.torque[i] = state->link.torque[i];
@@ -248,15 +253,14 @@ static lar_force_packet force_packet(const udp_state *state, const lar_device_ti
     return packet;
 }
 
-/* A silent device is told in every tick that its force fades, and three times that it is gone. No
- * more often than it has sent packets, but for one: whoever sends a single packet under a false
- * address has it answered once. */
+/* A silent device is told in every tick that its force fades, and three times that it is gone. Only
+ * one that is known to hear: what was sent under a false address is answered, and that is all. */
 static void add_fading(udp_state *state) {
     enum { ENOUGH = 3 };
-    if (state->due > 0 || !state->link.owned || !state->link.silent) return;
-    if (state->said_nothing == ENOUGH || state->unasked + 1 >= state->link.packets) return;
-    state->unasked++;
-    if (state->link.strength <= 0 && state->link.left <= 0) state->said_nothing++;
+    const lar_link *link = &state->link;
+    if (state->due > 0 || !link->owned || !link->silent || !link->proved) return;
+    if (state->said_nothing == ENOUGH) return;
+    if (link->strength <= 0 && link->left <= 0) state->said_nothing++;
     state->answer[state->due++] = state->last;
 }
 
@@ -264,10 +268,11 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
                      const lar_tool_pose *pose) {
     udp_state *state = data;
     state->link.tool = *pose;
-    lar_link_feel(&state->link, force->force, force->torque);
+    lar_link_feel(&state->link, force->force, force->torque, tick->held_back);
     bool fading = state->due == 0;
     add_fading(state);
     if (state->due == 0) return;
+    lar_link_tell(&state->link, tick->now);
     lar_force_packet packet = force_packet(state, tick, force, pose);
     for (int i = 0; i < state->due; i++) {
         struct msghdr *head = &state->message[i].msg_hdr;
@@ -281,6 +286,7 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
         state->vector[i].iov_len = LAR_PACKET_BYTES;
     }
     int sent = sendmmsg(state->socket, state->message, (unsigned)state->due, MSG_DONTWAIT);
+    state->tells = true;
     int64_t now = real_time();
     for (int i = 0; i < sent && !fading; i++) {
         int64_t took = now - state->answer[i].came;
@@ -288,6 +294,13 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
     }
     if (sent > 0) state->answered += (uint64_t)sent;
     state->due = 0;
+}
+
+/* The next packet counts from when this one has left: no two are closer than that. */
+static void udp_told(void *data, uint64_t now) {
+    udp_state *state = data;
+    if (state->tells && now > state->link.told_at) state->link.told_at = now;
+    state->tells = false;
 }
 
 static void udp_reset(void *data) {
@@ -321,5 +334,6 @@ const lar_device_backend lar_device_udp = {.name = "udp",
                                            .close = udp_close,
                                            .poll = udp_poll,
                                            .feel = udp_feel,
+                                           .told = udp_told,
                                            .reset = udp_reset,
                                            .report = udp_report};
