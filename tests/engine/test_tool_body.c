@@ -172,10 +172,10 @@ static void nothing_holds_what_leaves_the_tissue(void **unused) {
         memcpy(tools.follower[0].hand.to.position, g ? below : above, sizeof above);
         memcpy(tools.follower[0].hand.from.position, g ? below : above, sizeof above);
         tools.follower[0].lagging = 1;
-        tools.follower[0].felt = (lar_tool_felt){
-            .depth = 0.6 * ball.radius,
-            .steps = 1,
-            .force = {0, 0, (int64_t)(0.2 * limit * LAR_STEP_SHARES / UNIT)}};
+        tools.follower[0].felt =
+            (lar_tool_felt){.depth = 0.6 * ball.radius,
+                            .steps = 1,
+                            .force = {0, 0, (int64_t)(0.2 * limit * LAR_STEP_SHARES / UNIT)}};
         lar_tools_follow(list, &tools, 0, 8, SECONDS / 8, UNIT);
         went[g] = tools.motion[0].to.position[2] - inside[2];
     }
