@@ -194,7 +194,8 @@ typedef enum lar_tool_shape {
  * grasper open in the plane y = 0 towards -z. */
 typedef struct lar_tool_pose {
     double position[3];    /* of the tip [m] */
-    double orientation[4]; /* unit quaternion w, x, y, z: the tool's axes into the world's */
+    double orientation[4]; /* unit quaternion w, x, y, z, within 1 %: the tool's axes into the
+                              world's */
     double opening;        /* 0 closed .. 1 open. Graspers and hands take hold of what is within
                               reach when it falls below 0.25, and let go when it rises above 0.5 */
 } lar_tool_pose;

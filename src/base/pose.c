@@ -7,7 +7,7 @@
 #include "base/quaternion.h"
 
 static const double FARTHEST = 1e9;              /* [m] */
-static const double GIVEN = 0.02, NORMAL = 1e-5; /* what the square of the length may be off */
+static const double GIVEN = 0.02, NORMAL = 1e-9; /* what the square of the length may be off */
 
 static bool good_position(const double x[3]) {
     bool good = true;

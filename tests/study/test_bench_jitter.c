@@ -33,14 +33,17 @@ static void every_tick_is_counted(void **unused) {
     assert_true(r.period == 1000 && r.repeat == 3);
 }
 
+/* Of ticks that come many milliseconds late a histogram does not tell 0.1 ms, and other tests may
+ * run beside this one: up to five times. */
 static void computation_comes_on_top(void **unused) {
     (void)unused;
-    lar_bench_jitter_result r;
+    lar_bench_jitter_result r = {0};
     const lar_bench_jitter_options wanted = {.seconds = 0.02, .repeat = 1, .load = 100};
-    assert_int_equal(lar_bench_jitter(&wanted, &r, NULL), LAR_OK);
-    assert_true(r.done.p50 >= r.late.p50);
-    /* Of ticks that come late, on a busy machine, a histogram does not tell 0.1 ms. */
-    assert_true(r.done.p50 > r.late.p50 || r.late.p50 > 1000);
+    for (int i = 0; i < 5 && !(r.done.p50 > r.late.p50); i++) {
+        assert_int_equal(lar_bench_jitter(&wanted, &r, NULL), LAR_OK);
+        assert_true(r.done.p50 >= r.late.p50);
+    }
+    assert_true(r.done.p50 > r.late.p50);
 }
 
 /* More to compute than there is time for: every tick is a miss, and what cannot be made up for is
