@@ -14,6 +14,7 @@ typedef struct touching {
     int32_t count;
     int32_t face[LAR_CONTACT_FACES];     /* contact faces, */
     double weight[LAR_CONTACT_FACES][4]; /* and of their corners; all together 1 */
+    double far;                          /* how far they are in the mean; 0: one alone counts [m] */
     double force[3];                     /* on the node [N] */
     double depth;                        /* [m] */
     int32_t fading;                      /* the face that fades towards its edge; -1: none */
@@ -92,9 +93,10 @@ static double tie_of(const lar_body_contact *contact, int32_t face) {
     return LAR_FACE_TIE * contact->surface->face[face].size;
 }
 
-/* Of the contact distance, that part; 0 within a body. */
+/* Of the contact distance, that part; 0 within a body. What goes over from one face to the next
+ * within it is not the slope of anything: the less, the less energy comes from nowhere. */
 static double fade_of(const lar_body_contact *contact, int32_t node, int32_t face) {
-    static const double FADE = 0.25;
+    static const double FADE = 0.06;
     const lar_contact_surface *surface = contact->surface;
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
@@ -273,20 +275,22 @@ static void blend(const lar_body_contact *contact, const lar_state *state, int32
     touching blended = {.fading = -1};
     for (int32_t k = 0; k < s->count && fade > 0; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
-        double corner[4][3], sum[4] = {0};
+        double corner[4][3], sum[4] = {0}, far = 0;
         if (!(s->distance[k] < s->min + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
         corners_of(contact, state, f, corner, NULL);
-        double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum);
+        double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum, &far);
         if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
         all += counts;
+        blended.far += far;
         blended.face[blended.count] = f;
         memcpy(blended.weight[blended.count++], sum, sizeof sum);
     }
     if (!(all > 0)) return;
     for (int32_t f = 0; f < blended.count; f++)
         for (int a = 0; a < 4; a++) blended.weight[f][a] /= all;
+    blended.far /= all;
     *t = blended;
 }
 
@@ -307,6 +311,17 @@ static double outward(const double x[3], const contact_point *point, double sign
     if (!(length > 0)) return NAN;
     for (int i = 0; i < 3; i++) way[i] /= length;
     return sign * depth;
+}
+
+/* What several walls push together is the mean of their forces: as much as one pushes from their
+ * mean distance, times what is returned. Opposite ones, of a crevice or a fold that is pressed
+ * flat, have a mean point that is closer to the node than any of them, or is the node itself: by
+ * its distance they would push as if touched. */
+static double push_together(const touching *t, double tie, double *depth) {
+    if (!(t->far > tie)) return 1;
+    double share = fabs(*depth) / t->far;
+    *depth = -t->far;
+    return share;
 }
 
 /* What part of its stiffness a spring has: what it stores while it keeps the contact distance must
@@ -397,7 +412,8 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
                            (const double(*)[3])corner, way);
     /* Without a length there is no direction. */
     if (isnan(depth)) return false;
-    for (int i = 0; i < 3; i++) rate += (point.velocity[i] - v[i]) * way[i];
+    double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
+    for (int i = 0; i < 3; i++) rate += together * (point.velocity[i] - v[i]) * way[i];
     double offset =
         same_body(contact, node, face) ? follow_offset(contact, state, node, face, depth, rate) : 0;
     if (!lar_contact_active(&surface->node[node], f)) return false;
@@ -410,7 +426,10 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
                               depth + from, rate, t)
                        : lar_contact_force(&contact->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
-    for (int i = 0; i < 3; i++) t->force[i] = force * way[i];
+    for (int i = 0; i < 3; i++) {
+        t->force[i] = together * force * way[i];
+        for (int a = 0; a < 4; a++) t->fade[a][i] *= together;
+    }
     return true;
 }
 

@@ -276,7 +276,7 @@ static double within(const double x[3], const double corner[4][3], const double 
 }
 
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
-                      double sum[4]) {
+                      double sum[4], double *far) {
     double middle[3], weight[4], all = 0;
     middle_of(corner, middle);
     for (int t = 0; t < 4; t++) {
@@ -287,6 +287,7 @@ double lar_face_blend(const double x[3], const double corner[4][3], double min, 
         count *= within(x, corner, middle, t, weight, distance, distance <= min);
         if (!(count > 0)) continue;
         for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
+        *far += count * distance;
         all += count;
     }
     return all;

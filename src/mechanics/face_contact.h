@@ -64,10 +64,10 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds
  * those of one face: to sum[] their weights of its corners, times how much each of them counts, all
- * of which is returned. A triangle counts 1 - (distance - min) / fade, and next to nothing where
- * x is not straight above it. */
+ * of which is returned, and to *far their distances [m], times the same. A triangle counts
+ * 1 - (distance - min) / fade, and next to nothing where x is not straight above it. */
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
-                      double sum[4]);
+                      double sum[4], double *far);
 
 /* A number at the closest point of a face that is `value` at its corners and, last, in its middle,
  * linear in its triangles. */

@@ -428,8 +428,8 @@ static unsigned corners(const lar_block_run *run, int32_t b, const double *rest,
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
         lar_lane x[8][3], moved[8][3], before[8], now[8];
         gather_corners(head, lane, run->rows, rest, x);
-        gather_corners(head, lane, run->rows, u, moved);
         corner_volumes((const lar_lane(*)[3])x, before);
+        gather_corners(head, lane, run->rows, u, moved);
         UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] =
             x[a][i] + moved[a][i];
         corner_volumes((const lar_lane(*)[3])x, now);

@@ -125,8 +125,8 @@ static const char ABSENT[] =
     "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Lariat</title>"
     "<h1>The engine runs, but its viewer is not built</h1>"
     "<p>The viewer is made of the files in <code>web/</code> by npm. With Debian's packages: "
-    "<code>apt-get install nodejs npm</code>, then <code>make</code> in Lariat's folder, and start "
-    "<code>lariat view</code> again.</p>"
+    "<code>apt-get install nodejs npm</code>, then <code>make</code> in Lariat's folder, where npm "
+    "reaches its registry, and start <code>lariat view</code> again.</p>"
     "<p>Other viewers can connect to this address meanwhile: docs/viewer-protocol.md.</p></html>";
 
 static bool is_folder(const char *path) {

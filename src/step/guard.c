@@ -10,6 +10,8 @@
  * least corner that was not listed stood at 0.48. */
 static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
 
+enum { ALL_LANES = (1 << LAR_BLOCK) - 1 };
+
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
 static const double LEAD = 0.5;
 
@@ -79,30 +81,6 @@ static int32_t lanes_of_block(const lar_hex8_monitor *monitor, int32_t i, int32_
     return i;
 }
 
-void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monitor *monitor,
-                      bool measures, lar_state *state) {
-    int32_t *list = monitor->lane, count = 0;
-    for (int32_t first = 0, end; first < monitor->count; first = end) {
-        int32_t block;
-        unsigned lanes;
-        end = lanes_of_block(monitor, first, &block, &lanes);
-        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        unsigned below =
-            domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
-        for (int32_t i = first; i < end; i++) {
-            int32_t lane = monitor->lane[i] % LAR_BLOCK;
-            if (element[lane] < 0) lanes &= ~(1u << lane);
-            if (!measures || element[lane] < 0) continue;
-            bool pressed = below >> LAR_BLOCK >> lane & 1;
-            double need = need_of(domain, state, element[lane], pressed, monitor->strain[i]);
-            if (!(need <= state->need)) state->need = need;
-        }
-        lanes &= below >> LAR_BLOCK;
-        if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
-    }
-    state->strained->count[r] = count;
-}
-
 /* In whole units, which sum to nothing. */
 static void add(const lar_domain *domain, lar_gid e, const double force[8][3], lar_state *state) {
     int64_t whole[8][3], sum[3] = {0};
@@ -147,16 +125,49 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     if (counts) state->contact -= step * part * guard.taken;
 }
 
+/* The lanes of a block of run r where a corner is below START, and from bit 8 on those where one is
+ * below twice START. */
+static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block,
+                            const lar_state *state) {
+    return domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
+}
+
+static void apply_lanes(const lar_domain *domain, const lar_gid *element, unsigned lanes,
+                        lar_state *state) {
+    for (; lanes; lanes &= lanes - 1) apply(domain, element[__builtin_ctz(lanes)], true, state);
+}
+
+void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
+                                const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
+    int32_t *list = monitor->lane, count = 0;
+    for (int32_t first = 0, end; first < monitor->count; first = end) {
+        int32_t block;
+        unsigned lanes;
+        end = lanes_of_block(monitor, first, &block, &lanes);
+        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
+        unsigned below = lanes_below(domain, r, block, state);
+        for (int32_t i = first; i < end; i++) {
+            int32_t lane = monitor->lane[i] % LAR_BLOCK;
+            if (element[lane] < 0) lanes &= ~(1u << lane);
+            if (!measures || element[lane] < 0) continue;
+            bool pressed = below >> LAR_BLOCK >> lane & 1;
+            double need = need_of(domain, state, element[lane], pressed, monitor->strain[i]);
+            if (!(need <= state->need)) state->need = need;
+        }
+        lanes &= below >> LAR_BLOCK;
+        if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
+        apply_lanes(domain, element, lanes & below, state);
+    }
+    state->strained->count[r] = count;
+}
+
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < state->strained->count[r]; i++) {
         int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        unsigned below =
-            domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
-        for (unsigned lanes = below & (unsigned)list[i] & ((1u << LAR_BLOCK) - 1); lanes;
-             lanes &= lanes - 1)
-            apply(domain, element[__builtin_ctz(lanes)], true, state);
+        unsigned below = lanes_below(domain, r, block, state);
+        apply_lanes(domain, element, below & (unsigned)list[i] & ALL_LANES, state);
     }
 }
 

@@ -23,13 +23,14 @@ struct lar_strained {
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);
 void lar_strained_destroy(lar_strained *strained); /* idempotent */
 
-/* What the kernel has listed of run r becomes what is looked at in every step. `measures`: how fast
- * they are counts for state->need. */
-void lar_guard_select(const lar_domain *domain, int32_t r, const lar_hex8_monitor *monitor,
-                      bool measures, lar_state *state);
-
 /* Adds the barriers' forces of run r to state->force. */
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state);
+
+/* The same in a step in which the kernel has listed the strained elements of run r: what is close
+ * of these is what is looked at from now on. `measures`: how fast they are counts for
+ * state->need. Both in one go, for looking at the corners of a block is what takes the time. */
+void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
+                                const lar_hex8_monitor *monitor, bool measures, lar_state *state);
 
 /* The same of all elements of the model, looked for one by one. */
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state);

@@ -52,8 +52,10 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
                                     .strain = state->strained->strain + place};
         int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
                                                  &domain->limits, watches ? &monitor : NULL);
-        if (watches) lar_guard_select(domain, r, &monitor, due, state);
-        lar_guard_apply(domain, r, state);
+        if (watches)
+            lar_guard_select_and_apply(domain, r, &monitor, due, state);
+        else
+            lar_guard_apply(domain, r, state);
         if (found >= 0) fault_run(domain, r, found, state, fault);
     }
     /* Before the nodes move on: a step later the element says little. */

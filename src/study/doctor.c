@@ -59,7 +59,7 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
         {"viewer", "lariat view, sessions for the browser and for devices",
          "apt-get install libwebsockets-dev, then make", server},
         {"page", "the page that lariat view shows",
-         server ? "apt-get install nodejs npm, then make"
+         server ? "apt-get install nodejs npm, then make; npm needs the network"
                 : "apt-get install libwebsockets-dev nodejs npm, then make",
          lar_server_has_page() != 0},
         {"gamepad", "game controllers move instruments",
