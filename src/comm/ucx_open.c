@@ -249,6 +249,10 @@ static lar_status reach(lar_comm *comm, int32_t p, lar_error *error) {
                         (int)p);
     const unsigned char *key = address->data + sizeof head;
     ucs_status_t refused = create_endpoint(state, link, key + head.key_bytes);
+    /* UCX 1.13 crashes on the key of a process that has ended (ucp_ep_rkey_unpack releases what it
+     * has not unpacked): whoever is known to be lost is not asked. */
+    lar_status lost = lar_rendezvous_check(comm, error);
+    if (lost) return lost;
     if (!refused) refused = ucp_ep_rkey_unpack(link->endpoint, key, &link->key);
     if (refused)
         return lar_fail(error, LAR_ERROR_PEER,

@@ -50,11 +50,12 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
                  &running);
     loss_control_start(&control);
     int status = 0, wrong = 0, started = 0;
-    bool aborted = false;
+    bool crashed = false;
     for (int32_t p = 0; p < PROCESSORS; p++) {
         int ended = fleet_reap(&running, p, texts[p]);
         if (p == victim) status = ended;
-        aborted = aborted || (WIFSIGNALED(ended) && WTERMSIG(ended) == SIGABRT);
+        crashed = crashed || (WIFSIGNALED(ended) &&
+                              (WTERMSIG(ended) == SIGABRT || WTERMSIG(ended) == SIGSEGV));
     }
     double late = loss_control_stop(&control);
     bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
@@ -62,10 +63,11 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
         started += results->entries[p].step > 0;
         if (p != victim) wrong += judge(results, backend, p, texts[p], killed, late);
     }
-    /* UCX 1.13 has assertions of its own that fail when a peer dies while they are being connected:
-     * whoever it ends then cannot say anything, and is the one whom the others name. */
-    if (aborted && started == 0 && strcmp(backend, "ucx") == 0) {
-        print_message("UCX ended a processor by its own assertion: nothing to be judged\n");
+    /* UCX 1.13 fails one of its own assertions, or crashes on the key of memory that is gone, when a
+     * peer dies while they are being connected: whoever it ends then cannot say anything, and is
+     * the one whom the others name. */
+    if (crashed && started == 0 && strcmp(backend, "ucx") == 0) {
+        print_message("UCX ended a processor by itself: nothing to be judged\n");
         wrong = 0;
     }
     if (loss_sockets_left(running.master)) print_error("sockets are left\n"), wrong++;
@@ -79,6 +81,7 @@ static int start_and_kill(const char *backend, int32_t victim, long moment) {
 
 static void the_others_end(void **state) {
     (void)state;
+    signal(SIGSEGV, SIG_DFL); /* cmocka's own would report a forked processor's end as a test's */
     lar_comm_backend_info info;
     int wrong = 0;
     print_message("seed %llu\n", (unsigned long long)seed);
