@@ -11,6 +11,7 @@
 /* Part of K + 4/3 G. */
 static const double KAPPA = 0.5;
 static const double MIN = 0.3; /* of START: where the parabola begins */
+static const double WIDE = 16; /* times the square of dj/dx at rest: from there on barriers fade */
 
 /* The neighbours of a corner along xi, eta, zeta, in an order in which a sound element's three
  * edges are right-handed. */
@@ -42,22 +43,62 @@ static void barrier(double j, double *energy, double *slope, double *curvature) 
 typedef struct corner_span {
     double volume;     /* at rest [m^3] */
     double j;          /* of that, now */
+    double square;     /* of all of dj/dx [1/m^2] */
+    double share;      /* which part of the barrier a corner with such a square has */
     double grad[4][3]; /* dj/dx of the corner itself and of its neighbours [1/m] */
+    double fall[4][3]; /* d share/dx [1/m] */
 } corner_span;
 
-static void span_corner(const double rest[8][3], const double now[8][3], int a, corner_span *c) {
-    double edge[3][3];
-    c->volume = span(rest, a, edge);
-    c->j = span(now, a, edge) / c->volume;
-    if (!(c->j < LAR_GUARD_START)) return;
-    memset(c->grad[0], 0, sizeof c->grad[0]);
+/* dj/dx of a corner with these edges, and its square. */
+static double gradient(const double edge[3][3], double volume, double grad[4][3]) {
+    double square = 0;
+    memset(grad[0], 0, sizeof grad[0]);
     for (int k = 0; k < 3; k++) {
-        lar_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], c->grad[1 + k]);
+        lar_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], grad[1 + k]);
         for (int i = 0; i < 3; i++) {
-            c->grad[1 + k][i] /= c->volume;
-            c->grad[0][i] -= c->grad[1 + k][i];
+            grad[1 + k][i] /= volume;
+            grad[0][i] -= grad[1 + k][i];
+        }
+        square += lar_dot(grad[1 + k], grad[1 + k]);
+    }
+    return square + lar_dot(grad[0], grad[0]);
+}
+
+/* With long edges a corner's volume changes fast, and its barrier, which is as stiff as the square
+ * of that, would ask for shorter steps than there are. From r = square / (WIDE of that at rest) = 1
+ * on it has the part (2 r - 1) / r^2, whose slope there is none, and is never more than twice as
+ * stiff as at 1. The part belongs to the energy, so that what goes in comes out. */
+static void share_corner(const double edge[3][3], double square_at_rest, corner_span *c) {
+    double r = c->square / (WIDE * square_at_rest);
+    c->share = 1;
+    memset(c->fall, 0, sizeof c->fall);
+    if (!(r > 1)) return;
+    c->share = (2 * r - 1) / (r * r);
+    double slope = 2 * (1 - r) / (r * r * r) / (WIDE * square_at_rest);
+    for (int m = 0; m < 3; m++) { /* d square/d edge m */
+        int p = (m + 1) % 3, q = (m + 2) % 3;
+        double a[3], b[3], one[3], other[3];
+        for (int i = 0; i < 3; i++) {
+            a[i] = c->grad[1 + p][i] - c->grad[0][i];
+            b[i] = c->grad[1 + q][i] - c->grad[0][i];
+        }
+        lar_cross(a, edge[q], one);
+        lar_cross(edge[p], b, other);
+        for (int i = 0; i < 3; i++) {
+            c->fall[1 + m][i] = slope * 2 / c->volume * (one[i] + other[i]);
+            c->fall[0][i] -= c->fall[1 + m][i];
         }
     }
+}
+
+static void span_corner(const double rest[8][3], const double now[8][3], int a, corner_span *c) {
+    double rest_edge[3][3], edge[3][3], rest_grad[4][3];
+    c->volume = span(rest, a, rest_edge);
+    c->j = span(now, a, edge) / c->volume;
+    if (!(c->j < LAR_GUARD_START)) return;
+    c->square = gradient((const double(*)[3])edge, c->volume, c->grad);
+    double at_rest = gradient((const double(*)[3])rest_edge, c->volume, rest_grad);
+    share_corner((const double(*)[3])edge, at_rest, c);
 }
 
 static int node_of(int a, int k) {
@@ -78,20 +119,34 @@ void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const
         span_corner(rest, now, a, &c);
         if (!(c.j >= guard->min)) guard->min = c.j;
         if (!(c.j < LAR_GUARD_START) || !(c.volume > 0)) continue;
-        double energy, slope, curvature, weight = modulus * c.volume, square = 0, rate = 0;
+        double energy, slope, curvature, weight = modulus * c.volume * c.share, rate = 0;
         barrier(c.j, &energy, &slope, &curvature);
-        for (int k = 0; k < 4; k++) {
-            square += lar_dot(c.grad[k], c.grad[k]);
-            if (v) rate += lar_dot(c.grad[k], v[node_of(a, k)]);
-        }
+        for (int k = 0; k < 4 && v; k++) rate += lar_dot(c.grad[k], v[node_of(a, k)]);
         guard->energy += weight * energy;
-        guard->stiffness += weight * curvature * square;
+        guard->stiffness += weight * curvature * c.square;
         if (!force) continue;
         double damped = fmin(slope + lead * curvature * rate, 0);
-        guard->taken -= weight * (damped - slope) * rate;
+        guard->damper[a] = weight * (damped - slope);
+        guard->taken -= guard->damper[a] * rate;
         for (int k = 0; k < 4; k++)
-            for (int i = 0; i < 3; i++) force[node_of(a, k)][i] += weight * damped * c.grad[k][i];
+            for (int i = 0; i < 3; i++)
+                force[node_of(a, k)][i] +=
+                    weight * damped * c.grad[k][i] + modulus * c.volume * energy * c.fall[k][i];
     }
+}
+
+double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], const double v[8][3],
+                            const double damper[8]) {
+    double power = 0;
+    for (int a = 0; a < 8; a++) {
+        double edge[3][3], grad[4][3];
+        if (damper[a] == 0) continue;
+        double volume = span(rest, a, edge);
+        span(now, a, edge);
+        gradient((const double(*)[3])edge, volume, grad);
+        for (int k = 0; k < 4; k++) power += damper[a] * lar_dot(grad[k], v[node_of(a, k)]);
+    }
+    return power;
 }
 
 void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,

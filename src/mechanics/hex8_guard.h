@@ -34,6 +34,7 @@ typedef struct lar_guard {
     double energy;    /* [J] */
     double taken;     /* power of the damping, at most 0 [W] */
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
+    double damper[8]; /* of each corner: along dj/dx, of what damps [J] */
 } lar_guard;
 
 /* Looks at an element with corners `rest` and `now` [m]. */
@@ -45,6 +46,10 @@ void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_m
 void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
                           const lar_material *material, double lead, double force[8][3],
                           lar_guard *guard);
+
+/* The power [W] of dampers as lar_hex8_guard_force has found them, at other velocities. */
+double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], const double v[8][3],
+                            const double damper[8]);
 
 /* The sum of the squares of the hourglass forces c_m |q_m| [N^2] up to which the gradient in every
  * corner is the mean one but for a matrix of norm 1: so much of it is what corners may be off, in

@@ -20,17 +20,23 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     size_t runs = (size_t)domain->run_count;
     *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
                                .count = lar_calloc(runs, sizeof *strained->count),
-                               .strain = lar_calloc(lanes, sizeof *strained->strain)};
-    if (strained->lane && strained->count && strained->strain) return LAR_OK;
+                               .strain = lar_calloc(lanes, sizeof *strained->strain),
+                               .damped = lar_calloc(lanes, sizeof *strained->damped),
+                               .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
+    if (strained->lane && strained->count && strained->strain && strained->damped &&
+        strained->damped_count)
+        return LAR_OK;
     lar_strained_destroy(strained);
-    return lar_fail_memory(error, lanes * (sizeof *strained->lane + sizeof *strained->strain),
-                           "the strained elements");
+    size_t each = sizeof *strained->lane + sizeof *strained->strain + sizeof *strained->damped;
+    return lar_fail_memory(error, lanes * each, "the strained elements");
 }
 
 void lar_strained_destroy(lar_strained *strained) {
     free(strained->lane);
     free(strained->count);
     free(strained->strain);
+    free(strained->damped);
+    free(strained->damped_count);
     *strained = (lar_strained){0};
 }
 
@@ -111,7 +117,9 @@ static double soften(const lar_domain *domain, lar_gid e, double stiffness, doub
     return ROOM / takes;
 }
 
-static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *state) {
+/* Returns whether barriers are at work. What damps has half of its work done with the velocities
+ * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. */
+static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_state *state) {
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
     lar_guard guard;
@@ -119,10 +127,35 @@ static void apply(const lar_domain *domain, lar_gid e, bool counts, lar_state *s
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), LEAD * step, force, &guard);
-    if (!(guard.min < LAR_GUARD_START)) return;
+    if (!(guard.min < LAR_GUARD_START)) return false;
     double part = soften(domain, e, guard.stiffness, step, force);
     add(domain, e, (const double(*)[3])force, state);
-    if (counts) state->contact -= step * part * guard.taken;
+    if (!damped) return true;
+    state->contact -= 0.5 * step * part * guard.taken;
+    *damped = (lar_damped){.element = e, .half_step = (float)(0.5 * step)};
+    for (int a = 0; a < 8; a++) damped->damper[a] = (float)(part * guard.damper[a]);
+    return true;
+}
+
+/* The other half of the work of what damped run r in the step before, now that its nodes have
+ * moved. Corners that swing from step to step would be said to lose more than they do by the
+ * velocities before it alone. */
+static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state) {
+    lar_strained *strained = state->strained;
+    const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
+    for (int32_t i = 0; i < strained->damped_count[r] && state->listed; i++) {
+        double rest[8][3], then[8][3], v[8][3], damper[8];
+        corners_of(domain, state, damped[i].element, rest, then);
+        lar_domain_corners(domain, state->v, damped[i].element, v);
+        for (int a = 0; a < 8; a++) {
+            damper[a] = (double)damped[i].damper[a];
+            for (int k = 0; k < 3; k++) then[a][k] -= 2 * (double)damped[i].half_step * v[a][k];
+        }
+        state->contact += (double)damped[i].half_step *
+                          lar_hex8_guard_power((const double(*)[3])rest, (const double(*)[3])then,
+                                               (const double(*)[3])v, damper);
+    }
+    strained->damped_count[r] = 0;
 }
 
 /* The lanes of a block of run r where a corner is below START, and from bit 8 on those where one is
@@ -132,14 +165,18 @@ static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block,
     return domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
 }
 
-static void apply_lanes(const lar_domain *domain, const lar_gid *element, unsigned lanes,
+static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *element, unsigned lanes,
                         lar_state *state) {
-    for (; lanes; lanes &= lanes - 1) apply(domain, element[__builtin_ctz(lanes)], true, state);
+    lar_damped *damped = state->strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
+    int32_t *count = &state->strained->damped_count[r];
+    for (; lanes; lanes &= lanes - 1)
+        *count += apply(domain, element[__builtin_ctz(lanes)], &damped[*count], state);
 }
 
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
     int32_t *list = monitor->lane, count = 0;
+    finish_damping(domain, r, state);
     for (int32_t first = 0, end; first < monitor->count; first = end) {
         int32_t block;
         unsigned lanes;
@@ -156,23 +193,24 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
         }
         lanes &= below >> LAR_BLOCK;
         if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
-        apply_lanes(domain, element, lanes & below, state);
+        apply_lanes(domain, r, element, lanes & below, state);
     }
     state->strained->count[r] = count;
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
+    finish_damping(domain, r, state);
     for (int32_t i = 0; i < state->strained->count[r]; i++) {
         int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
         unsigned below = lanes_below(domain, r, block, state);
-        apply_lanes(domain, element, below & (unsigned)list[i] & ALL_LANES, state);
+        apply_lanes(domain, r, element, below & (unsigned)list[i] & ALL_LANES, state);
     }
 }
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
-    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) apply(domain, e, false, state);
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) apply(domain, e, NULL, state);
 }
 
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {

@@ -12,12 +12,21 @@
 #include "step/domain.h"
 #include "layout/state.h"
 
+/* What damped an element in the step before. */
+typedef struct lar_damped {
+    lar_gid element;
+    float half_step; /* [s] */
+    float damper[8]; /* [J] */
+} lar_damped;
+
 /* The strained elements of a domain's runs, beside the state: each run has the places of its
  * blocks, and is one thread's. */
 struct lar_strained {
     int32_t *lane;  /* [8 for each block] what is looked at in every step */
     int32_t *count; /* [run_count] of these, from the first of a run's places on */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
+    lar_damped *damped;                  /* [8 for each block] with half of their work to come */
+    int32_t *damped_count;               /* [run_count] of these, as above */
 };
 
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);
