@@ -154,11 +154,44 @@ static void divided_steps_keep_the_account(void **unused) {
     }
 }
 
+/* A node is led far out of its place, through its elements, and back: corners below zero whose
+ * edges are long, and steps in many parts. */
+static void long_corners_keep_the_account(void **unused) {
+    (void)unused;
+    static const double there_and_back[4][2] = {{0, 0}, {0.5, 1}, {1, -0.4}, {1.5, 0}};
+    static const double way[][3] = {{-0.09, 0.05, 0.02}, {0.03, 0.03, -0.1}, {-0.07, -0.07, 0.07}};
+    for (int i = 0; i < 3; i++) {
+        brick b = soft_brick;
+        lar_model *model = brick_model(&b);
+        int table = add_table(model, LAR_CURVE_SMOOTH, 4, there_and_back);
+        fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+        for (int k = 0; k < 3; k++)
+            move_nodes(model, single_node(brick_node(&b, 2, 1, 1)), 1u << k, way[i][k], table);
+        model->damping = 20;
+        lar_simulation *simulation = start_with(model, lar_options_default());
+        double worst = 0, most = 0;
+        lar_energy e;
+        while (lar_simulation_time(simulation) < 2) {
+            advance(simulation, 20);
+            lar_simulation_energy(simulation, &e);
+            most = fmax(most, total(&e) + e.damping + e.contact);
+            worst = fmax(worst, fabs(total(&e) + e.damping + e.contact - e.external));
+        }
+        print_message("pulled by %g, %g, %g mm: %.2g of %.3g J, %.3g J damped by barriers\n",
+                      1e3 * way[i][0], 1e3 * way[i][1], 1e3 * way[i][2], worst / most, most,
+                      e.contact);
+        assert_true(e.contact > 0);
+        assert_below(worst, 0.001 * most);
+        finish(simulation, model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_undamped_body_keeps_its_energy),
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(divided_steps_keep_the_account),
+        cmocka_unit_test(long_corners_keep_the_account),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

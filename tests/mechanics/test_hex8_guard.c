@@ -60,6 +60,61 @@ static void forces_are_slopes_of_the_energy(void **state) {
     assert_true(guarded > 500 && folded > 100);
 }
 
+/* An element that is drawn out in two directions, with a corner pushed through to the other side.
+ * Its barrier is as stiff as the square of dj/dx, which grows with the fourth power of that; steps
+ * have no parts for it, and a barrier that is softened for the step gives more than it took. */
+static void long_edges_do_not_make_it_stiff(void **state) {
+    (void)state;
+    lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
+    double stiffness[4];
+    for (int k = 0; k < 4; k++) {
+        double rest[8][3], now[8][3], out = pow(2, k);
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) {
+                rest[a][i] = 0.5 * size * lar_node_sign[a][i];
+                now[a][i] = rest[a][i] * (i < 2 ? out : 1);
+            }
+        now[6][2] = rest[2][2] - 0.2 * size; /* below the corner under it */
+        lar_guard guard;
+        lar_hex8_guard((rows)rest, (rows)now, &material, &guard);
+        assert_true(guard.min < 0);
+        stiffness[k] = guard.stiffness;
+    }
+    print_message("drawn out to 1, 2, 4, 8: %.3g, %.3g, %.3g, %.3g N/m\n", stiffness[0],
+                  stiffness[1], stiffness[2], stiffness[3]);
+    for (int k = 1; k < 4; k++) assert_below(stiffness[k], 64 * stiffness[0]);
+}
+
+/* Forces are slopes there as well. */
+static void long_edges_have_slopes(void **state) {
+    (void)state;
+    uint64_t seed = 13;
+    lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
+    int guarded = 0;
+    for (int k = 0; k < 1000; k++) {
+        double rest[8][3], now[8][3], force[8][3] = {{0}};
+        lar_guard guard;
+        crooked(&seed, 0.6, rest, now);
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) now[a][i] *= i == k % 3 ? 1 : 6;
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, force, &guard);
+        if (guard.min >= LAR_GUARD_START) continue;
+        guarded++;
+        double step = 1e-7 * size, max = largest(&force[0][0], 24);
+        for (int i = 0; i < 24; i++) {
+            double *at = &now[i / 3][i % 3], value = *at;
+            *at = value + step;
+            double above = energy_of((rows)rest, (rows)now, &material);
+            *at = value - step;
+            double below = energy_of((rows)rest, (rows)now, &material);
+            *at = value;
+            double bound = 1e-4 * max + 1e-13 * guard.energy / step + 4 * step * guard.stiffness;
+            assert_below(fabs((above - below) / (2 * step) - force[i / 3][i % 3]), bound);
+        }
+    }
+    assert_true(guarded > 300);
+}
+
 /* What damps takes energy, and a barrier pulls nothing together. */
 static void damping_only_takes(void **state) {
     (void)state;
@@ -246,9 +301,12 @@ static void frequency_grows_from_one(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_are_slopes_of_the_energy), cmocka_unit_test(damping_only_takes),
-        cmocka_unit_test(kernels_see_the_same_corners), cmocka_unit_test(what_stiffens_is_listed),
-        cmocka_unit_test(frequency_grows_from_one)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(forces_are_slopes_of_the_energy),
+                                       cmocka_unit_test(long_edges_do_not_make_it_stiff),
+                                       cmocka_unit_test(long_edges_have_slopes),
+                                       cmocka_unit_test(damping_only_takes),
+                                       cmocka_unit_test(kernels_see_the_same_corners),
+                                       cmocka_unit_test(what_stiffens_is_listed),
+                                       cmocka_unit_test(frequency_grows_from_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
