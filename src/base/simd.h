@@ -6,7 +6,8 @@
  * arithmetic is IEEE 754 double with fused multiply-add where it is written out, so a lane's
  * bits depend on nothing but its own inputs:
  *
- *     LAR_SIMD_C       1 lane    the reference; fma() is exact in software where need be
+ *     LAR_SIMD_C       1 lane    the reference; fma() is exact in software where need be, and on
+ *                                x86 compiled once more with the instruction
  *     LAR_SIMD_NEON    2 lanes
  *     LAR_SIMD_AVX2    4 lanes   64-bit integer conversions are put together from halves
  *     LAR_SIMD_AVX512  8 lanes

@@ -502,6 +502,10 @@ static bool update(const lar_leapfrog *leapfrog, int32_t first, int32_t end, dou
 #define LAR_KERNELS_NAME   lar_kernels_neon
 #define LAR_KERNELS_TEXT   "neon"
 #define LAR_KERNELS_USABLE true
+#elif defined(__x86_64__) && defined(__FMA__)
+#define LAR_KERNELS_NAME   lar_kernels_c_fma
+#define LAR_KERNELS_TEXT   "c"
+#define LAR_KERNELS_USABLE __builtin_cpu_supports("fma")
 #else
 #define LAR_KERNELS_NAME   lar_kernels_c
 #define LAR_KERNELS_TEXT   "c"

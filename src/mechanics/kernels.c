@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const lar_kernels lar_kernels_avx512, lar_kernels_avx2, lar_kernels_neon, lar_kernels_c;
+extern const lar_kernels lar_kernels_avx512, lar_kernels_avx2, lar_kernels_neon, lar_kernels_c_fma,
+    lar_kernels_c;
 
-/* Widest first; the build says which there are. */
+/* Widest first; the build says which there are. Of two with one name the first that the processor
+ * has. */
 static const lar_kernels *const table[] = {
 #ifdef LAR_HAVE_AVX512
     &lar_kernels_avx512,
@@ -17,6 +19,9 @@ static const lar_kernels *const table[] = {
 #ifdef LAR_HAVE_NEON
     &lar_kernels_neon,
 #endif
+#ifdef LAR_HAVE_C_FMA
+    &lar_kernels_c_fma,
+#endif
     &lar_kernels_c,
 };
 enum { COUNT = sizeof table / sizeof table[0] };
@@ -25,7 +30,8 @@ static void list_available(char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (int i = 0; i < COUNT; i++)
-        if (table[i]->available() && used < size)
+        if (table[i]->available() && used < size &&
+            (i == 0 || strcmp(table[i]->name, table[i - 1]->name) != 0))
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
                                      table[i]->name);
 }

@@ -78,7 +78,7 @@ static bool look_at(const lar_server *server, const char *name, found_file *foun
     bool good = path && lstat(path, &about) == 0 && S_ISREG(about.st_mode) &&
                 fits(server, path, found->recording);
     if (good) {
-        snprintf(found->name, sizeof found->name, "%s", name);
+        memcpy(found->name, name, strlen(name) + 1); /* a good name fits */
         found->at = about.st_mtim;
     }
     free(path);

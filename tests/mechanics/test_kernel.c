@@ -8,12 +8,15 @@
 enum { BLOCKS = 7, LANES = BLOCKS * LAR_BLOCK, NODES = 48, SPARE = NODES, ROOM = NODES + 2 };
 static const double size = 0.01; /* m */
 
-static const lar_kernels *kernels[4];
+/* Plain C twice where fma() may be an instruction or a call. */
+extern const lar_kernels lar_kernels_c;
+static const lar_kernels *kernels[5];
 static int kernel_count;
 
 static int find_kernels(void **state) {
     static const lar_isa wanted[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     (void)state;
+    kernels[kernel_count++] = &lar_kernels_c;
     for (int i = 0; i < 4; i++) {
         lar_error error = {LAR_OK, ""};
         if (lar_kernels_find(wanted[i], &kernels[kernel_count], &error) == LAR_OK)
@@ -21,7 +24,7 @@ static int find_kernels(void **state) {
         else
             print_message("passed over: %s\n", error.message);
     }
-    return kernel_count == 0;
+    return 0;
 }
 
 /* Elements with their own shapes and materials on nodes picked from a small pool, so that many

@@ -13,16 +13,19 @@ typedef struct nodes {
     double push[NODES], mass[NODES];
 } nodes;
 
-static const lar_kernels *kernels[4];
+/* Plain C twice where fma() may be an instruction or a call. */
+extern const lar_kernels lar_kernels_c;
+static const lar_kernels *kernels[5];
 static int kernel_count;
 
 static int find_kernels(void **state) {
     static const lar_isa wanted[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     (void)state;
+    kernels[kernel_count++] = &lar_kernels_c;
     for (int i = 0; i < 4; i++)
         if (lar_kernels_find(wanted[i], &kernels[kernel_count], NULL) == LAR_OK)
             print_message("kernels: %s\n", kernels[kernel_count++]->name);
-    return kernel_count == 0;
+    return 0;
 }
 
 static const lar_leapfrog falling = {0.9998, 1e-4, 50, {0.1e-4, -0.3e-4, -9.81e-4, 0}, 1};
