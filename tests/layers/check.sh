@@ -6,7 +6,8 @@
 #
 # Rules: a file includes only from its own folder or from a folder of a lower layer; the command
 # includes only lariat.h, study and its own; files do not include each other in a circle; vector
-# intrinsics stay in simd.h and the kernels; no library file ends the process or prints.
+# intrinsics stay in simd.h and the kernels; no library file ends the process or prints. And what
+# docs/architecture.md calls a file of a room is there.
 set -eu
 
 check_tree() {
@@ -14,7 +15,22 @@ check_tree() {
     # shellcheck disable=SC2046
     set -- $(cd "$root" && find src -name '*.[ch]' | LC_ALL=C sort)
     [ $# -gt 0 ] || { echo "layers: no sources below $root/src"; return 1; }
-    (cd "$root" && awk -f "$here/rooms.awk" -f "$here/rules.awk" "$@")
+    (cd "$root" && awk -f "$here/rooms.awk" -f "$here/rules.awk" "$@") || return 1
+    check_page "$root"
+}
+
+# Every `room/file.c` of the page.
+check_page() {
+    page=$1/docs/architecture.md
+    [ -f "$page" ] || return 0
+    # shellcheck disable=SC2016
+    missing=$(grep -o '`[a-z_0-9]*/[a-z_0-9/]*\.[ch]`' "$page" | tr -d '`' | sort -u |
+        while read -r file; do
+            [ -f "$1/$file" ] || [ -f "$1/src/$file" ] || echo "$file"
+        done)
+    [ -z "$missing" ] && return 0
+    echo "layers: docs/architecture.md names what is not there: $missing"
+    return 1
 }
 
 self_test() {
@@ -68,6 +84,16 @@ self_test() {
     expect mechanics/a.h 'static void g(void) { /* x */ printf("%d", 1); }' 'printf'
     expect base/a.h 'static void g(void) { fprintf(stderr, "x"); }' 'stderr'
     expect comm/a.h 'static void g(void) { abort(); }' 'abort'
+
+    # A walk on the page to a file that has moved.
+    fresh
+    mkdir -p "$scratch/tree/docs"
+    # shellcheck disable=SC2016
+    echo 'First `base/a.h`, then `model/gone.c`.' >"$scratch/tree/docs/architecture.md"
+    if ! check_tree "$scratch/tree" | grep -q 'not there: model/gone.c$'; then
+        echo "self-test: a file that is not there was not missed on the page"
+        failures=$((failures + 1))
+    fi
 
     # A circle of three files.
     fresh
