@@ -525,6 +525,16 @@ LAR_API lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t
 LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
                                             const lar_tool_pose *pose, uint64_t steps,
                                             lar_error *error);
+/* Takes hold. A hand does so at `point` [m], at once, whatever it held before; *held (may be NULL)
+ * says how many surface points it has got, 0 when there was nothing within its reach, and then it
+ * is open. A grasper closes its jaws where it is within `steps` steps and takes what is between
+ * them when they begin; `point` counts for hands only, who need one. */
+LAR_API lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t tool,
+                                        const double point[3], uint64_t steps, int32_t *held,
+                                        lar_error *error);
+/* Lets go: a hand at once, a grasper by opening its jaws within `steps` steps. */
+LAR_API lar_status lar_simulation_release(lar_simulation *simulation, int32_t tool, uint64_t steps,
+                                          lar_error *error);
 /* Where it is now. */
 LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t tool,
                                             lar_tool_pose *pose, lar_error *error);
@@ -740,6 +750,15 @@ LAR_API lar_status lar_session_tool_info(const lar_session *session, int32_t too
  * has a device (lar_session_attach) does not listen. */
 LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
                                          const lar_tool_pose *pose, lar_error *error);
+/* Takes hold and lets go, as lar_simulation_grasp and lar_simulation_release, between two ticks;
+ * what was asked of the tool before does not count any more. Waits for that: a tick at most, and
+ * none while the session rests. A grasper's jaws move no faster than options.tool_speed allows, so
+ * *held is what a hand has got, and 0 for a grasper: lar_tool_force.held tells later. Refused
+ * (LAR_ERROR_ARGUMENT) while a recording is played, after the run has broken off, and for a tool
+ * that has a device. Recordings have both. */
+LAR_API lar_status lar_session_grasp(lar_session *session, int32_t tool, const double point[3],
+                                     int32_t *held, lar_error *error);
+LAR_API lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *error);
 /* Of the last tick: pose and force, either may be NULL. The pose is where the tool is: tissue may
  * keep it from where its hand asks it to be. */
 LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t tool,

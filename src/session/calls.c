@@ -181,6 +181,31 @@ lar_status lar_session_remove_tool(lar_session *session, int32_t tool, lar_error
     return set(session, (lar_setting){.kind = LAR_SETTING_REMOVE_TOOL, .of = tool}, NULL, error);
 }
 
+lar_status lar_session_grasp(lar_session *session, int32_t tool, const double point[3],
+                             int32_t *held, lar_error *error) {
+    lar_request_answer answer = {0};
+    if (held) *held = 0;
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status)
+        status = ask_and_wait(
+            session,
+            (lar_request){
+                .kind = LAR_REQUEST_GRASP, .tool = tool, .point = point, .answer = &answer},
+            error);
+    if (!status && held) *held = answer.held;
+    return status;
+}
+
+lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = lar_session_check_tool(session, tool, error);
+    return status ? status
+                  : ask_and_wait(
+                        session,
+                        (lar_request){.kind = LAR_REQUEST_RELEASE, .tool = tool, .answer = &answer},
+                        error);
+}
+
 lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,
                               lar_error *error) {
     lar_request_answer answer = {0};

@@ -188,6 +188,27 @@ static lar_status set(lar_session *session, const lar_request *request, lar_erro
     return status ? status : lar_session_apply(session, &setting, error);
 }
 
+static lar_status grasp(lar_session *session, const lar_request *request, lar_error *error) {
+    static const double nowhere[3];
+    const lar_session_tool *tool = &session->tool[request->tool];
+    bool takes = request->kind == LAR_REQUEST_GRASP;
+    if (session->player)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a recording is being played; leave it to take hold");
+    if (session->status.state == LAR_SESSION_STOPPED)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the run has broken off; reset it or load a state to take hold");
+    if (tool->device)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s has a device, which takes hold and lets go itself", tool->info.name);
+    lar_status status = lar_tool_check_grasp(&session->simulation->list.tool[request->tool],
+                                             takes ? request->point : nowhere, error);
+    if (status) return status;
+    return takes ? lar_session_take_hold(session, request->tool, request->point,
+                                         &request->answer->held, error)
+                 : lar_session_let_go(session, request->tool, error);
+}
+
 static lar_status change(lar_session *session, const lar_request *request, lar_error *error) {
     switch (request->kind) {
     case LAR_REQUEST_RESET:
@@ -203,6 +224,9 @@ static lar_status change(lar_session *session, const lar_request *request, lar_e
         return change_player(session, request, error);
     case LAR_REQUEST_SET:
         return set(session, request, error);
+    case LAR_REQUEST_GRASP:
+    case LAR_REQUEST_RELEASE:
+        return grasp(session, request, error);
     default:
         return attach(session, request, error);
     }

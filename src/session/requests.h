@@ -31,6 +31,8 @@ typedef enum lar_request_kind {
     LAR_REQUEST_SEEK,
     LAR_REQUEST_ATTACH,
     LAR_REQUEST_SET,
+    LAR_REQUEST_GRASP,
+    LAR_REQUEST_RELEASE,
     LAR_REQUEST_END
 } lar_request_kind;
 
@@ -43,13 +45,14 @@ typedef struct lar_request_answer {
     lar_recorder *recorder; /* RECORD: what the engine has let go of; the caller closes it */
     lar_player *player;     /* REPLAY, RESET, LOAD: likewise */
     int32_t tool;           /* SET: that was added */
+    int32_t held;           /* GRASP: points of the surface */
 } lar_request_answer;
 
 /* Files are opened, read and written by whoever asks: the engine only gets and gives what is in
  * them. */
 typedef struct lar_request {
     lar_request_kind kind;
-    int32_t tool;               /* ATTACH */
+    int32_t tool;               /* ATTACH, GRASP, RELEASE */
     uint64_t steps;             /* STEP */
     double pace;                /* PACE */
     const char *path;           /* SAVE, LOAD: for messages */
@@ -57,6 +60,7 @@ typedef struct lar_request {
     lar_recorder *recorder;     /* RECORD; NULL: ends */
     lar_player *player;         /* REPLAY; NULL: ends */
     double seconds;             /* SEEK */
+    const double *point;        /* GRASP: of a hand */
     lar_device *device;         /* ATTACH: the session's when it succeeds */
     lar_setting setting;        /* SET */
     lar_request_answer *answer; /* NULL: nobody waits */

@@ -144,6 +144,10 @@ int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_t
 
 /* The tools are where the simulation has them, and nobody leads them. */
 void lar_session_take_tools(lar_session *session);
+/* Takes hold at a point (of hands), lets go: now, whatever was asked of the tool before. */
+lar_status lar_session_take_hold(lar_session *session, int32_t tool, const double point[3],
+                                 int32_t *held, lar_error *error);
+lar_status lar_session_let_go(lar_session *session, int32_t tool, lar_error *error);
 /* Before a tick: hands, couplings, tools. */
 lar_status lar_session_move_tools(lar_session *session, lar_error *error);
 /* Behind it: forces, to the hands and into the history. */

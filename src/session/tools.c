@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "session/session.h"
+#include "step/grasp.h"
 
 static lar_device_tick tick_of(const lar_session *session) {
     uint64_t step = lar_simulation_steps(session->simulation);
@@ -91,21 +92,26 @@ static void look_at_hands(lar_session *session) {
     }
 }
 
+/* To where it is wanted, in the recording as well. */
+static lar_status move_tool(lar_session *session, int32_t i, uint64_t steps, lar_error *error) {
+    lar_session_tool *tool = &session->tool[i];
+    lar_status status = lar_simulation_tool_move(session->simulation, i, &tool->pose, steps, error);
+    if (status) return status;
+    tool->sent = tool->pose;
+    lar_session_put_record(session, &(lar_record){.kind = LAR_RECORD_MOVE,
+                                                  .step = lar_simulation_steps(session->simulation),
+                                                  .tool = i,
+                                                  .steps = steps,
+                                                  .pose = tool->pose});
+    return LAR_OK;
+}
+
 /* A tool whose place did not change rests where it was sent. */
 static lar_status send_tool(lar_session *session, int32_t i, lar_error *error) {
     lar_session_tool *tool = &session->tool[i];
     if (memcmp(&tool->sent, &tool->pose, sizeof tool->pose) == 0) return LAR_OK;
-    lar_status status =
-        lar_simulation_tool_move(session->simulation, i, &tool->pose, session->tick_steps, error);
-    if (!status) {
-        tool->sent = tool->pose;
-        lar_session_put_record(session,
-                               &(lar_record){.kind = LAR_RECORD_MOVE,
-                                             .step = lar_simulation_steps(session->simulation),
-                                             .tool = i,
-                                             .steps = session->tick_steps,
-                                             .pose = tool->pose});
-    } else if (status == LAR_ERROR_ARGUMENT) {
+    lar_status status = move_tool(session, i, session->tick_steps, error);
+    if (status == LAR_ERROR_ARGUMENT) {
         /* Nowhere to go, or too far for one tick: it stays, and starts anew from there. */
         lar_simulation_tool_asked(session->simulation, i, &tool->pose);
         lar_coupling_reset(&tool->coupling, &tool->pose);
@@ -125,6 +131,65 @@ lar_status lar_session_move_tools(lar_session *session, lar_error *error) {
     }
     return status;
 }
+
+/* ---- taking hold --------------------------------------------------------------------------- */
+
+/* A grasper goes on as it was led, with its jaws open or closed. */
+static void ask_jaws(lar_session_tool *tool, double opening) {
+    bool fresh;
+    const lar_tool_pose *hand = lar_triple_buffer_newest(&tool->hand, &fresh);
+    if (fresh) tool->target = *hand;
+    tool->target.opening = opening;
+    tool->led = true;
+}
+
+static lar_status open_hand(lar_session *session, int32_t i, lar_error *error) {
+    lar_session_tool *tool = &session->tool[i];
+    tool->pose.opening = 1;
+    lar_status status = move_tool(session, i, 1, error);
+    tool->force.held = 0;
+    return status;
+}
+
+/* What was sent before does not count; the hand is led on from where it is. */
+static void begin_anew(lar_session_tool *tool) {
+    lar_triple_buffer_newest(&tool->hand, NULL);
+    tool->target = tool->pose;
+    tool->led = true;
+    tool->waits = false;
+    lar_coupling_reset(&tool->coupling, &tool->pose);
+}
+
+lar_status lar_session_let_go(lar_session *session, int32_t i, lar_error *error) {
+    lar_session_tool *tool = &session->tool[i];
+    lar_status status = LAR_OK;
+    if (tool->info.shape == LAR_TOOL_GRASPER)
+        ask_jaws(tool, 1);
+    else if (!(status = open_hand(session, i, error)))
+        begin_anew(tool);
+    return status;
+}
+
+lar_status lar_session_take_hold(lar_session *session, int32_t i, const double point[3],
+                                 int32_t *held, lar_error *error) {
+    lar_session_tool *tool = &session->tool[i];
+    if (tool->info.shape == LAR_TOOL_GRASPER) {
+        ask_jaws(tool, 0);
+        return LAR_OK;
+    }
+    lar_status status = open_hand(session, i, error);
+    memcpy(tool->pose.position, point, sizeof tool->pose.position);
+    tool->pose.opening = 0;
+    if (!status) status = move_tool(session, i, 1, error);
+    if (!status) {
+        *held = tool->force.held = lar_grasp_count(&session->simulation->tools, i);
+        if (*held == 0) status = open_hand(session, i, error);
+    }
+    if (!status) begin_anew(tool);
+    return status;
+}
+
+/* ---- forces -------------------------------------------------------------------------------- */
 
 static void tell_devices(lar_session *session) {
     for (int32_t i = 0; i < session->tools; i++) {

@@ -66,6 +66,8 @@ lar_status lar_simulation_check_change(const lar_simulation *simulation, const c
                                        lar_error *error);
 
 /* Where a tool's hand asks it to be now; lar_simulation_tool_pose says where it is. */
+/* Whether it can take hold; a hand needs a point. */
+lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar_error *error);
 void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, lar_tool_pose *pose);
 
 /* The start as lar_simulation_create makes it, into state and tools, also again. */

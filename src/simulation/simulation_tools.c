@@ -148,6 +148,56 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
     return LAR_OK;
 }
 
+/* ---- taking hold --------------------------------------------------------------------------- */
+
+lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar_error *error) {
+    if (tool->shape == LAR_TOOL_GRASPER) return LAR_OK;
+    if (tool->shape != LAR_TOOL_HAND)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "tool %s is no hand and no grasper: it cannot take hold", tool->name);
+    if (!point)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "hand %s needs the point where it shall take hold", tool->name);
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(point[i]))
+            return lar_fail(error, LAR_ERROR_ARGUMENT,
+                            "hand %s: the point where it shall take hold is not finite",
+                            tool->name);
+    return LAR_OK;
+}
+
+lar_status lar_simulation_release(lar_simulation *simulation, int32_t index, uint64_t steps,
+                                  lar_error *error) {
+    static const double nowhere[3];
+    lar_tool_pose pose;
+    lar_status status = check_tool(simulation, index, nowhere, error);
+    if (!status) status = lar_tool_check_grasp(&simulation->list.tool[index], nowhere, error);
+    if (status) return status;
+    lar_simulation_tool_asked(simulation, index, &pose);
+    pose.opening = 1;
+    return lar_simulation_tool_move(simulation, index, &pose, steps, error);
+}
+
+lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t index, const double point[3],
+                                uint64_t steps, int32_t *held, lar_error *error) {
+    static const double nowhere[3];
+    lar_tool_pose pose;
+    lar_status status = check_tool(simulation, index, nowhere, error);
+    if (!status) status = lar_tool_check_grasp(&simulation->list.tool[index], point, error);
+    if (status) return status;
+    bool hand = simulation->list.tool[index].shape == LAR_TOOL_HAND;
+    if (hand) status = lar_simulation_release(simulation, index, 1, error);
+    if (status) return status;
+    lar_simulation_tool_asked(simulation, index, &pose);
+    if (hand) memcpy(pose.position, point, sizeof pose.position);
+    pose.opening = 0;
+    status = lar_simulation_tool_move(simulation, index, &pose, hand ? 1 : steps, error);
+    int32_t count = lar_grasp_count(&simulation->tools, index);
+    if (held) *held = status ? 0 : count;
+    if (status || count > 0 || !hand) return status;
+    return lar_simulation_release(simulation, index, 1, error);
+}
+
 /* ---- what came of it ----------------------------------------------------------------------- */
 
 static const lar_interval *interval_of(const lar_simulation *simulation) {
