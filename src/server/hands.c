@@ -9,13 +9,6 @@
 static const int64_t OWNED = 1000000000;
 /* What a viewer sends before it knows of a reset is here by then [ns]: status comes every 0.1 s. */
 static const int64_t ON_ITS_WAY = 300000000;
-/* A hand is where it was sent when it is this close [m]; the session may take a moment to get it
- * there, and one that does not arrive at all closes where it is. */
-static const double NEAR = 1e-4;
-static const int64_t PATIENCE = 1000000000;
-/* Ticks after which a hand that closed must hold something. */
-enum { TICKS_TO_HOLD = 3 };
-
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context) {
     *hands = (lar_hands){.session = session, .tell = tell, .context = context};
     for (int32_t i = 0; i < session->tools; i++) {
@@ -58,19 +51,15 @@ static void look_again(lar_hands *hands, int64_t now) {
 
 /* ---- hands ---------------------------------------------------------------------------------- */
 
-static void put(lar_hands *hands, const lar_hand *hand, const double at[3], double opening) {
+static void put(lar_hands *hands, const lar_hand *hand, double opening) {
     lar_tool_pose pose = {.orientation = {1, 0, 0, 0}, .opening = opening};
-    memcpy(pose.position, at, sizeof pose.position);
+    memcpy(pose.position, hand->to, sizeof pose.position);
     lar_session_tool_move(hands->session, hand->tool, &pose, NULL);
 }
 
-static void enter(lar_hand *hand, lar_hand_state state, int64_t now) {
-    hand->state = state;
-    hand->since = now;
-}
-
+/* In the order of what was asked for; where that is too much already, by its newest place. */
 static void let_go(lar_hands *hands, lar_hand *hand) {
-    put(hands, hand, hand->to, 1);
+    if (!lar_session_ask_release(hands->session, hand->tool)) put(hands, hand, 1);
     hand->state = LAR_HAND_FREE;
     hand->viewer = 0;
 }
@@ -104,10 +93,12 @@ static void grab(lar_hands *hands, uint64_t viewer, const lar_command *command, 
     }
     hand->viewer = viewer;
     hand->number = command->hand;
-    memcpy(hand->point, command->point, sizeof hand->point);
     memcpy(hand->to, command->point, sizeof hand->to);
-    enter(hand, LAR_HAND_GOING, now);
-    put(hands, hand, hand->point, 1);
+    hand->state = LAR_HAND_ASKED;
+    hand->ticket = ++hands->tickets;
+    if (lar_session_ask_grasp(hands->session, hand->tool, command->point, hand->ticket)) return;
+    tell(hands, hand, "refused");
+    let_go(hands, hand);
 }
 
 void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *command, int64_t now) {
@@ -116,50 +107,35 @@ void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *com
         grab(hands, viewer, command, now);
     } else if (hand && command->kind == LAR_COMMAND_PULL) {
         memcpy(hand->to, command->point, sizeof hand->to);
-        if (hand->state == LAR_HAND_HOLDING) put(hands, hand, hand->to, 0);
+        if (hand->state == LAR_HAND_HOLDING) put(hands, hand, 0);
     } else if (hand && command->kind == LAR_COMMAND_RELEASE) {
         let_go(hands, hand);
     }
 }
 
-static void go_on(lar_hands *hands, lar_hand *hand, const lar_session_status *status, int64_t now) {
-    lar_tool_pose pose;
-    lar_tool_force force;
-    if (lar_session_tool_force(hands->session, hand->tool, &pose, &force, NULL)) return;
-    double distance = 0;
-    for (int i = 0; i < 3; i++) distance = fmax(distance, fabs(pose.position[i] - hand->point[i]));
-    bool playing = status->state == LAR_SESSION_PLAYING;
-    if (!playing) hand->since = now;
-    switch (hand->state) {
-    case LAR_HAND_GOING:
-        if (!playing || pose.opening < 0.5) break;
-        if (distance > NEAR && now - hand->since < PATIENCE) break;
-        put(hands, hand, hand->point, 0);
-        hand->tick = status->ticks;
-        enter(hand, LAR_HAND_CLOSING, now);
-        break;
-    case LAR_HAND_CLOSING:
-        if (force.held > 0) {
-            enter(hand, LAR_HAND_HOLDING, now);
-            tell(hands, hand, "holding");
-            put(hands, hand, hand->to, 0);
-        } else if (status->ticks >= hand->tick + TICKS_TO_HOLD && pose.opening < 0.25) {
-            tell(hands, hand, "missed");
-            let_go(hands, hand);
-        } else if (pose.opening > 0.5 && status->ticks >= hand->tick + TICKS_TO_HOLD) {
-            /* A reset in between: what was sent before it does not count. */
-            put(hands, hand, hand->point, 1);
-            enter(hand, LAR_HAND_GOING, now);
-        }
-        break;
-    case LAR_HAND_HOLDING:
-        if (force.held > 0 || !playing) break;
-        tell(hands, hand, "lost");
+/* The session has answered: it has hold of something, or is open again. */
+static void take_answer(lar_hands *hands, lar_hand *hand) {
+    lar_grasp_answer answer = lar_session_grasp_answer(hands->session, hand->tool);
+    if (answer.ticket != hand->ticket) return;
+    tell(hands, hand, answer.held > 0 ? "holding" : "missed");
+    if (answer.held > 0) {
+        hand->state = LAR_HAND_HOLDING;
+        put(hands, hand, 0);
+    } else {
         let_go(hands, hand);
-        break;
-    default:
-        break;
     }
+}
+
+static void go_on(lar_hands *hands, lar_hand *hand, const lar_session_status *status) {
+    lar_tool_force force;
+    if (hand->state == LAR_HAND_ASKED) {
+        take_answer(hands, hand);
+        return;
+    }
+    if (lar_session_tool_force(hands->session, hand->tool, NULL, &force, NULL)) return;
+    if (force.held > 0 || status->state != LAR_SESSION_PLAYING) return;
+    tell(hands, hand, "lost");
+    let_go(hands, hand);
 }
 
 void lar_hands_look(lar_hands *hands, int64_t now) {
@@ -168,13 +144,12 @@ void lar_hands_look(lar_hands *hands, int64_t now) {
     look_where_it_is(hands, &status, now);
     look_at_tools(hands);
     for (int32_t i = 0; i < hands->count; i++)
-        if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status, now);
+        if (hands->hand[i].state != LAR_HAND_FREE) go_on(hands, &hands->hand[i], &status);
 }
 
 bool lar_hands_busy(const lar_hands *hands) {
     for (int32_t i = 0; i < hands->count; i++)
-        if (hands->hand[i].state == LAR_HAND_GOING || hands->hand[i].state == LAR_HAND_CLOSING)
-            return true;
+        if (hands->hand[i].state == LAR_HAND_ASKED) return true;
     return false;
 }
 

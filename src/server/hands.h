@@ -1,13 +1,11 @@
 /* Which viewer moves which tool: hands are assigned on request, instruments belong to whoever moves
  * them.
  *
- *     grab: free --> going --> closing --> holding --> (release, leave) --> free
- *                      |          '-- nothing there: missed --> free
- *                      tool open, on its way to the point
+ *     grab: free --> asked --> holding --> (release, leave) --> free
+ *                      '-- nothing there: missed --> free
  *
- * A session hears only the newest pose of a tool, so a hand is closed no sooner than the session
- * has it at its point. All of this is the server's thread's; lar_hands_look moves it on, every few
- * milliseconds while lar_hands_busy.
+ * The session takes hold and lets go (lar_session_ask_grasp). All of this is the server's thread's;
+ * lar_hands_look sees the answers, every few milliseconds while lar_hands_busy.
  */
 #ifndef LAR_SERVER_HANDS_H
 #define LAR_SERVER_HANDS_H
@@ -15,22 +13,15 @@
 #include "server/message.h"
 #include "session/session.h"
 
-typedef enum lar_hand_state {
-    LAR_HAND_FREE = 0,
-    LAR_HAND_GOING,
-    LAR_HAND_CLOSING,
-    LAR_HAND_HOLDING
-} lar_hand_state;
+typedef enum lar_hand_state { LAR_HAND_FREE = 0, LAR_HAND_ASKED, LAR_HAND_HOLDING } lar_hand_state;
 
 typedef struct lar_hand {
     int32_t tool;
     lar_hand_state state;
     uint64_t viewer; /* whose it is, and under which number */
     int32_t number;
-    double point[3]; /* to take hold of */
+    uint64_t ticket; /* of its grasp */
     double to[3];    /* where it was last pulled */
-    int64_t since;   /* of the state [ns]; while the engine plays */
-    uint64_t tick;   /* when it closed */
 } lar_hand;
 
 /* Who moves a tool that is no hand. */
@@ -52,7 +43,8 @@ typedef struct lar_hands {
     lar_session *session;
     lar_hand_news *tell;
     void *context;
-    int32_t count; /* of hands */
+    int32_t count;    /* of hands */
+    uint64_t tickets; /* given out */
     lar_hand hand[LAR_TOOLS_MAX];
     lar_owner owner[LAR_TOOLS_MAX]; /* by tool */
     uint64_t placed;                /* lar_session_status.placed, as last seen */
@@ -72,7 +64,7 @@ lar_status lar_hands_may_remove(lar_hands *hands, uint64_t viewer, int32_t tool,
 void lar_hands_leave(lar_hands *hands, uint64_t viewer);
 
 void lar_hands_look(lar_hands *hands, int64_t now);
-/* Whether a hand is on its way, so that somebody should look soon again. */
+/* Whether a hand waits for its answer, so that somebody should look soon again. */
 bool lar_hands_busy(const lar_hands *hands);
 
 /* Who moves a tool: "nobody", "you" (this viewer), "other", "device". */

@@ -1,6 +1,7 @@
 /* What is asked of a session, from any thread. */
 
 #include <stdio.h>
+#include <string.h>
 
 #include "simulation/checkpoint.h"
 #include "session/session.h"
@@ -181,17 +182,20 @@ lar_status lar_session_remove_tool(lar_session *session, int32_t tool, lar_error
     return set(session, (lar_setting){.kind = LAR_SETTING_REMOVE_TOOL, .of = tool}, NULL, error);
 }
 
+static lar_request grasp_of(int32_t tool, const double point[3]) {
+    lar_request request = {.kind = LAR_REQUEST_GRASP, .tool = tool, .pointed = point != NULL};
+    if (point) memcpy(request.point, point, sizeof request.point);
+    return request;
+}
+
 lar_status lar_session_grasp(lar_session *session, int32_t tool, const double point[3],
                              int32_t *held, lar_error *error) {
     lar_request_answer answer = {0};
+    lar_request request = grasp_of(tool, point);
+    request.answer = &answer;
     if (held) *held = 0;
     lar_status status = lar_session_check_tool(session, tool, error);
-    if (!status)
-        status = ask_and_wait(
-            session,
-            (lar_request){
-                .kind = LAR_REQUEST_GRASP, .tool = tool, .point = point, .answer = &answer},
-            error);
+    if (!status) status = ask_and_wait(session, request, error);
     if (!status && held) *held = answer.held;
     return status;
 }
@@ -199,11 +203,29 @@ lar_status lar_session_grasp(lar_session *session, int32_t tool, const double po
 lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *error) {
     lar_request_answer answer = {0};
     lar_status status = lar_session_check_tool(session, tool, error);
-    return status ? status
-                  : ask_and_wait(
-                        session,
+    if (status) return status;
+    return ask_and_wait(session,
                         (lar_request){.kind = LAR_REQUEST_RELEASE, .tool = tool, .answer = &answer},
                         error);
+}
+
+static bool ask_if_free(lar_session *session, lar_request request) {
+    pthread_mutex_lock(&session->requests.lock);
+    bool full = lar_requests_full(&session->requests);
+    if (!full) lar_requests_place(&session->requests, &request);
+    pthread_mutex_unlock(&session->requests.lock);
+    return !full;
+}
+
+bool lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
+                           uint64_t ticket) {
+    lar_request request = grasp_of(tool, point);
+    request.ticket = ticket;
+    return ask_if_free(session, request);
+}
+
+bool lar_session_ask_release(lar_session *session, int32_t tool) {
+    return ask_if_free(session, (lar_request){.kind = LAR_REQUEST_RELEASE, .tool = tool});
 }
 
 lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,

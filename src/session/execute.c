@@ -188,10 +188,12 @@ static lar_status set(lar_session *session, const lar_request *request, lar_erro
     return status ? status : lar_session_apply(session, &setting, error);
 }
 
-static lar_status grasp(lar_session *session, const lar_request *request, lar_error *error) {
+static lar_status grasp(lar_session *session, const lar_request *request, int32_t *held,
+                        lar_error *error) {
     static const double nowhere[3];
     const lar_session_tool *tool = &session->tool[request->tool];
     bool takes = request->kind == LAR_REQUEST_GRASP;
+    const double *point = !takes ? nowhere : request->pointed ? request->point : NULL;
     if (session->player)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a recording is being played; leave it to take hold");
@@ -201,11 +203,10 @@ static lar_status grasp(lar_session *session, const lar_request *request, lar_er
     if (tool->device)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s has a device, which takes hold and lets go itself", tool->info.name);
-    lar_status status = lar_tool_check_grasp(&session->simulation->list.tool[request->tool],
-                                             takes ? request->point : nowhere, error);
+    lar_status status =
+        lar_tool_check_grasp(&session->simulation->list.tool[request->tool], point, error);
     if (status) return status;
-    return takes ? lar_session_take_hold(session, request->tool, request->point,
-                                         &request->answer->held, error)
+    return takes ? lar_session_take_hold(session, request->tool, point, held, error)
                  : lar_session_let_go(session, request->tool, error);
 }
 
@@ -226,7 +227,7 @@ static lar_status change(lar_session *session, const lar_request *request, lar_e
         return set(session, request, error);
     case LAR_REQUEST_GRASP:
     case LAR_REQUEST_RELEASE:
-        return grasp(session, request, error);
+        return grasp(session, request, &request->answer->held, error);
     default:
         return attach(session, request, error);
     }
@@ -259,7 +260,21 @@ static void seek(lar_session *session, double seconds) {
     lar_session_go_on(session);
 }
 
+/* Nobody waits, but everybody sees what came of it. */
+static void grasp_unawaited(lar_session *session, const lar_request *request) {
+    lar_grasp_answer answer = {.ticket = request->ticket};
+    lar_error error;
+    lar_status status = grasp(session, request, &answer.held, &error);
+    if (status == LAR_ERROR_PEER) lar_session_stop(session, &error);
+    if (request->kind == LAR_REQUEST_GRASP) session->tool[request->tool].grasp = answer;
+    lar_session_publish(session, false);
+}
+
 static void go(lar_session *session, const lar_request *request) {
+    if (request->kind == LAR_REQUEST_GRASP || request->kind == LAR_REQUEST_RELEASE) {
+        grasp_unawaited(session, request);
+        return;
+    }
     bool broken = session->status.state == LAR_SESSION_STOPPED;
     if (request->kind == LAR_REQUEST_PACE)
         lar_pace_set(&session->pace, request->pace, lar_clock_ns());

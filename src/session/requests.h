@@ -60,7 +60,9 @@ typedef struct lar_request {
     lar_recorder *recorder;     /* RECORD; NULL: ends */
     lar_player *player;         /* REPLAY; NULL: ends */
     double seconds;             /* SEEK */
-    const double *point;        /* GRASP: of a hand */
+    double point[3];            /* GRASP: of a hand, where `pointed` */
+    bool pointed;               /* GRASP */
+    uint64_t ticket;            /* GRASP without an answer: lar_grasp_answer */
     lar_device *device;         /* ATTACH: the session's when it succeeds */
     lar_setting setting;        /* SET */
     lar_request_answer *answer; /* NULL: nobody waits */

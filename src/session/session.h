@@ -32,6 +32,12 @@
 #include "session/requests.h"
 #include "session/snapshot.h"
 
+/* Of the last grasp that was asked for with a ticket. */
+typedef struct lar_grasp_answer {
+    uint64_t ticket;
+    int32_t held; /* points of the surface; 0: nothing was there, or it was refused */
+} lar_grasp_answer;
+
 /* What the engine tells in every tick. */
 typedef struct lar_session_view {
     lar_session_status status;
@@ -43,6 +49,7 @@ typedef struct lar_session_view {
         lar_tool_pose pose;
         lar_tool_force force;
         lar_tool_load load;
+        lar_grasp_answer grasp;
         lar_device_status device; /* summed up from time to time only */
     } tool[LAR_TOOLS_MAX];
 } lar_session_view;
@@ -64,7 +71,8 @@ typedef struct lar_session_tool {
     lar_tool_pose place;             /* where it is at the tick's end: tissue may keep it */
     lar_tool_force force;            /* what the tissue does to it */
     lar_tool_load load;              /* since the session was opened */
-    lar_tool_force felt;             /* what its device is told, behind the coupling */
+    lar_grasp_answer grasp;
+    lar_tool_force felt; /* what its device is told, behind the coupling */
 } lar_session_tool;
 
 struct lar_session {
@@ -98,6 +106,13 @@ struct lar_session {
     bool ended;
 };
 
+/* The same as lar_session_grasp and lar_session_release, from any thread, without waiting: false
+ * when too much is asked for already. The answer is found with the ticket, a number other than 0,
+ * when it is there. */
+bool lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
+                           uint64_t ticket);
+bool lar_session_ask_release(lar_session *session, int32_t tool);
+lar_grasp_answer lar_session_grasp_answer(const lar_session *session, int32_t tool);
 /* Refuses NULL and tools that are none. */
 lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_error *error);
 lar_recording_header lar_session_recording_header(const lar_session *session);

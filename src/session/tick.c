@@ -42,6 +42,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
         view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;
         view->tool[i].load = session->tool[i].load;
+        view->tool[i].grasp = session->tool[i].grasp;
         if (quantiles && session->tool[i].device)
             lar_device_status_get(session->tool[i].device, &session->tool[i].device_status);
         view->tool[i].device = session->tool[i].device_status;

@@ -102,6 +102,12 @@ lar_status lar_session_tool_load(const lar_session *session, int32_t tool, lar_t
     return LAR_OK;
 }
 
+lar_grasp_answer lar_session_grasp_answer(const lar_session *session, int32_t tool) {
+    lar_grasp_answer answer = look_at_view(session)->tool[tool].grasp;
+    end_look(session);
+    return answer;
+}
+
 lar_status lar_session_device(const lar_session *session, int32_t tool, lar_device_status *out,
                               lar_error *error) {
     lar_status status = lar_session_check_tool(session, tool, error);
