@@ -751,7 +751,7 @@ LAR_API lar_status lar_session_tool_info(const lar_session *session, int32_t too
 LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
                                          const lar_tool_pose *pose, lar_error *error);
 /* Takes hold and lets go, as lar_simulation_grasp and lar_simulation_release, between two ticks;
- * what was asked of the tool before does not count any more. Waits for that: a tick at most, and
+ * what was asked of a hand before does not count any more. Waits for that: a tick at most, and
  * none while the session rests. A grasper's jaws move no faster than options.tool_speed allows, so
  * *held is what a hand has got, and 0 for a grasper: lar_tool_force.held tells later. Refused
  * (LAR_ERROR_ARGUMENT) while a recording is played, after the run has broken off, and for a tool

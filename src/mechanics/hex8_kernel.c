@@ -502,7 +502,7 @@ static bool update(const lar_leapfrog *leapfrog, int32_t first, int32_t end, dou
 #define LAR_KERNELS_NAME   lar_kernels_neon
 #define LAR_KERNELS_TEXT   "neon"
 #define LAR_KERNELS_USABLE true
-#elif defined(__x86_64__) && defined(__FMA__)
+#elif defined(LAR_SIMD_C_FMA)
 #define LAR_KERNELS_NAME   lar_kernels_c_fma
 #define LAR_KERNELS_TEXT   "c"
 #define LAR_KERNELS_USABLE __builtin_cpu_supports("fma")

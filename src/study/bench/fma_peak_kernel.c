@@ -14,7 +14,7 @@ enum { ACCUMULATORS = 12 };
 #define LOOP lar_fma_peak_neon
 #define NAME "neon"
 enum { ACCUMULATORS = 20 };
-#elif defined(__x86_64__) && defined(__FMA__)
+#elif defined(LAR_SIMD_C_FMA)
 #define LOOP lar_fma_peak_c_fma
 #define NAME "c"
 enum { ACCUMULATORS = 12 };
