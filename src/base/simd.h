@@ -232,14 +232,16 @@ LAR_INLINE lar_lane lar_ilane_as_lane(lar_ilane a) {
     return (lar_lane)a;
 }
 
-/* Nearest integer of |a| < 2^62 in two halves: high = nearest multiple of 2^32, whose rest is
- * exact and below 2^31 in size. Adding 1.5 * 2^52 leaves an integer in the low bits. */
+/* Nearest integer of |a| < 2^62 in two halves. Adding 1.5 * 2^84 leaves the nearest multiple of 2^32
+ * as an integer in the low bits of `high`; the rest is exact and at most 2^31 in size, and adding
+ * 1.5 * 2^52 does the same for it. What then stands above the rest, the bits of 1.5 * 2^52, is
+ * taken away by as much less in the low bits of `high`. */
 LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
     const lar_lane magic = lar_lane_set(0x1.8p52);
-    lar_lane high = lar_lane_fma(a, lar_lane_set(0x1p-32), magic);
-    lar_lane rest = lar_lane_fnma(high - magic, lar_lane_set(0x1p32), a) + magic;
-    lar_ilane bits = (lar_ilane)magic;
-    return (((lar_ilane)high - bits) << 32) + ((lar_ilane)rest - bits);
+    const lar_lane above = lar_lane_set(0x1.80000bcc8p84); /* 1.5 * 2^84 - 0x43380000 * 2^32 */
+    lar_lane high = a + above;
+    lar_lane rest = (a - (high - above)) + magic;
+    return ((lar_ilane)high << 32) + (lar_ilane)rest;
 }
 /* Correctly rounded: both halves are exact doubles and one fused operation joins them. */
 LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {

@@ -81,8 +81,21 @@ static double grasp_limit(const lar_tool_limits *limits, double need) {
     return fmax(limits->pinch, limits->grasp_force * share * share);
 }
 
-/* `closes`: its jaws are asked to be closer than they can be pushed apart. */
-static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, bool closes,
+/* What jaws can do, or are asked to. */
+typedef struct jaws_state {
+    bool close;  /* they are asked to be closer than they can be pushed apart */
+    double room; /* how far they can be pushed apart: 1, down to 0 where they are wide open */
+} jaws_state;
+
+static jaws_state jaws_of(const lar_tool_follower *follower, const lar_tool_motion *motion) {
+    static const double NEARLY_OPEN = 0.1;
+    return (jaws_state){.close = follower->hand.to.opening < 1 || motion->to.opening < 1,
+                        .room = fmin(1, (1 - motion->to.opening) / NEARLY_OPEN)};
+}
+
+/* Where other things than forces ask a tool to give way, it does so where it is pushed hardest; but
+ * jaws that are wide open cannot. */
+static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, jaws_state jaws,
                          double need, double unit, double *load) {
     mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
@@ -93,12 +106,13 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     mean.squeeze = (double)felt->squeeze * share;
     double force = lar_length(mean.force) / limits->force;
     double turn = lar_length(mean.torque) / (limits->force * limits->lever);
-    double grasp = closes ? mean.squeeze / mean.grasp_force : 0;
+    double grasp = jaws.close ? mean.squeeze / mean.grasp_force : 0;
     double depth = felt->depth / limits->depth;
     double max = fmax(fmax(force, turn), grasp);
+    double gives = fmax(fmax(force, turn), jaws.room * grasp);
     double other = fmax(depth, max > 0 ? need / BORNE_RATE : 0);
     *load = fmax(max, other);
-    if (other > 1 && other > max && max > 0) mean.excess = other / max;
+    if (other > 1 && other > gives && gives > 0) mean.excess = other / gives;
     return mean;
 }
 
@@ -235,7 +249,7 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
         const lar_tool_felt *felt = &tools->follower[i].felt;
         double load, depth = felt->depth / list->tool[i].radius;
         if (!(depth > 0)) continue;
-        mean_load mean = mean_of(felt, &list->limits[i], false, 0, unit, &load);
+        mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
         /* One that presses too hard gives way before it is made harder. */
         if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
             depth = fmin(depth, SOFT);
@@ -281,8 +295,8 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
         if (!lar_tool_touches(&list->tool[i]) || !(limits->drag > 0)) continue;
-        bool closes = follower->hand.to.opening < 1 || tools->motion[i].to.opening < 1;
-        mean_load mean = mean_of(&felt, limits, closes, need, unit, &follower->load);
+        jaws_state jaws = jaws_of(follower, &tools->motion[i]);
+        mean_load mean = mean_of(&felt, limits, jaws, need, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

@@ -10,7 +10,7 @@
 
 /* Part of K + 4/3 G. */
 static const double KAPPA = 0.5;
-static const double MIN = 0.3; /* of START: where the parabola begins */
+static const double MIN = 0.2; /* of START: where the parabola begins */
 static const double WIDE = 16; /* times the square of dj/dx at rest: from there on barriers fade */
 
 /* The neighbours of a corner along xi, eta, zeta, in an order in which a sound element's three
