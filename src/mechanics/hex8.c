@@ -54,16 +54,11 @@ static void add_cross(double sum[3], double factor, const double a[3], const dou
  *     64 V = [a,b,c] + ([e,d,c] + [f,b,d] + [a,f,e]) / 3,
  * the average of det dx/dxi over the natural cube; odd powers drop out and so does mode 6. */
 static double volume_gradient(const double X[7][3], double derivative[6][3]) {
-    enum { A, B, C, D, E, F };
-    static const struct {
-        int mode, left, right;
-        double factor;
-    } term[12] = {{A, B, C, 1},      {A, F, E, 1. / 3}, {B, C, A, 1},      {B, D, F, 1. / 3},
-                  {C, A, B, 1},      {C, E, D, 1. / 3}, {D, C, E, 1. / 3}, {D, F, B, 1. / 3},
-                  {E, D, C, 1. / 3}, {E, A, F, 1. / 3}, {F, B, D, 1. / 3}, {F, E, A, 1. / 3}};
     memset(derivative, 0, 6 * sizeof derivative[0]);
-    for (int t = 0; t < 12; t++)
-        add_cross(derivative[term[t].mode], term[t].factor / 64, X[term[t].left], X[term[t].right]);
+    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+        for (int t = 0; t < 2; t++)
+            add_cross(derivative[m], LAR_HEX8_VOLUME_TERM[m][t].factor / 64,
+                      X[LAR_HEX8_VOLUME_TERM[m][t].left], X[LAR_HEX8_VOLUME_TERM[m][t].right]);
     double volume = 0; /* Euler: a cubic form is a third of its gradient times its argument */
     for (int m = 0; m < 6; m++)
         for (int i = 0; i < 3; i++) volume += derivative[m][i] * X[m][i] / 3;

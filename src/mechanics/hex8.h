@@ -45,6 +45,16 @@ enum { LAR_HEX8_GRADIENTS = 6, LAR_HEX8_HOURGLASS = 4 };
 /* The factor k above. */
 #define LAR_HOURGLASS_FACTOR 1.58
 
+/* The volume's derivative by mode m of the corner positions is the sum of two terms
+ * factor (X_left x X_right) / 64, in this order (hex8.c). */
+static const struct {
+    int left, right;
+    double factor;
+} LAR_HEX8_VOLUME_TERM[LAR_HEX8_GRADIENTS][2] __attribute__((unused)) = {
+    {{1, 2, 1}, {5, 4, 1. / 3}},       {{2, 0, 1}, {3, 5, 1. / 3}},
+    {{0, 1, 1}, {4, 3, 1. / 3}},       {{2, 4, 1. / 3}, {5, 1, 1. / 3}},
+    {{3, 2, 1. / 3}, {0, 5, 1. / 3}},  {{1, 3, 1. / 3}, {4, 0, 1. / 3}}};
+
 /* One element, ready to be recovered. */
 typedef struct lar_hex8 {
     double gradient[LAR_HEX8_GRADIENTS][3]; /* B_m, m = 0..5 [1/m] */

@@ -16,6 +16,12 @@
  *   boxes    edges along the axes: of the 18 modal gradients three are not zero, and the hourglass
  *            shapes vanish (112 bytes per element instead of 328).
  *
+ * And one makes models that are larger than caches cheaper, again with the same bits:
+ *
+ *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours share:
+ *              96 bytes per element and 32 per node are read instead of 328, and the rest is made
+ *              anew in every step, a few blocks at a time (theory.md 3, "Lean blocks").
+ *
  * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
  * modal forces are rounded, once each, and the transform back to the nodes is integer arithmetic:
  * the forces of an element add up to exactly zero, whatever the rounding.
@@ -58,6 +64,14 @@ typedef struct lar_hex8_block { /* LAR_SHAPE_GENERAL */
     double shape[LAR_HEX8_HOURGLASS][3][LAR_BLOCK];
 } lar_hex8_block;
 
+/* What is kept of a general block where it is made anew in every step. */
+typedef struct lar_lean_block {
+    lar_block_head head;
+    double volume[LAR_BLOCK]; /* at rest [m^3]; LAR_LEAN_NOTHING in lanes without an element */
+} lar_lean_block;
+/* So large that all gradients are as good as zero. */
+#define LAR_LEAN_NOTHING 1e200
+
 typedef struct lar_box_block { /* LAR_SHAPE_BOX */
     lar_block_head head;
     double gradient[3][LAR_BLOCK]; /* B_m along its own axis, m = 0..2 */
@@ -93,9 +107,15 @@ typedef struct lar_block_run {
     int turn;      /* of boxes, 0..2; else 0 */
     bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
     int32_t count;
-    const void *blocks;         /* lar_hex8_block or lar_box_block [count] */
+    const void *blocks;         /* lar_hex8_block, lar_box_block or lar_lean_block [count] */
     const lar_block_more *more; /* [count], NULL when the law has no more parameters */
+    const double *rest;         /* [nodes][4] at rest [m]: the blocks are lean. Else NULL */
 } lar_block_run;
+
+/* From one block of a run to the next. */
+static inline size_t lar_run_stride(const lar_block_run *run) {
+    return run->rest ? sizeof(lar_lean_block) : lar_block_size(run->shape);
+}
 
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
@@ -123,6 +143,9 @@ typedef struct lar_hex8_monitor {
  * hourglass forces are compared with their limit, and strained elements are listed. */
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
                                     const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
+
+/* Makes block `block` of a lean run whole. */
+typedef void (*lar_hex8_expand)(const lar_block_run *run, int32_t block, lar_hex8_block *whole);
 
 /* Looks at the corners of block `block` of a run, with nodes at `rest` and displaced by `u`, both
  * [nodes][4]. A corner's volume is what its edges span. Returns a bit for each lane where one is
@@ -155,6 +178,7 @@ typedef struct lar_kernels {
     const char *name; /* as in LARIAT_ISA */
     bool (*available)(void);
     lar_hex8_recover recover;
+    lar_hex8_expand expand;
     lar_hex8_corners corners;
     lar_node_update update;
 } lar_kernels;

@@ -84,6 +84,64 @@ LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_row
     }
 }
 
+/* ---- lean blocks --------------------------------------------------------------------------- */
+
+/* The quotient as division would round it: what is left over, times the reciprocal (Markstein
+ * 1990). Divisions take five times as long. It may be wrong once in some 10^15 times, and then
+ * lar_domain_create sees it and keeps whole blocks. */
+LAR_INLINE lar_lane quotient(lar_lane a, lar_lane b, lar_lane reciprocal) {
+    lar_lane q = a * reciprocal;
+    return lar_lane_fma(lar_lane_fnma(q, b, a), reciprocal, q);
+}
+
+/* factor (a x b), axis i */
+LAR_INLINE lar_lane volume_term(double factor, const lar_lane a[3], const lar_lane b[3], int i) {
+    int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+    return lar_lane_set(factor / 64) * (a[j] * b[k] - a[k] * b[j]);
+}
+
+/* Gradients and shapes of some lanes, as hex8.c makes them, operation for operation. */
+LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_rows rows,
+                             const double *rest, lar_hex8_block *whole) {
+    lar_lane X[7][3];
+    gather_modes(&lean->head, lane, rows, rest, X);
+    lar_lane volume = lar_lane_load(&lean->volume[lane]), reciprocal = lar_lane_set(1) / volume;
+    UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int i = 0; i < 3; i++) {
+        lar_lane term[2];
+        for (int t = 0; t < 2; t++)
+            term[t] = volume_term(LAR_HEX8_VOLUME_TERM[m][t].factor,
+                                  X[LAR_HEX8_VOLUME_TERM[m][t].left],
+                                  X[LAR_HEX8_VOLUME_TERM[m][t].right], i);
+        lar_lane_store(&whole->gradient[m][i][lane],
+                       quotient(term[0] + term[1], volume, reciprocal));
+    }
+    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
+        lar_lane_store(&whole->shape[m][i][lane], X[3 + m][i]);
+}
+
+#define DEFINE_EXPAND(name, rows)                                                                  \
+    static void expand_##name(const lar_lean_block *lean, size_t count, const double *rest,        \
+                              lar_hex8_block *whole) {                                             \
+        for (; count > 0; count--, lean++, whole++) {                                              \
+            whole->head = lean->head;                                                              \
+            for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)                                \
+                expand_lanes(lean, lane, rows, rest, whole);                                       \
+        }                                                                                          \
+    }
+DEFINE_EXPAND(none, LAR_ROWS_NONE)
+DEFINE_EXPAND(four, LAR_ROWS_FOUR)
+DEFINE_EXPAND(eight, LAR_ROWS_EIGHT)
+
+typedef void (*expand_phase)(const lar_lean_block *lean, size_t count, const double *rest,
+                             lar_hex8_block *whole);
+static const expand_phase expand_table[LAR_ROWS_COUNT] = {expand_none, expand_four, expand_eight};
+
+static void expand(const lar_block_run *run, int32_t b, lar_hex8_block *whole) {
+    expand_table[run->rows]((const lar_lean_block *)run->blocks + b, 1, run->rest, whole);
+}
+
+/* ---- phases -------------------------------------------------------------------------------- */
+
 LAR_INLINE void strain_general(const lar_hex8_block *block, int lane, lar_lane U[7][3],
                                lar_lane H[9]) {
     UNROLL3 for (int j = 0; j < 3; j++) {
@@ -366,13 +424,18 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
     strain_phase strain = strain_table[run->shape][run->rows];
     stress_phase stress = stress_table[run->law];
     force_phase forces = force_table[run->shape][run->rows];
-    size_t size = lar_block_size(run->shape);
+    size_t size = lar_block_size(run->shape), stride = lar_run_stride(run);
     int64_t first = -1;
+    lar_hex8_block made[CHUNK];
     for (int32_t b = 0; b < run->count; b += CHUNK) {
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
-        const char *blocks = (const char *)run->blocks + (size_t)b * size;
+        const char *kept = (const char *)run->blocks + (size_t)b * stride, *blocks = kept;
+        if (run->rest) {
+            expand_table[run->rows]((const void *)kept, count, run->rest, made);
+            blocks = (const void *)made;
+        }
         strain(blocks, count, run->turn, u, record);
-        if (run->streamed) ask_for_next_chunk(blocks, CHUNK * size);
+        if (run->streamed) ask_for_next_chunk(kept, CHUNK * stride);
         unsigned strained = 0;
         const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
         const lar_block_more *more = run->more ? run->more + b : NULL;
@@ -423,7 +486,7 @@ LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
 static unsigned corners(const lar_block_run *run, int32_t b, const double *rest, const double *u,
                         const double share[2]) {
     const lar_block_head *head =
-        (const void *)((const char *)run->blocks + (size_t)b * lar_block_size(run->shape));
+        (const void *)((const char *)run->blocks + (size_t)b * lar_run_stride(run));
     unsigned below[2] = {0, 0};
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
         lar_lane x[8][3], moved[8][3], before[8], now[8];
@@ -521,6 +584,7 @@ const lar_kernels LAR_KERNELS_NAME = {
     .name = LAR_KERNELS_TEXT,
     .available = available,
     .recover = recover,
+    .expand = expand,
     .corners = corners,
     .update = update,
 };

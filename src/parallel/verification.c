@@ -82,7 +82,7 @@ void lar_verification_recover(const lar_verification *verification, const lar_do
             const lar_block_head *head =
                 domain->kind == LAR_ELEMENT_HEX8
                     ? (const void *)((const char *)run->blocks +
-                                     (size_t)b * lar_block_size(run->shape))
+                                     (size_t)b * lar_run_stride(run))
                     : NULL;
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = lanes->element[lane];

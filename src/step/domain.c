@@ -114,8 +114,10 @@ static void fill_material(const lar_domain *domain, const lar_lane_base *base, l
     *limit = base->limit * factor * factor;
 }
 
-static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory, int lane,
-                      lar_gid e, double *steepest, lar_lane_base *base) {
+/* `memory`: the block; `whole`: where the gradients and shapes of a general one go. */
+static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory,
+                      lar_hex8_block *whole, int lane, lar_gid e, double *steepest,
+                      lar_lane_base *base) {
     lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_gid *node = domain->layout.corner[e];
@@ -128,13 +130,14 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         for (int i = 0; i < 3; i++) {
             *steepest = fmax(*steepest, fabs(hex8.gradient[m][i]));
             if (shape == LAR_SHAPE_GENERAL)
-                ((lar_hex8_block *)memory)->gradient[m][i][lane] = hex8.gradient[m][i];
+                whole->gradient[m][i][lane] = hex8.gradient[m][i];
             else if (m < 3 && i == (m + run->turn) % 3)
                 ((lar_box_block *)memory)->gradient[m][lane] = hex8.gradient[m][i];
         }
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
-            ((lar_hex8_block *)memory)->shape[m][i][lane] = hex8.shape[m][i];
+            whole->shape[m][i][lane] = hex8.shape[m][i];
+    if (run->rest) ((lar_lean_block *)memory)->volume[lane] = hex8.volume;
     for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
     base->volume = hex8.volume;
     memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
@@ -143,8 +146,21 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
 }
 
 /* More than this is read from memory in every step: beyond the second-level cache and a fair share
- * of the third. Decides about prefetching only. */
+ * of the third. Decides about prefetching and lean blocks only. */
 enum { CACHED_BYTES = 12 << 20 };
+
+/* LARIAT_BLOCKS chooses for measurements and tests: the result is the same to the bit. */
+static lar_status choose_blocks(lar_domain *domain, lar_error *error) {
+    const char *wanted = getenv("LARIAT_BLOCKS");
+    if (!wanted || !*wanted || strcmp(wanted, "auto") == 0)
+        domain->lean = domain->block_bytes > CACHED_BYTES;
+    else if (strcmp(wanted, "lean") == 0 || strcmp(wanted, "whole") == 0)
+        domain->lean = *wanted == 'l';
+    else
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "LARIAT_BLOCKS is '%.40s'; it must be auto, lean or whole", wanted);
+    return LAR_OK;
+}
 
 static bool same_run(const lar_lanes *a, const lar_lanes *b) {
     return a->thread == b->thread && a->batch == b->batch && a->law == b->law &&
@@ -171,7 +187,7 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
             !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
             domain->run[domain->run_count++] = (lar_block_run){
-                lanes->law, lanes->shape, lanes->rows, lanes->turn, false, 0, NULL, NULL};
+                .law = lanes->law, .shape = lanes->shape, .rows = lanes->rows, .turn = lanes->turn};
         }
         domain->run[domain->run_count - 1].count++;
         domain->block_bytes += lar_block_size(lanes->shape);
@@ -181,7 +197,7 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
     return LAR_OK;
 }
 
-static lar_status build_blocks(lar_domain *domain, lar_error *error) {
+static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
     if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
@@ -195,29 +211,59 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
         if (domain->layout.global[n] >= 0)
             memcpy(domain->rest + 4 * (size_t)n,
                    domain->model->mesh.position[domain->layout.global[n]], 3 * sizeof(double));
-    double steepest = 0;
+    return LAR_OK;
+}
+
+/* Whether a lean block makes what it should, to the bit. */
+static bool same_numbers(const lar_domain *domain, const lar_block_run *run, int32_t b,
+                         const lar_lanes *lanes, const lar_hex8_block *wanted) {
+    lar_hex8_block made;
+    domain->kernels->expand(run, b, &made);
+    for (int lane = 0; lane < LAR_BLOCK; lane++)
+        for (int i = 0; i < 3 && lanes->element[lane] >= 0; i++) {
+            for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+                if (made.gradient[m][i][lane] != wanted->gradient[m][i][lane]) return false;
+            for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+                if (made.shape[m][i][lane] != wanted->shape[m][i][lane]) return false;
+        }
+    return true;
+}
+
+/* False where a lean block would not be what a whole one is. */
+static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, double *steepest) {
+    const lar_block_run *run = &domain->run[r];
+    int32_t at = domain->run_first[r] + b;
+    const lar_lanes *lanes = &domain->layout.block[at];
+    double *limit = domain->corner_limit + LAR_BLOCK * at;
+    lar_hex8_block scratch, *whole = run->rest ? &scratch : memory;
+    for (int lane = 0; lane < LAR_BLOCK; lane++) {
+        lar_gid e = lanes->element[lane];
+        limit[lane] = INFINITY;
+        if (e >= 0) {
+            lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
+            fill_lane(domain, run, memory, whole, lane, e, steepest, base);
+            fill_material(domain, base, memory, more_of(domain, r, b), lane, e, limit + lane);
+            continue;
+        }
+        if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
+        for (int a = 0; a < 8; a++)
+            ((lar_block_head *)memory)->node[a][lane] = 4 * (domain->layout.node_padded - 1);
+    }
+    return !run->rest || same_numbers(domain, run, b, lanes, whole);
+}
+
+static bool fill_blocks(lar_domain *domain) {
     char *memory = domain->blocks;
-    for (int32_t r = 0; r < domain->run_count; r++) {
+    double steepest = 0;
+    bool same = true;
+    for (int32_t r = 0; r < domain->run_count && same; r++) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
         if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
         run->streamed = domain->block_bytes > CACHED_BYTES;
-        for (int32_t b = 0; b < run->count; b++) {
-            const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
-            double *limit = domain->corner_limit + LAR_BLOCK * (domain->run_first[r] + b);
-            for (int lane = 0; lane < LAR_BLOCK; lane++) limit[lane] = INFINITY;
-            for (int lane = 0; lane < LAR_BLOCK; lane++)
-                if (lanes->element[lane] >= 0) {
-                    lar_lane_base *base =
-                        domain->base + LAR_BLOCK * (domain->run_first[r] + b) + lane;
-                    fill_lane(domain, run, memory, lane, lanes->element[lane], &steepest, base);
-                    fill_material(domain, base, (void *)memory, more_of(domain, r, b), lane,
-                                  lanes->element[lane], limit + lane);
-                } else
-                    for (int a = 0; a < 8; a++)
-                        ((lar_block_head *)(void *)memory)->node[a][lane] =
-                            4 * (domain->layout.node_padded - 1);
-            memory += lar_block_size(run->shape);
+        for (int32_t b = 0; b < run->count && same; b++) {
+            same = fill_block(domain, r, b, memory, &steepest);
+            memory += lar_run_stride(run);
         }
     }
     /* Modal forces S B stay below 2^54 units for |S| below this, hourglass forces below 2^54 too:
@@ -225,6 +271,31 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     double stress = 0x1p54 / (3 * steepest);
     domain->limits = (lar_hex8_limits){
         .min_volume = 0.01, .stress_square = stress * stress, .hourglass_square = 0x1p54 * 0x1p54};
+    return same;
+}
+
+/* Should a lean block not say the same as a whole one, to the bit, there are none. */
+static lar_status build_blocks(lar_domain *domain, lar_error *error) {
+    lar_status status = choose_blocks(domain, error);
+    size_t whole = domain->block_bytes;
+    for (int32_t r = 0; r < domain->run_count && domain->lean; r++) {
+        lar_block_run *run = &domain->run[r];
+        if (run->shape != LAR_SHAPE_GENERAL) continue;
+        domain->block_bytes -=
+            (size_t)run->count * (sizeof(lar_hex8_block) - sizeof(lar_lean_block));
+    }
+    if (!status) status = allocate_blocks(domain, error);
+    if (status) return status;
+    for (int32_t r = 0; r < domain->run_count && domain->lean; r++)
+        if (domain->run[r].shape == LAR_SHAPE_GENERAL) domain->run[r].rest = domain->rest;
+    if (fill_blocks(domain)) return LAR_OK;
+    free(domain->blocks);
+    domain->lean = false;
+    domain->block_bytes = whole;
+    for (int32_t r = 0; r < domain->run_count; r++) domain->run[r].rest = NULL;
+    domain->blocks = lar_calloc_aligned(whole, 1);
+    if (!domain->blocks) return lar_fail_memory(error, whole, "the elements");
+    fill_blocks(domain);
     return LAR_OK;
 }
 
@@ -268,7 +339,7 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MAX]
                     fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
                                   more_of(domain, r, b), lane, e, limit + lane);
             }
-            memory += lar_block_size(domain->run[r].shape);
+            memory += lar_run_stride(&domain->run[r]);
         }
 }
 
@@ -292,8 +363,9 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     const lar_block_run *run = &domain->run[r];
     const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
     const void *block =
-        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_block_size(run->shape);
+        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_run_stride(run);
     const lar_hex8_block *general = block;
+    lar_hex8_block made;
     const lar_box_block *box = block;
     *hex8 = (lar_hex8){.volume = base->volume};
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
@@ -301,6 +373,10 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     if (run->shape == LAR_SHAPE_BOX) {
         for (int m = 0; m < 3; m++) hex8->gradient[m][(m + run->turn) % 3] = box->gradient[m][lane];
         return;
+    }
+    if (run->rest) {
+        domain->kernels->expand(run, b - domain->run_first[r], &made);
+        general = &made;
     }
     for (int i = 0; i < 3; i++) {
         for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)

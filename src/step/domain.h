@@ -41,6 +41,7 @@ typedef struct lar_domain {
     lar_block_run *run;     /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
     int32_t *run_first;     /* [run_count] the run's first block in layout.block */
     void *blocks;           /* all blocks of all runs */
+    bool lean;              /* general ones are lean */
     lar_lane_base *base;    /* [8 for each block] */
     lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
     double factor[LAR_FACTORS_MAX];  /* of their stiffness (model/settings.h); atomic */

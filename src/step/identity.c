@@ -33,12 +33,18 @@ static uint64_t hash_conditions(uint64_t hash, const lar_conditions *c) {
     return hash;
 }
 
-/* Blocks hold geometry, materials and local nodes of every element, whatever the instruction set;
- * their padding is zero. */
+/* Blocks begin with materials and local nodes of every element, and where the nodes are at rest is
+ * the rest of them, whatever the instruction set and however they are kept. */
 static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
-    const uint64_t *word = domain->blocks;
-    for (size_t i = 0; word && i < domain->block_bytes / sizeof *word; i++)
-        hash = lar_hash_word(hash, word[i]);
+    const uint64_t *word;
+    for (int32_t r = 0; domain->blocks && r < domain->run_count; r++)
+        for (int32_t b = 0; b < domain->run[r].count; b++) {
+            word = (const void *)((const char *)domain->run[r].blocks +
+                                  (size_t)b * lar_run_stride(&domain->run[r]));
+            for (size_t i = 0; i < sizeof(lar_block_head) / sizeof *word; i++)
+                hash = lar_hash_word(hash, word[i]);
+        }
+    if (domain->rest) hash = hash_doubles(hash, domain->rest, 4 * (size_t)domain->layout.node_padded);
     word = (const void *)domain->more;
     for (size_t i = 0; word && i < domain->more_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);

@@ -20,7 +20,7 @@ static void fault_element(lar_fault *fault, const lar_state *state, lar_gid e) {
 static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
                       lar_fault *fault) {
     lar_block_run one = domain->run[r];
-    size_t size = lar_block_size(one.shape);
+    size_t size = lar_run_stride(&one);
     one.count = 1;
     for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
         one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;

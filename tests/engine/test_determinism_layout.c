@@ -1,5 +1,6 @@
-/* How elements are grouped into blocks changes no bit: rows and boxes against the same turned
- * elements in loose general blocks, 1,000 steps, on every instruction set of this machine. */
+/* How elements are grouped into blocks and kept changes no bit: rows and boxes against the same
+ * turned elements in loose general blocks, and lean blocks against whole ones, 1,000 steps, on every
+ * instruction set of this machine. */
 #include "engine_test.h"
 
 #include "model/demo/demo.h"
@@ -63,6 +64,7 @@ static uint64_t run(const lar_model *model, lar_isa isa, lar_layout_style style,
                                 &error))
         fail_msg("%s", error.message);
     simulation.state.strained = &simulation.strained;
+    if (getenv("LARIAT_BLOCKS")) assert_int_equal(domain->lean, true);
     *fast = 0;
     for (int r = 0; r < simulation.domain.run_count; r++) {
         const lar_block_run *blocks = &simulation.domain.run[r];
@@ -90,10 +92,16 @@ static void check_model(lar_model *model) {
         assert_true(fast > 0);
         uint64_t loose = run(model, sets[i], LAR_LAYOUT_LOOSE, &fast);
         assert_int_equal(fast, 0);
+        setenv("LARIAT_BLOCKS", "lean", 1);
+        uint64_t lean = run(model, sets[i], LAR_LAYOUT_ROWS, &fast);
+        uint64_t loose_lean = run(model, sets[i], LAR_LAYOUT_LOOSE, &fast);
+        unsetenv("LARIAT_BLOCKS");
         if (first == 0) first = rows;
-        if (rows != first || loose != first)
-            fail_msg("%s: rows 0x%016llx, loose 0x%016llx, first 0x%016llx", kernels->name,
-                     (unsigned long long)rows, (unsigned long long)loose,
+        if (rows != first || loose != first || lean != first || loose_lean != first)
+            fail_msg("%s: rows 0x%016llx, loose 0x%016llx, lean 0x%016llx, loose and lean "
+                     "0x%016llx, first 0x%016llx",
+                     kernels->name, (unsigned long long)rows, (unsigned long long)loose,
+                     (unsigned long long)lean, (unsigned long long)loose_lean,
                      (unsigned long long)first);
     }
     lar_model_destroy(model);
@@ -119,11 +127,49 @@ static void crooked_elements(void **unused) {
     check_model(conditioned_brick(3, 4, 7, 0.12, LAR_LAW_neo_hookean));
 }
 
+/* What elements are asked for later, and a model that is made stiffer meanwhile. */
+static void lean_elements_are_whole_ones(void **unused) {
+    (void)unused;
+    lar_model *model = conditioned_brick(9, 5, 3, 0.12, LAR_LAW_neo_hookean);
+    lar_simulation *whole = start_with(model, lar_options_default());
+    setenv("LARIAT_BLOCKS", "lean", 1);
+    lar_simulation *lean = start_with(model, lar_options_default());
+    lar_simulation *refused = NULL;
+    setenv("LARIAT_BLOCKS", "fat", 1);
+    lar_error error;
+    assert_int_equal(lar_simulation_create(model, NULL, &refused, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "must be auto, lean or whole"));
+    unsetenv("LARIAT_BLOCKS");
+    assert_true(lean->domain.lean && !whole->domain.lean);
+    assert_true(lean->domain.block_bytes < whole->domain.block_bytes);
+    const lar_domain *domain = &whole->domain;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (int32_t b = domain->run_first[r]; b < domain->run_first[r] + domain->run[r].count; b++)
+            for (int lane = 0; lane < LAR_BLOCK; lane++) {
+                if (domain->layout.block[b].element[lane] < 0) continue;
+                lar_hex8 a, c;
+                lar_domain_element(domain, r, b, lane, &a);
+                lar_domain_element(&lean->domain, r, b, lane, &c);
+                assert_memory_equal(&a, &c, sizeof a);
+            }
+    for (int i = 0; i < 3; i++) {
+        lar_simulation *both[] = {whole, lean};
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(lar_simulation_set_stiffness(both[k], -1, 0.5 + 0.25 * i, NULL), LAR_OK);
+            advance(both[k], 50);
+        }
+        assert_true(lar_simulation_hash(whole) == lar_simulation_hash(lean));
+    }
+    lar_simulation_destroy(lean);
+    finish(whole, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_organ),
         cmocka_unit_test(boxes),
         cmocka_unit_test(crooked_elements),
+        cmocka_unit_test(lean_elements_are_whole_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

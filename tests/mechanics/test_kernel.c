@@ -102,10 +102,12 @@ static void empty_lane(load *l, int n) {
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, const lar_block_more *more,
                     int count, const double *u, int64_t *force, const lar_hex8_limits *limits,
                     bool monitor) {
-    lar_block_run run = {law,           LAR_SHAPE_GENERAL,
-                         LAR_ROWS_NONE, 0,
-                         false,         count,
-                         blocks,        lar_law_has_more(law) ? more : NULL};
+    lar_block_run run = {.law = law,
+                         .shape = LAR_SHAPE_GENERAL,
+                         .rows = LAR_ROWS_NONE,
+                         .count = count,
+                         .blocks = blocks,
+                         .more = lar_law_has_more(law) ? more : NULL};
     enum { MAX = 64 };
     static int32_t lane[MAX * LAR_BLOCK];
     static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));

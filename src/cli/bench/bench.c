@@ -16,6 +16,7 @@ static void write_json(const bench_frame *frame, const lar_bench_kernel_result *
     json_text(&json, "shape", general ? "general" : "box");
     json_text(&json, "precision", "double");
     json_text(&json, "isa", r->isa);
+    json_text(&json, "blocks", r->lean ? "lean" : "whole");
     json_number(&json, "peak_gflops", r->peak_gflops.median);
     json_number(&json, "fraction_of_peak", r->fraction_of_peak);
     json_number(&json, "bytes_per_element", r->bytes_per_element);
@@ -44,14 +45,16 @@ static void print_table(const lar_bench_kernel_result *r, bool general) {
            "peak", r->peak_gflops.median, r->peak_gflops.min, r->peak_gflops.max);
     printf("%-17s%.1f %% (%d operations per element)\n", "of the peak", 100 * r->fraction_of_peak,
            LAR_BENCH_OPERATIONS);
-    printf("%-17s%.0f bytes per element\n", "memory", r->bytes_per_element);
+    printf("%-17s%.0f bytes per element%s\n", "memory", r->bytes_per_element,
+           r->lean ? ", lean blocks" : "");
 }
 
 static int kernel_main(int argc, char **argv) {
     static const char *const shapes[] = {"general", "box", NULL};
     static const char *const precisions[] = {"double", NULL};
+    static const char *const forms[] = {"auto", "whole", "lean", NULL};
     int64_t elements = 0, repeat = 9;
-    int shape = 0, isa = 0, precision = 0;
+    int shape = 0, isa = 0, precision = 0, blocks = 0;
     bool sweep = false;
     const char *svg = NULL;
     bench_frame frame = bench_frame_of(&cli_bench_kernel, "kernel");
@@ -69,16 +72,21 @@ static int kernel_main(int argc, char **argv) {
         CLI_CHOICE("--precision", "NAME", "double, the only one there is", &precision, precisions),
         CLI_CHOICE("--isa", "NAME", "instruction set: auto (default), c, neon, avx2, avx512", &isa,
                    cli_isa_names),
+        CLI_CHOICE("--blocks", "NAME",
+                   "whole: all numbers of an element stand in memory; lean: most are made\nanew in "
+                   "every step; auto (default) by size. The same bits",
+                   &blocks, forms),
         CLI_COUNT("--repeat", "N", "samples (9)", &repeat, 1, LAR_BENCH_REPEAT_MAX),
         BENCH_OPTIONS(frame),
         CLI_END};
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
     if (sweep) {
-        if (shape > 0 || isa > 0)
+        if (shape > 0 || isa > 0 || blocks > 0)
             return cli_complain(&cli_bench_kernel, CLI_USAGE,
-                                "--sweep measures all shapes and instruction sets; leave --%s out",
-                                shape > 0 ? "shape" : "isa");
+                                "--sweep measures all shapes, instruction sets and blocks; leave "
+                                "--%s out",
+                                shape > 0 ? "shape" : isa > 0 ? "isa" : "blocks");
         return bench_sweep(&frame, elements > 0 ? (int32_t)elements : 1000000, (int)repeat, svg);
     }
     if (svg) return cli_complain(&cli_bench_kernel, CLI_USAGE, "--svg is the picture of --sweep");
@@ -87,11 +95,13 @@ static int kernel_main(int argc, char **argv) {
     lar_bench_set_text(&frame.report, "shape", shapes[shape]);
     lar_bench_set_text(&frame.report, "precision", precisions[precision]);
     lar_bench_set_text(&frame.report, "isa", cli_isa_names[isa]);
+    if (blocks > 0) lar_bench_set_text(&frame.report, "blocks", forms[blocks]);
     status = bench_begin(&frame);
     if (status) return status;
     lar_bench_kernel_options wanted = {.elements = (int32_t)elements,
                                        .general = shape == 0,
                                        .isa = (lar_isa)isa,
+                                       .blocks = blocks > 0 ? forms[blocks] : NULL,
                                        .repeat = (int)repeat};
     lar_bench_kernel_result result;
     lar_error error;

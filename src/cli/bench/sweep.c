@@ -22,7 +22,7 @@ static void print_table(const lar_sweep_result *r) {
     for (int i = 0; i < r->rows; i++) {
         const lar_sweep_row *row = &r->row[i];
         printf("%-8s%-9s%10d%10.2f%10.1f%8.1f %%%12.0f%8.1f %%\n", row->kernel.isa,
-               row->general ? "general" : "box", (int)row->kernel.elements,
+               lar_sweep_shape_name[row->shape], (int)row->kernel.elements,
                row->kernel.nanoseconds.median, row->gflops, 100 * row->kernel.fraction_of_peak,
                row->kernel.bytes_per_element, 100 * row->gflops / row->roof);
     }
@@ -43,7 +43,7 @@ static void write_json(const bench_frame *frame, const lar_sweep_result *r) {
         const lar_sweep_row *row = &r->row[i];
         json_open(&json, NULL, '{');
         json_text(&json, "isa", row->kernel.isa);
-        json_text(&json, "shape", row->general ? "general" : "box");
+        json_text(&json, "shape", lar_sweep_shape_name[row->shape]);
         json_integer(&json, "elements", row->kernel.elements);
         json_number(&json, "ns_per_element", row->kernel.nanoseconds.median);
         json_number(&json, "gflops", row->gflops);
@@ -75,7 +75,7 @@ int bench_sweep(bench_frame *frame, int32_t elements, int repeat, const char *sv
     for (int i = 0; i < result.rows; i++) {
         const lar_sweep_row *row = &result.row[i];
         char name[64];
-        snprintf(name, sizeof name, "%s_%s_%d", row->kernel.isa, row->general ? "general" : "box",
+        snprintf(name, sizeof name, "%s_%s_%d", row->kernel.isa, lar_sweep_shape_name[row->shape],
                  (int)row->kernel.elements);
         lar_bench_add(&frame->report, "ns", row->kernel.nanoseconds.median, true, "%s", name);
     }

@@ -234,6 +234,22 @@ static lar_status measure(lar_simulation *simulation, const lar_fma_peak *peak,
     return LAR_OK;
 }
 
+/* The environment chooses how blocks are kept; what stood there stands there again. */
+static lar_status create(const lar_model *model, const lar_options *options, const char *blocks,
+                         lar_simulation **simulation, lar_error *error) {
+    const char *stood = getenv("LARIAT_BLOCKS");
+    char *before = stood ? lar_strdup(stood) : NULL;
+    if (stood && !before) return lar_fail_memory(error, strlen(stood), "the block");
+    if (blocks) setenv("LARIAT_BLOCKS", blocks, 1);
+    lar_status status = lar_simulation_create(model, options, simulation, error);
+    if (before)
+        setenv("LARIAT_BLOCKS", before, 1);
+    else
+        unsetenv("LARIAT_BLOCKS");
+    free(before);
+    return status;
+}
+
 static lar_status bench_model(const lar_model *model, const lar_bench_kernel_options *options,
                               lar_bench_kernel_result *result, lar_error *error) {
     lar_options simulation_options = lar_options_default();
@@ -241,8 +257,9 @@ static lar_status bench_model(const lar_model *model, const lar_bench_kernel_opt
     lar_simulation *simulation = NULL;
     lar_model_info info;
     lar_status status = lar_model_inspect(model, &info, error);
-    if (!status) status = lar_simulation_create(model, &simulation_options, &simulation, error);
+    if (!status) status = create(model, &simulation_options, options->blocks, &simulation, error);
     if (status) return status;
+    result->lean = simulation->domain.lean;
     result->elements = info.elements;
     result->nodes = info.nodes;
     result->scaled_jacobian_min = info.scaled_jacobian_min;

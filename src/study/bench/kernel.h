@@ -24,6 +24,7 @@ enum { LAR_BENCH_OPERATIONS = 816, LAR_BENCH_REPEAT_MAX = 1000 };
 typedef struct lar_bench_kernel_options {
     int32_t elements; /* about so many; exactly, when it is a product of three like numbers */
     bool general;     /* not boxes */
+    const char *blocks; /* of LARIAT_BLOCKS: "auto", "lean" or "whole"; NULL: as it stands */
     lar_isa isa;
     int repeat; /* samples, 1..LAR_BENCH_REPEAT_MAX */
 } lar_bench_kernel_options;
@@ -41,6 +42,7 @@ typedef struct lar_bench_kernel_result {
     int32_t elements, nodes;
     int32_t edge[3]; /* elements along x, y, z */
     const char *isa;
+    bool lean; /* its blocks (mechanics/hex8_block.h) */
     int repeat;
     uint64_t steps;         /* per sample */
     lar_spread nanoseconds; /* of a step per element */

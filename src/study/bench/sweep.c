@@ -59,11 +59,16 @@ static const struct {
             {LAR_ISA_NEON, "neon", INT32_MAX},
             {LAR_ISA_C, "c", 20000}};
 
-static lar_status add_row(const lar_sweep_options *o, int32_t elements, lar_isa isa, bool general,
-                          lar_sweep_result *result, lar_error *error) {
-    const lar_bench_kernel_options wanted = {
-        .elements = elements, .general = general, .isa = isa, .repeat = o->repeat};
-    lar_sweep_row row = {.general = general};
+const char *const lar_sweep_shape_name[LAR_SWEEP_SHAPES] = {"general", "lean", "box"};
+
+static lar_status add_row(const lar_sweep_options *o, int32_t elements, lar_isa isa,
+                          lar_sweep_shape shape, lar_sweep_result *result, lar_error *error) {
+    const lar_bench_kernel_options wanted = {.elements = elements,
+                                             .general = shape != LAR_SWEEP_BOX,
+                                             .isa = isa,
+                                             .blocks = shape == LAR_SWEEP_LEAN ? "lean" : "whole",
+                                             .repeat = o->repeat};
+    lar_sweep_row row = {.shape = shape};
     lar_status status = lar_bench_kernel(&wanted, &row.kernel, error);
     if (status == LAR_ERROR_UNSUPPORTED) return LAR_OK;
     if (status) return status;
@@ -74,10 +79,11 @@ static lar_status add_row(const lar_sweep_options *o, int32_t elements, lar_isa 
     return LAR_OK;
 }
 
-static bool goes_on(const lar_sweep_options *o, int32_t elements, const char *isa, bool general) {
+static bool goes_on(const lar_sweep_options *o, int32_t elements, const char *isa,
+                    lar_sweep_shape shape) {
+    static const char *const plural[] = {"general elements", "lean general elements", "boxes"};
     char what[80];
-    snprintf(what, sizeof what, "%d %s, %s", (int)elements, general ? "general elements" : "boxes",
-             isa);
+    snprintf(what, sizeof what, "%d %s, %s", (int)elements, plural[shape], isa);
     return !o->callback || o->callback(o->context, what);
 }
 
@@ -94,10 +100,10 @@ lar_status lar_bench_sweep(const lar_sweep_options *o, lar_sweep_result *result,
             break;
         }
         for (size_t k = 0; k < sizeof sets / sizeof *sets && !status; k++)
-            for (int general = 1; general >= 0 && !status; general--) {
+            for (lar_sweep_shape shape = 0; shape < LAR_SWEEP_SHAPES && !status; shape++) {
                 if (size[s] > sets[k].max || !lar_fma_peak_find(sets[k].name)) continue;
-                if (!goes_on(o, size[s], sets[k].name, general)) goto end;
-                status = add_row(o, size[s], sets[k].isa, general, &made, error);
+                if (!goes_on(o, size[s], sets[k].name, shape)) goto end;
+                status = add_row(o, size[s], sets[k].isa, shape, &made, error);
             }
     }
 end:
@@ -182,8 +188,9 @@ static void draw_points(const axes *a, const lar_sweep_result *r) {
         const lar_sweep_row *row = &r->row[i];
         double x = x_of(a, row->intensity), y = y_of(a, row->gflops);
         const char *color = color_of(row->kernel.isa);
-        if (row->general)
-            fprintf(a->out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", x, y, color);
+        if (row->shape != LAR_SWEEP_BOX)
+            fprintf(a->out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\" stroke=\"%s\"/>\n",
+                    x, y, row->shape == LAR_SWEEP_LEAN ? "#fff" : color, color);
         else
             fprintf(a->out,
                     "<rect x=\"%.1f\" y=\"%.1f\" width=\"8\" height=\"8\" fill=\"none\" "
@@ -196,7 +203,7 @@ static void draw_points(const axes *a, const lar_sweep_result *r) {
         if (first) draw_roof(a, r, row);
     }
     fprintf(a->out,
-            "<text x=\"%d\" y=\"%d\" fill=\"#555\">filled: general, open: boxes; memory %.1f GB/s "
+            "<text x=\"%d\" y=\"%d\" fill=\"#555\">filled: general, open: lean, squares: boxes; memory %.1f GB/s "
             "(dashed)</text>\n</svg>\n",
             LEFT + 8, TOP + 16, r->bandwidth);
 }

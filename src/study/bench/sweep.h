@@ -16,11 +16,22 @@
 
 #include "study/bench/kernel.h"
 
-enum { LAR_SWEEP_SIZES = 5, LAR_SWEEP_ROWS = 30 };
+enum { LAR_SWEEP_SIZES = 5, LAR_SWEEP_ROWS = 50 };
+
+/* Of rows: general elements whose numbers stand in memory, those whose numbers are made anew, and
+ * boxes. */
+typedef enum lar_sweep_shape {
+    LAR_SWEEP_GENERAL,
+    LAR_SWEEP_LEAN,
+    LAR_SWEEP_BOX,
+    LAR_SWEEP_SHAPES
+} lar_sweep_shape;
+
+extern const char *const lar_sweep_shape_name[LAR_SWEEP_SHAPES];
 
 typedef struct lar_sweep_row {
     lar_bench_kernel_result kernel;
-    bool general;
+    lar_sweep_shape shape;
     double gflops;    /* 816 operations in the median time */
     double intensity; /* operations per byte */
     double roof;      /* what memory and peak allow [Gflop/s] */

@@ -68,17 +68,27 @@ static void fill_more(lar_block_run *run, lar_single_more *to) {
     run->more = (const lar_block_more *)(const void *)to;
 }
 
-static void fill_run(lar_block_run *run, char *to) {
-    const char *from = run->blocks;
+/* Block b, or where there is none the last one; made whole in `made` where it is lean. */
+static const void *block_of(const lar_kernels *kernels, const lar_block_run *run, int32_t b,
+                            lar_hex8_block *made) {
+    if (b == run->count) b--;
+    if (!run->rest) return (const char *)run->blocks + (size_t)b * lar_block_size(run->shape);
+    kernels->expand(run, b, made);
+    return made;
+}
+
+static void fill_run(const lar_kernels *kernels, lar_block_run *run, char *to) {
+    lar_hex8_block made[2];
     for (int32_t b = 0; b < run->count; b += 2) {
-        const char *block = from + (size_t)b * lar_block_size(run->shape);
+        const void *block = block_of(kernels, run, b, &made[0]);
+        const void *next = block_of(kernels, run, b + 1, &made[1]);
         const bool alone = b + 1 == run->count;
-        const char *next = alone ? block : block + lar_block_size(run->shape);
         char *pair = to + (size_t)(b / 2) * single_size(run->shape);
         fill_half(block, run->shape, false, 0, pair);
         fill_half(next, run->shape, alone, 1, pair);
     }
     run->blocks = to;
+    run->rest = NULL;
     if (run->more)
         fill_more(run, (void *)(to + (size_t)((run->count + 1) / 2) * single_size(run->shape)));
 }
@@ -172,7 +182,7 @@ lar_status lar_single_adopt(lar_domain *domain, bool single_state, lar_single_do
     char *to = adopted->blocks;
     for (int32_t r = 0; r < domain->run_count; r++) {
         size_t size = run_bytes(&domain->run[r]);
-        fill_run(&domain->run[r], to);
+        fill_run(domain->kernels, &domain->run[r], to);
         to += size;
     }
     adopted->kernels = *found;

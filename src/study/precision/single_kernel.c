@@ -264,6 +264,10 @@ typedef lar_single_head lar_block_head;
 typedef lar_single_more lar_block_more;
 typedef lar_single_general lar_hex8_block;
 typedef lar_single_box lar_box_block;
+typedef struct lar_lean_block { /* there are none: single.c makes them whole */
+    lar_block_head head;
+    float volume[LAR_BLOCK];
+} lar_lean_block;
 typedef struct lar_block_run {
     lar_law law;
     lar_block_shape shape;
@@ -273,6 +277,7 @@ typedef struct lar_block_run {
     int32_t count;
     const void *blocks;
     const lar_block_more *more;
+    const float *rest;
 } lar_block_run;
 typedef struct lar_hex8_limits {
     float min_volume, stress_square, hourglass_square;
@@ -291,6 +296,7 @@ typedef struct lar_kernels {
     bool (*available)(void);
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
+    void (*expand)(const lar_block_run *run, int32_t b, lar_hex8_block *whole);
     uint64_t (*corners)(const lar_block_run *run, int32_t b, const float *rest, const float *u,
                         const float share[2]);
     bool (*update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, float *u, float *v,
@@ -299,6 +305,9 @@ typedef struct lar_kernels {
 } lar_kernels;
 static inline size_t lar_block_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
+}
+static inline size_t lar_run_stride(const lar_block_run *run) {
+    return lar_block_size(run->shape);
 }
 
 /* A bit per element of a chunk: 64 of them. */
