@@ -83,6 +83,9 @@ LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
 LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
     return (lar_lane)_mm512_max_pd((__m512d)a, (__m512d)b);
 }
+LAR_INLINE lar_lane lar_lane_sqrt(lar_lane a) {
+    return (lar_lane)_mm512_sqrt_pd((__m512d)a);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)_mm512_load_si512(p);
 }
@@ -265,6 +268,9 @@ LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
 LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
     return (lar_lane)_mm256_max_pd((__m256d)a, (__m256d)b);
 }
+LAR_INLINE lar_lane lar_lane_sqrt(lar_lane a) {
+    return (lar_lane)_mm256_sqrt_pd((__m256d)a);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)_mm256_load_si256((const __m256i *)p);
 }
@@ -349,6 +355,9 @@ LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
 LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
     return (lar_lane)vmaxq_f64((float64x2_t)a, (float64x2_t)b);
 }
+LAR_INLINE lar_lane lar_lane_sqrt(lar_lane a) {
+    return (lar_lane)vsqrtq_f64((float64x2_t)a);
+}
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return (lar_ilane)vld1q_s64(p);
 }
@@ -427,6 +436,9 @@ LAR_INLINE lar_lane lar_lane_abs(lar_lane a) {
 }
 LAR_INLINE lar_lane lar_lane_max(lar_lane a, lar_lane b) {
     return a > b ? a : b;
+}
+LAR_INLINE lar_lane lar_lane_sqrt(lar_lane a) {
+    return sqrt(a);
 }
 LAR_INLINE lar_ilane lar_ilane_load(const int64_t *p) {
     return *p;

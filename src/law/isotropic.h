@@ -45,6 +45,14 @@ static inline void lar_law_add_reduced(lar_law_slopes *w, double c, double invar
     w->wJJ += power * (power - 1) * invariant * value / (J * J);
 }
 
+/* Adds what a law that is curved in x = I1 J^(-2/3) - 3 has beyond its slope: `rise` = w''(x). */
+static inline void lar_law_add_rise(lar_law_slopes *w, double rise, const lar_law_invariants *is) {
+    double y2 = pow(is->J, -2.0 / 3), by_J = -2.0 / 3 * is->I1 * y2 / is->J; /* dx/dJ */
+    w->w11 += rise * y2 * y2;
+    w->w1J += rise * y2 * by_J;
+    w->wJJ += rise * by_J * by_J;
+}
+
 /* Adds modulus/2 (ln J)^2. */
 static inline void lar_law_add_logarithmic(lar_law_slopes *w, double modulus, double J) {
     w->wJ += modulus * log(J) / J;

@@ -26,4 +26,24 @@ LAR_INLINE lar_lane lar_lane_square_sum(const lar_lane F[9]) {
     return a + b + c;
 }
 
+/* F F^T F. */
+LAR_INLINE void lar_lane_cubic(const lar_lane F[9], lar_lane cubic[9]) {
+    static const int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    lar_lane left[6]; /* F F^T: xx xy xz yy yz zz */
+#pragma GCC unroll 3
+    for (int i = 0, n = 0; i < 3; i++)
+#pragma GCC unroll 3
+        for (int j = i; j < 3; j++, n++)
+            left[n] =
+                lar_lane_fma(F[3 * i], F[3 * j],
+                             lar_lane_fma(F[3 * i + 1], F[3 * j + 1], F[3 * i + 2] * F[3 * j + 2]));
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++)
+#pragma GCC unroll 3
+        for (int j = 0; j < 3; j++)
+            cubic[3 * i + j] = lar_lane_fma(
+                left[symmetric[i][0]], F[j],
+                lar_lane_fma(left[symmetric[i][1]], F[3 + j], left[symmetric[i][2]] * F[6 + j]));
+}
+
 #endif

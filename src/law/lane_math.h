@@ -6,6 +6,8 @@
 
 #include "base/simd.h"
 
+/* Powers of stretches are e^(m ln stretch): 2 + 5 |m ln stretch| units in the last place. */
+
 /* J^(-1/3) for normal positive J, to about 2 units in the last place.
  *
  * First guess from the bits: the upper half of a double read as an integer is nearly 2^20 log2(J)
@@ -46,5 +48,49 @@ LAR_INLINE lar_lane lar_lane_log(lar_lane J) {
     lar_lane low = lar_lane_fma(exponent, lar_lane_set(0x1.abc9e3b39803fp-56), log_m);
     return lar_lane_fma(exponent, lar_lane_set(0x1.62e42fefa39efp-1), low);
 }
+
+/* e^x = 2^k e^r, k the integer nearest to x / ln 2, |r| <= ln 2 / 2: returns e^r - 1 and 2^k.
+ *
+ * Adding 1.5 * 2^52 leaves k in the low bits. ln 2 is taken away in two parts, each by a fused
+ * operation. (e^r - 1 - r) / r^2 is a polynomial through ten Chebyshev nodes, which leaves less
+ * than 4e-17 of r. Beyond +-708, where 2^k would not be normal, x counts as +-708: 3e307 and
+ * 3e-308. */
+LAR_INLINE lar_lane lar_lane_exp_parts(lar_lane x, lar_lane *power) {
+    static const double term[] = {
+        0x1.af38a9b0ec855p-26, 0x1.289185613a3d6p-22, 0x1.71de0dae63bb3p-19, 0x1.a019b90d2ae7ap-16,
+        0x1.a01a01a7c41d5p-13, 0x1.6c16c1788bd90p-10, 0x1.11111111109b3p-7,  0x1.5555555553d63p-5,
+        0x1.5555555555556p-3,  0x1.0000000000001p-1};
+    const lar_lane magic = lar_lane_set(0x1.8p52), max = lar_lane_set(708);
+    x = -lar_lane_max(-max, -lar_lane_max(-max, x));
+    lar_lane shifted = lar_lane_fma(x, lar_lane_set(0x1.71547652b82fep+0), magic);
+    lar_lane k = shifted - magic;
+    lar_lane r = lar_lane_fnma(k, lar_lane_set(0x1.62e42fefa39efp-1), x);
+    r = lar_lane_fnma(k, lar_lane_set(0x1.abc9e3b39803fp-56), r);
+    lar_lane sum = lar_lane_set(term[0]);
+#pragma GCC unroll 9
+    for (int n = 1; n < 10; n++) sum = lar_lane_fma(sum, r, lar_lane_set(term[n]));
+    *power = lar_ilane_as_lane(((lar_lane_bits(shifted) + 1023) & 0x7ff) << 52);
+    return lar_lane_fma(r * r, sum, r);
+}
+
+/* e^x, to 1.1 units in the last place. */
+LAR_INLINE lar_lane lar_lane_exp(lar_lane x) {
+    lar_lane power, less_one = lar_lane_exp_parts(x, &power);
+    return lar_lane_fma(power, less_one, power);
+}
+
+/* e^x - 1, to 2.2 units in the last place, of small x too. */
+LAR_INLINE lar_lane lar_lane_expm1(lar_lane x) {
+    lar_lane power, less_one = lar_lane_exp_parts(x, &power);
+    return lar_lane_fma(power, less_one, power - lar_lane_set(1));
+}
+
+/* 1 with the sign of x. */
+LAR_INLINE lar_lane lar_lane_sign(lar_lane x) {
+    return lar_ilane_as_lane((lar_lane_bits(x) & INT64_MIN) | 0x3ff0000000000000LL);
+}
+
+/* What is added where nothing may be divided by nothing: lost in any number that matters. */
+#define LAR_LANE_TINY 1e-200
 
 #endif

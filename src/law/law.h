@@ -17,9 +17,10 @@
 #include <stddef.h>
 
 #include "law/list.h"
+#include "law/numbers.h"
 
 /* The most parameters that a law has, and the most numbers by which another program gives one. */
-enum { LAR_LAW_PARAMETERS = 4, LAR_LAW_GIVEN = 8 };
+enum { LAR_LAW_PARAMETERS = 7, LAR_LAW_GIVEN = 13 };
 
 typedef enum lar_law {
 #define LAR_LAW_ENUM(identifier) LAR_LAW_##identifier,
@@ -35,13 +36,28 @@ typedef enum lar_law_value {
     LAR_VALUE_OPTIONAL, /* the same, zero when it is not given */
     LAR_VALUE_RATIO,    /* Poisson's, between -1 and 0.5, exclusive */
     LAR_VALUE_SOFTNESS, /* [1/Pa] Abaqus's D = 2 / K */
-    LAR_VALUE_NOT_OURS  /* another program's law has it, ours has not: zero, or not given */
+    LAR_VALUE_NOT_OURS, /* another program's law has it, ours has not: zero, or not given */
+    LAR_VALUE_NUMBER,   /* [-] more than zero */
+    LAR_VALUE_POWER     /* [-] of any sign, zero when it is not given: the power of the term whose
+                           constant stands before it, and not zero unless that is */
 } lar_law_value;
 
 typedef struct lar_law_parameter {
     const char *name;
     lar_law_value value;
 } lar_law_parameter;
+
+/* Whether it is in pascal: blocks hold it times a volume, and who makes a material stiffer by a
+ * factor means it. */
+static inline bool lar_law_in_pascal(const lar_law_parameter *parameter) {
+    return parameter->value != LAR_VALUE_NUMBER && parameter->value != LAR_VALUE_POWER;
+}
+
+/* Whether parameter k of a list may be left out: it is zero then. */
+static inline bool lar_law_may_miss(const lar_law_parameter *parameter, int k) {
+    while (k > 0 && parameter[k].value == LAR_VALUE_POWER) k--;
+    return parameter[k].value == LAR_VALUE_OPTIONAL || parameter[k].value == LAR_VALUE_NOT_OURS;
+}
 
 /* A law as another program's decks have it. */
 typedef struct lar_law_dialect {
@@ -52,11 +68,20 @@ typedef struct lar_law_dialect {
     void (*read)(const double *given, double *parameter);
     const char *volume; /* our answer to a change of volume where that program has a choice of them,
                            or another one; NULL: there is no question */
+    /* Abaqus's name of it as a series of N terms of `per_term` numbers each, behind which one more
+     * for each term stands; NULL: it is none. `parameter` is of the longest that we have. */
+    const char *series;
+    int per_term;
 } lar_law_dialect;
 
-/* All of a dialect, and none. */
+/* All of a dialect, a series as well, and none. */
 #define LAR_LAW_DIALECT(name, parameters, read, volume)                                            \
-    { name, LAR_LAW_FITTING(sizeof parameters / sizeof *parameters), parameters, read, volume }
+    LAR_LAW_SERIES(name, parameters, read, volume, NULL, 0)
+#define LAR_LAW_SERIES(name, parameters, read, volume, series, per_term)                           \
+    {                                                                                              \
+        name, LAR_LAW_FITTING(sizeof parameters / sizeof *parameters), parameters, read, volume,   \
+            series, per_term                                                                       \
+    }
 #define LAR_LAW_FITTING(count)                                                                     \
     (count) +                                                                                      \
         0 * sizeof(struct {                                                                        \
@@ -64,7 +89,7 @@ typedef struct lar_law_dialect {
             _Static_assert(count <= LAR_LAW_GIVEN, "more numbers than readers have room for");     \
         })
 #define LAR_LAW_NO_DIALECT                                                                         \
-    { NULL, 0, NULL, NULL, NULL }
+    { NULL, 0, NULL, NULL, NULL, NULL, 0 }
 
 /* Stiffness of a strained law, for the stable step (mechanics/hex8_guard.h). */
 typedef struct lar_law_strained {
@@ -98,6 +123,11 @@ typedef struct lar_law_row {
 } lar_law_row;
 
 extern const lar_law_row lar_law_table[LAR_LAW_COUNT];
+/* Whether parameter k of a law is in pascal; of those that it does not have it does not matter. */
+static inline bool lar_law_scales(lar_law law, int k) {
+    return k >= lar_law_table[law].count || lar_law_in_pascal(&lar_law_table[law].parameter[k]);
+}
+
 extern const char *const lar_law_name[LAR_LAW_COUNT]; /* the names alone, for lists */
 
 #endif

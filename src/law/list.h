@@ -8,14 +8,22 @@
     X(neo_hookean)                                                                                 \
     X(coupled_neo_hookean)                                                                         \
     X(mooney_rivlin)                                                                               \
-    X(yeoh)
+    X(yeoh)                                                                                        \
+    X(arruda_boyce)                                                                                \
+    X(veronda_westmann)                                                                            \
+    X(holmes_mow)                                                                                  \
+    X(ogden)
 
 #endif
 
 /* Their files, for law/lanes.h and no one else. */
 #ifdef LAR_LAW_FILES
+#include "law/arruda_boyce.h"
 #include "law/coupled_neo_hookean.h"
+#include "law/holmes_mow.h"
 #include "law/mooney_rivlin.h"
 #include "law/neo_hookean.h"
+#include "law/ogden.h"
+#include "law/veronda_westmann.h"
 #include "law/yeoh.h"
 #endif

@@ -81,8 +81,8 @@ static void lar_yeoh_read_abaqus(const double *given, double *p) {
     for (int k = 0; k < 3; k++) p[k] = given[k];
     p[3] = 2.0 / given[3];
 }
-static const lar_law_dialect lar_yeoh_abaqus =
-    LAR_LAW_DIALECT("YEOH", lar_yeoh_constant, lar_yeoh_read_abaqus, "K/2 (ln J)^2");
+static const lar_law_dialect lar_yeoh_abaqus = LAR_LAW_SERIES(
+    "YEOH", lar_yeoh_constant, lar_yeoh_read_abaqus, "K/2 (ln J)^2", "REDUCED POLYNOMIAL", 1);
 
 static double lar_yeoh_shear(const double *p) {
     return 2.0 * p[0];

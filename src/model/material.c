@@ -17,11 +17,36 @@ static lar_status check_constants(const lar_material *material, const char *wher
     static const double MAX = 1e9;
     const lar_law_row *law = &lar_law_table[material->law];
     for (int k = 0; k < law->count; k++)
-        if (fabs(material->parameter[k]) > MAX * modulus)
+        if (lar_law_scales(material->law, k) && fabs(material->parameter[k]) > MAX * modulus)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: %s of the law %s is %g Pa, more than %g times its moduli at rest; "
                             "check its unit",
                             where, law->parameter[k].name, law->name, material->parameter[k], MAX);
+    return LAR_OK;
+}
+
+/* What has no unit: numbers as they are met in tissue and rubber. Beyond, powers of stretches say
+ * nothing, or more than doubles hold. */
+static lar_status check_numbers(const lar_material *material, const char *where, lar_error *error) {
+    static const double POWER_MIN = 0.01, POWER_MAX = 100;
+    const lar_law_row *law = &lar_law_table[material->law];
+    for (int k = 0; k < law->count; k++) {
+        double value = material->parameter[k], size = fabs(value);
+        const char *name = law->parameter[k].name;
+        if (law->parameter[k].value == LAR_VALUE_NUMBER &&
+            !(value >= LAR_LAW_NUMBER_MIN && value <= LAR_LAW_NUMBER_MAX))
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: %s of the law %s is %g; it has no unit and must be between %g "
+                            "and %g",
+                            where, name, law->name, value, LAR_LAW_NUMBER_MIN, LAR_LAW_NUMBER_MAX);
+        if (law->parameter[k].value == LAR_VALUE_POWER && material->parameter[k - 1] != 0 &&
+            !(size >= POWER_MIN && size <= POWER_MAX))
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: %s of the law %s is %g; it is the power of the term of %s and "
+                            "must be between %g and %g, or between -%g and -%g",
+                            where, name, law->name, value, law->parameter[k - 1].name, POWER_MIN,
+                            POWER_MAX, POWER_MIN, POWER_MAX);
+    }
     return LAR_OK;
 }
 
@@ -40,6 +65,8 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
                         "%s: the density is %g; it must be positive, in kg/m^3 (soft tissue has "
                         "about 1050)",
                         where, material->density);
+    lar_status status = check_numbers(material, where, error);
+    if (status) return status;
     double shear = lar_material_shear(material), bulk = lar_material_bulk(material);
     if (!(shear > 0.0) || !isfinite(shear))
         return lar_fail(error, LAR_ERROR_MODEL,

@@ -9,7 +9,7 @@ typedef struct lar_material {
     char *name; /* for messages; may be NULL */
     lar_law law;
     double density;                       /* kg/m^3 */
-    double parameter[LAR_LAW_PARAMETERS]; /* pascal, as the law's row has them; unused ones 0 */
+    double parameter[LAR_LAW_PARAMETERS]; /* pascal or numbers, as the law's row has them; unused ones 0 */
 } lar_material;
 
 /* Small-strain moduli of the material at rest [Pa]. */

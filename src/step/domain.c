@@ -110,7 +110,8 @@ static void fill_material(const lar_domain *domain, const lar_lane_base *base, l
     const lar_material *made = &domain->material[material];
     for (int k = 0; k < lar_law_table[made->law].count; k++)
         *lar_block_parameter(head, more, k, lane) =
-            made->parameter[k] * base->volume * domain->scale;
+            lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
+                                         : made->parameter[k];
     *limit = base->limit * factor * factor;
 }
 
@@ -314,7 +315,8 @@ static lar_status copy_materials(lar_domain *domain, lar_error *error) {
 
 static lar_material times(const lar_material *material, double factor) {
     lar_material made = *material;
-    for (int k = 0; k < LAR_LAW_PARAMETERS; k++) made.parameter[k] *= factor;
+    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+        if (lar_law_scales(made.law, k)) made.parameter[k] *= factor;
     return made;
 }
 

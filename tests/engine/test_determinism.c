@@ -20,11 +20,19 @@ static const uint64_t golden[SHAPES][LAR_LAW_COUNT] = {
     [GENERAL] = {[LAR_LAW_neo_hookean] = 0xdb821fb1a6eadafc,
                  [LAR_LAW_coupled_neo_hookean] = 0xdc305067a2b3254d,
                  [LAR_LAW_mooney_rivlin] = 0x36dea79ed0f69500,
-                 [LAR_LAW_yeoh] = 0x6a92844e27e5d09a},
+                 [LAR_LAW_yeoh] = 0x6a92844e27e5d09a,
+                 [LAR_LAW_arruda_boyce] = 0xa5a912db90311328,
+                 [LAR_LAW_veronda_westmann] = 0x0c6f970c25e5021c,
+                 [LAR_LAW_holmes_mow] = 0xec829be80ffd0420,
+                 [LAR_LAW_ogden] = 0xe111be7d8aa249e5},
     [BOXES] = {[LAR_LAW_neo_hookean] = 0xf11232da2d32fd7a,
                [LAR_LAW_coupled_neo_hookean] = 0xadfa3d169a0a254a,
                [LAR_LAW_mooney_rivlin] = 0x967bf77932001b3d,
-               [LAR_LAW_yeoh] = 0x3cd0f0c5c6a3e83e},
+               [LAR_LAW_yeoh] = 0x3cd0f0c5c6a3e83e,
+               [LAR_LAW_arruda_boyce] = 0xac9a4ba83a92e413,
+               [LAR_LAW_veronda_westmann] = 0x6a47d9cf0aedeeb4,
+               [LAR_LAW_holmes_mow] = 0x9ad0e8b93e74719e,
+               [LAR_LAW_ogden] = 0xd054367b2fb1ce5f},
 };
 
 static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};

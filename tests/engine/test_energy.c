@@ -36,7 +36,9 @@ static void vibrate(lar_law law, bool held) {
     if (held) fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
     throw_body(model, (double[]){0, 0, 0}, (double[]){0, held ? 2 : 1, -1}, 0.06);
     lar_options options = lar_options_default();
-    options.time_step = 2e-4; /* a sixth of the stable step */
+    /* A sixth of the stable step; half of that for a law that stiffens in this swing, whose ripple
+     * is four times as large: over 100,000 steps of 2e-4 s its mean goes down by 1.2e-4. */
+    options.time_step = law == LAR_LAW_veronda_westmann ? 1e-4 : 2e-4;
     lar_simulation *simulation = start_with(model, options);
     lar_energy energy;
     advance(simulation, STRIDE);

@@ -121,7 +121,8 @@ static void a_stiffer_body_is_that_of_a_stiffer_model(void **unused) {
                 lar_model *model = everything_model(&b);
                 for (int m = 0; m < model->material_count && !changed; m++)
                     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-                        model->material[m].parameter[k] *= factor;
+                        if (lar_law_scales(model->material[m].law, k))
+                            model->material[m].parameter[k] *= factor;
                 lar_options options = lar_options_default();
                 options.element = (lar_element_kind)kind;
                 options.time_step = 2e-4;

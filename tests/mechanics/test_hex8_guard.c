@@ -229,7 +229,8 @@ static void fill_deformed(uint64_t *seed, const lar_material *material, lar_hex8
         }
         for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
             *lar_block_parameter(&block->head, more, k, n) =
-                material->parameter[k] * element.volume * 0x1p30;
+                material->parameter[k] *
+                (lar_law_scales(material->law, k) ? element.volume * 0x1p30 : 1);
         for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
             for (int i = 0; i < 3; i++) block->gradient[m][i][n] = element.gradient[m][i];
         for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) block->head.stiffness[m][n] = 0x1p30;

@@ -57,7 +57,8 @@ static void fill_lane(load *l, int n) {
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         *lar_block_parameter(&block->head, &l->more[n / LAR_BLOCK], k, lane) =
-            l->scale * element->volume * l->material[n].parameter[k];
+            l->material[n].parameter[k] *
+            (lar_law_scales(l->material[n].law, k) ? l->scale * element->volume : 1);
     for (int a = 0; a < 8; a++) block->head.node[a][lane] = 4 * l->node[n][a];
 }
 
@@ -453,6 +454,10 @@ static void golden_bits(void **state) {
         [LAR_LAW_coupled_neo_hookean] = 0xd435202178cc047eULL,
         [LAR_LAW_mooney_rivlin] = 0x079e701cc8e23e21ULL,
         [LAR_LAW_yeoh] = 0xf2fec133faf1b20fULL,
+        [LAR_LAW_arruda_boyce] = 0xd7179c09b5001221ULL,
+        [LAR_LAW_veronda_westmann] = 0xa449cca7ee6c1576ULL,
+        [LAR_LAW_holmes_mow] = 0xc06de25dfd913c5fULL,
+        [LAR_LAW_ogden] = 0xb696477b4bed572cULL,
     };
     static load l;
     static forces f;
@@ -469,6 +474,8 @@ static void golden_bits(void **state) {
             l.material[n].law = (lar_law)law;
             for (int k = 0; k < LAR_BLOCK_PARAMETERS || k < lar_law_table[law].count; k++)
                 l.material[n].parameter[k] = 4000 + 1000 * random_value(&seed);
+            for (int k = 0; k < lar_law_table[law].count; k++) /* 1.5 to 2.5 */
+                if (!lar_law_scales((lar_law)law, k)) l.material[n].parameter[k] *= 0x1p-11;
             for (int a = 0; a < 8; a++) l.node[n][a] = (int)(random_bits(&seed) >> 33) % NODES;
             l.scale = 0x1p40;
             fill_lane(&l, n);

@@ -71,7 +71,7 @@ static void fill_lane(body *b, int n, const int node[8]) {
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         *lar_block_parameter(&general->head, &b->more[n / LAR_BLOCK], k, lane) =
-            scale * element.volume * material.parameter[k];
+            material.parameter[k] * (lar_law_scales(material.law, k) ? scale * element.volume : 1);
     for (int a = 0; a < 8; a++) general->head.node[a][lane] = 4 * node[a];
     box->head = general->head;
 }

@@ -143,6 +143,43 @@ static void lane_functions(void **state) {
     assert_true(lar_lane_rcbrt(1) == 1);
 }
 
+static void lane_exponentials(void **state) {
+    (void)state;
+    uint64_t seed = 18;
+    double worst = 0, worst_less = 0;
+    for (int n = 0; n < 400000; n++) {
+        /* near zero, ordinary, all that there is, and down to nothing */
+        double width = n % 4 == 0 ? 1e-3 : n % 4 == 1 ? 3 : 708;
+        double x =
+            width * random_value(&seed) * (n % 4 == 3 ? exp(-700 * fabs(random_value(&seed))) : 1);
+        worst = fmax(worst, ulps(lar_lane_exp(x), expl(x)));
+        if (fabs(x) > 1e-290) worst_less = fmax(worst_less, ulps(lar_lane_expm1(x), expm1l(x)));
+    }
+    print_message("e^x: %.2f ulp, e^x - 1: %.2f ulp\n", worst, worst_less);
+    assert_below(worst, 1.1);
+    assert_below(worst_less, 2.2);
+    assert_true(lar_lane_exp(0) == 1 && lar_lane_expm1(0) == 0);
+    assert_true(lar_lane_expm1(0x1p-1000) == 0x1p-1000 && lar_lane_expm1(-1e-300) == -1e-300);
+    const double beyond[] = {708.5, 1e4, 1e300, INFINITY};
+    for (int n = 0; n < 4; n++) {
+        assert_true(lar_lane_exp(beyond[n]) == lar_lane_exp(708));
+        assert_true(lar_lane_exp(-beyond[n]) == lar_lane_exp(-708));
+        assert_true(lar_lane_expm1(-beyond[n]) == -1);
+    }
+    assert_true(lar_lane_sign(-0.0) == -1 && lar_lane_sign(0) == 1 && lar_lane_sign(-3e300) == -1);
+}
+
+/* Powers of stretches, as Ogden's law makes them: off by the size of their exponent besides. */
+static void lane_powers(void **state) {
+    (void)state;
+    uint64_t seed = 19;
+    for (int n = 0; n < 100000; n++) {
+        double stretch = exp(2 * random_value(&seed)), m = 25 * random_value(&seed);
+        double found = lar_lane_exp(m * lar_lane_log(stretch));
+        assert_below(ulps(found, powl(stretch, m)), 2 + 5 * fabs(m * log(stretch)));
+    }
+}
+
 /* ---- stress measures ------------------------------------------------------------------------- */
 
 static void cauchy_measures(void **state) {
@@ -260,6 +297,8 @@ int main(void) {
         cmocka_unit_test(stress_is_energy_slope),  cmocka_unit_test(no_stress_at_rest_and_rotated),
         cmocka_unit_test(objective_and_isotropic), cmocka_unit_test(small_strain_moduli),
         cmocka_unit_test(overflow_guard),          cmocka_unit_test(lane_functions),
+        cmocka_unit_test(lane_exponentials),       cmocka_unit_test(lane_powers),
+
         cmocka_unit_test(cauchy_measures),         cmocka_unit_test(uniaxial_reference),
         cmocka_unit_test(shear_reference),         cmocka_unit_test(yeoh_uniaxial),
     };

@@ -152,6 +152,60 @@ static void test_version_3(void **state) {
     lar_model_destroy(model);
 }
 
+/* Laws that stiffen, with what FEBio itself writes into its decks. */
+static void test_stiffening_laws(void **state) {
+    (void)state;
+    static const struct {
+        const char *type, *given;
+        lar_law law;
+        double parameter[LAR_LAW_PARAMETERS], shear, bulk;
+    } laws[] = {
+        {"Ogden",
+         "<pressure_model>default</pressure_model><k>1000</k><c1>0.6</c1><c2>0.25</c2><c3>0</c3>"
+         "<c4>0</c4><c5>0</c5><c6>0</c6><m1>6.83</m1><m2>-2</m2><m3>1</m3><m4>1</m4><m5>1</m5>"
+         "<m6>1</m6>",
+         LAR_LAW_ogden,
+         {0.6, 6.83, 0.25, -2, 0, 1, 1000},
+         0.425,
+         1000},
+        {"Arruda-Boyce",
+         "<mu>0.09</mu><N>26.5</N><k>100</k>",
+         LAR_LAW_arruda_boyce,
+         {0.09, 26.5, 100},
+         0.0921131869,
+         100},
+        {"Veronda-Westmann",
+         "<c1>1</c1><c2>0.5</c2><k>100</k>",
+         LAR_LAW_veronda_westmann,
+         {1, 0.5, 100},
+         0.5,
+         100},
+        {"Holmes-Mow",
+         "<E>1</E><v>0.25</v><beta>0.35</beta>",
+         LAR_LAW_holmes_mow,
+         {0.4, 0.4, 0.35},
+         0.4,
+         2.0 / 3}};
+    for (size_t n = 0; n < sizeof laws / sizeof *laws; n++) {
+        char deck[4000];
+        snprintf(deck, sizeof deck,
+                 HEAD4 CONTROL("DYNAMIC") "<Material><material id=\"1\" name=\"c\" type=\"%s\">"
+                                          "<density>2</density>%s</material></Material>" MESH4
+                                          "<MeshDomains><SolidDomain name=\"left\" mat=\"c\"/>"
+                                          "<SolidDomain name=\"right\" mat=\"1\"/>"
+                                          "</MeshDomains>" TAIL,
+                 laws[n].type, laws[n].given);
+        lar_model *model = read_deck(deck);
+        const lar_material *material = &model->material[0];
+        assert_int_equal(material->law, laws[n].law);
+        for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
+            assert_true(fabs(material->parameter[k] - laws[n].parameter[k]) < 1e-15);
+        assert_true(fabs(lar_material_shear(material) / laws[n].shear - 1) < 1e-6);
+        assert_true(fabs(lar_material_bulk(material) / laws[n].bulk - 1) < 1e-12);
+        lar_model_destroy(model);
+    }
+}
+
 static void test_materials(void **state) {
     (void)state;
     lar_model *model = read_deck(
@@ -183,8 +237,8 @@ static void test_materials(void **state) {
 
 static void test_bad_materials(void **state) {
     (void)state;
-    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"Ogden\"/>"),
-                   LAR_ERROR_UNSUPPORTED, 6, "'Ogden'");
+    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"muscle\"/>"),
+                   LAR_ERROR_UNSUPPORTED, 6, "'muscle'");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"rigid body\"/>"),
                    LAR_ERROR_UNSUPPORTED, 0, "the elements of part 'left' are a rigid body");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
@@ -217,8 +271,32 @@ static void test_bad_materials(void **state) {
     expect_failure(YEOH("<c1>1</c1><k>0</k>"), LAR_ERROR_MODEL, 6, "bulk modulus is 0 Pa");
     expect_failure(YEOH("<c1>1</c1><k>9</k><pressure_model>NIKE3D</pressure_model>"),
                    LAR_ERROR_UNSUPPORTED, 7, "'NIKE3D'");
-    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"Ogden\"/>"),
-                   LAR_ERROR_UNSUPPORTED, 6, "Lariat has neo-Hookean, Mooney-Rivlin and Yeoh");
+    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"muscle\"/>"),
+                   LAR_ERROR_UNSUPPORTED, 6,
+                   "Lariat has neo-Hookean, Mooney-Rivlin, Yeoh, Arruda-Boyce, "
+                   "Veronda-Westmann, Holmes-Mow and Ogden");
+#define OF_TYPE(type, rest)                                                                        \
+    WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"" type "\">\n" rest "</material>")
+    expect_failure(OF_TYPE("Ogden", "<c1>1</c1><k>9</k>"), LAR_ERROR_MODEL, 6,
+                   "m1 of the law ogden is 0; it is the power of the term of c1");
+    expect_failure(OF_TYPE("Ogden", "<c1>1</c1><m1>200</m1><k>9</k>"), LAR_ERROR_MODEL, 6,
+                   "m1 of the law ogden is 200");
+    expect_failure(OF_TYPE("Ogden", "<c1>1</c1><m1>2</m1><c4>1</c4><m4>3</m4><k>9</k>"),
+                   LAR_ERROR_UNSUPPORTED, 6, "<c4> is 1; Lariat's Ogden law");
+    expect_failure(OF_TYPE("Ogden", "<c1>1</c1><m1>2</m1><c3>-1</c3><m3>3</m3><k>9</k>"),
+                   LAR_ERROR_MODEL, 6, "shear modulus is 0 Pa");
+    expect_failure(OF_TYPE("Arruda-Boyce", "<mu>1</mu><k>9</k>"), LAR_ERROR_FORMAT, 6,
+                   "no parameter <N>");
+    expect_failure(OF_TYPE("Arruda-Boyce", "<mu>1</mu><N>-4</N><k>9</k>"), LAR_ERROR_MODEL, 6,
+                   "N of the law arruda-boyce is -4; it has no unit and must be between");
+    expect_failure(OF_TYPE("Veronda-Westmann", "<c1>1</c1><c2>1e5</c2><k>9</k>"), LAR_ERROR_MODEL,
+                   6, "c2 of the law veronda-westmann is 100000");
+    expect_failure(OF_TYPE("Holmes-Mow", "<E>1</E><v>0.5</v><beta>1</beta>"), LAR_ERROR_MODEL, 6,
+                   "Poisson's ratio v = 0.5");
+    expect_failure(OF_TYPE("Holmes-Mow", "<E>1</E><v>0.2</v><beta>0</beta>"), LAR_ERROR_MODEL, 6,
+                   "beta of the law holmes-mow is 0");
+    expect_failure(OF_TYPE("Holmes-Mow", "<E>1</E><v>0.2</v><beta>nan</beta>"), LAR_ERROR_FORMAT, 7,
+                   "no finite number");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"hard\" type=\"neo-Hookean\"/>"),
                    LAR_ERROR_FORMAT, 0, "names the material 'soft'");
     expect_failure(WITH_MATERIAL("<material name=\"soft\" type=\"neo-Hookean\"/>"),
@@ -659,6 +737,18 @@ static const expected_deck expected[] = {
      36,
      LAR_AXIS_X,
      1.0},
+    {"ma01.feb",
+     225,
+     128,
+     1,
+     LAR_LAW_ogden,
+     1,
+     1.0,
+     {50, 50, 25},
+     {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
+     25,
+     LAR_AXIS_X,
+     1.0},
     {"ma61.feb",
      27,
      8,
@@ -724,15 +814,16 @@ static void test_real_refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_version_4),  cmocka_unit_test(test_version_3),
-        cmocka_unit_test(test_materials),  cmocka_unit_test(test_bad_materials),
-        cmocka_unit_test(test_bad_meshes), cmocka_unit_test(test_supports),
-        cmocka_unit_test(test_loads),      cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_bad_loads),  cmocka_unit_test(test_curves),
-        cmocka_unit_test(test_bad_curves), cmocka_unit_test(test_static_and_step),
-        cmocka_unit_test(test_sections),   cmocka_unit_test(test_mesh_only),
-        cmocka_unit_test(test_entities),   cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_real_decks), cmocka_unit_test(test_real_refusals),
+        cmocka_unit_test(test_version_4),       cmocka_unit_test(test_version_3),
+        cmocka_unit_test(test_materials),       cmocka_unit_test(test_stiffening_laws),
+        cmocka_unit_test(test_bad_materials),   cmocka_unit_test(test_bad_meshes),
+        cmocka_unit_test(test_supports),        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bad_supports),    cmocka_unit_test(test_bad_loads),
+        cmocka_unit_test(test_curves),          cmocka_unit_test(test_bad_curves),
+        cmocka_unit_test(test_static_and_step), cmocka_unit_test(test_sections),
+        cmocka_unit_test(test_mesh_only),       cmocka_unit_test(test_entities),
+        cmocka_unit_test(test_damage),          cmocka_unit_test(test_real_decks),
+        cmocka_unit_test(test_real_refusals),
     };
     return cmocka_run_group_tests_name("feb", tests, NULL, NULL);
 }

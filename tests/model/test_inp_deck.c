@@ -124,6 +124,49 @@ static void test_yeoh(void **state) {
     lar_model_destroy(model);
 }
 
+static lar_model *of_two(const char *left, const char *right) {
+    char deck[4000];
+    snprintf(deck, sizeof deck,
+             MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, %s\n*DENSITY\n1000\n*MATERIAL, NAME=b\n"
+                  "*HYPERELASTIC, %s\n*DENSITY\n1000\n*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n"
+                  "1.,\n*SOLID SECTION, ELSET=RIGHT, MATERIAL=b\n",
+             left, right);
+    return read_deck(deck);
+}
+
+/* Series of one, two and three terms; behind the terms their D, on a second line where there are
+ * more than eight numbers. */
+static void test_series(void **state) {
+    (void)state;
+    lar_model *model =
+        of_two("OGDEN, N=3\n400, 1.3, 1.2, 5, -10, -2, 1e-4, 0\n0, 20", "OGDEN\n500, 8, 1e-4");
+    assert_int_equal(model->material[0].law, LAR_LAW_ogden);
+    assert_memory_equal(model->material[0].parameter, ((double[]){800, 1.3, 2.4, 5, -20, -2, 2e4}),
+                        56);
+    assert_memory_equal(model->material[1].parameter, ((double[]){1000, 8, 0, 0, 0, 0, 2e4}), 56);
+    near(lar_material_shear(&model->material[1]), 500);
+    assert_int_equal(notices_with(model, "Lariat's Ogden law answers a change of volume"), 2);
+    lar_model_destroy(model);
+    model = of_two("N=2, OGDEN\n400, 1.3, 1.2, 5, 1e-4, , 20",
+                   "REDUCED POLYNOMIAL, N=2\n500, -60, 1e-4, 0");
+    assert_memory_equal(model->material[0].parameter, ((double[]){800, 1.3, 2.4, 5, 0, 0, 2e4}),
+                        56);
+    assert_int_equal(model->material[1].law, LAR_LAW_yeoh);
+    assert_memory_equal(model->material[1].parameter, ((double[]){500, -60, 0, 2e4}), 32);
+    lar_model_destroy(model);
+    model = of_two("REDUCED POLYNOMIAL, N=3\n500, -60, 7, 1e-4", "reduced polynomial\n500, 1e-4");
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, -60, 7, 2e4}), 32);
+    assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
+    lar_model_destroy(model);
+    model = of_two("ARRUDA-BOYCE\n500, 2, 1e-4", "NEO HOOKE\n500, 1e-4");
+    assert_int_equal(model->material[0].law, LAR_LAW_arruda_boyce);
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, 4, 2e4}), 24);
+    /* Abaqus's manual: mu (1 + 3/(5 l^2) + 99/(175 l^4) + 513/(875 l^6) + 42039/(67375 l^8)) */
+    near(lar_material_shear(&model->material[0]),
+         500 * (1 + 0.6 / 4 + 99.0 / 175 / 16 + 513.0 / 875 / 64 + 42039.0 / 67375 / 256));
+    lar_model_destroy(model);
+}
+
 /* Without gravity the density of a static deck does not matter. */
 static void test_static_without_density(void **state) {
     (void)state;
@@ -155,8 +198,31 @@ static void test_bad_materials(void **state) {
             "*PLASTIC is not read and would "
             "change the answer; remove it");
     refused(OF("*VISCOELASTIC, TIME=PRONY\n"), LAR_ERROR_UNSUPPORTED, two, "*VISCOELASTIC");
-    refused(OF("*HYPERELASTIC, OGDEN, N=1\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
-            "Lariat has NEO HOOKE, MOONEY-RIVLIN and YEOH, with constants");
+    refused(OF("*HYPERELASTIC, MARLOW\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "Lariat has NEO HOOKE, MOONEY-RIVLIN, YEOH, REDUCED POLYNOMIAL, ARRUDA-BOYCE and "
+            "OGDEN, with constants");
+    refused(OF("*HYPERELASTIC, OGDEN, N=4\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "N=4 of *HYPERELASTIC; Lariat's Ogden law has 3 terms at most");
+    refused(OF("*HYPERELASTIC, REDUCED POLYNOMIAL, N=0\n1,2\n"), LAR_ERROR_FORMAT, two,
+            "N=0 of *HYPERELASTIC is no number of terms");
+    refused(OF("*HYPERELASTIC, YEOH, N=3\n1, 1, 1, 1\n"), LAR_ERROR_UNSUPPORTED, two,
+            "the parameter N of *HYPERELASTIC");
+    refused(OF("*HYPERELASTIC, OGDEN, N=2\n500, 2, 30, , 1e-4\n"), LAR_ERROR_MODEL, two,
+            "m2 of the law ogden is 0; it is the power of the term of c2");
+    refused(OF("*HYPERELASTIC, OGDEN, N=2\n500, 2, 30, -4, 1e-4, 1e-4\n"), LAR_ERROR_UNSUPPORTED,
+            two, "D2 is 0.0001");
+    refused(OF("*HYPERELASTIC, OGDEN\n500, 1e4, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "m1 of the law ogden is 10000");
+    refused(OF("*HYPERELASTIC, OGDEN, N=1\n500, 2, 1e-4, 20, 7\n"), LAR_ERROR_FORMAT, three,
+            "expected the end of the line");
+    refused(OF("*HYPERELASTIC, OGDEN, N=3\n1, 2, 1, 2, 1, 2, 1, 0\n0, 20, 7\n"), LAR_ERROR_FORMAT,
+            three + 1, "expected the end of the line");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, -2, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "LAMBDA_M is -2; it must be more than zero");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, 200, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "N of the law arruda-boyce is 40000");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, 2\n"), LAR_ERROR_UNSUPPORTED, two,
+            "D is 0, which asks for a material that cannot change its volume");
     refused(OF("*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n"), LAR_ERROR_UNSUPPORTED, two,
             "the parameter TEST DATA INPUT of *HYPERELASTIC");
     refused(OF("*HYPERELASTIC, NEO HOOKE\n500\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
@@ -509,19 +575,13 @@ static void test_damage(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_materials),
-        cmocka_unit_test(test_yeoh),
-        cmocka_unit_test(test_static_without_density),
-        cmocka_unit_test(test_bad_materials),
-        cmocka_unit_test(test_supports),
-        cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_bad_loads),
-        cmocka_unit_test(test_initial_velocity),
-        cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_is_deck),
+        cmocka_unit_test(test_materials),     cmocka_unit_test(test_yeoh),
+        cmocka_unit_test(test_series),        cmocka_unit_test(test_static_without_density),
+        cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_bad_supports),  cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bad_loads),     cmocka_unit_test(test_initial_velocity),
+        cmocka_unit_test(test_contact),       cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_parts),         cmocka_unit_test(test_is_deck),
         cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,6 +48,10 @@ static void test_names(void **state) {
     assert_string_equal(lar_law_name[LAR_LAW_coupled_neo_hookean], "coupled-neo-hookean");
     assert_string_equal(lar_law_name[LAR_LAW_mooney_rivlin], "mooney-rivlin");
     assert_string_equal(lar_law_name[LAR_LAW_yeoh], "yeoh");
+    assert_int_equal(LAR_LAW_arruda_boyce, 4); /* files have the numbers */
+    assert_int_equal(LAR_LAW_veronda_westmann, 5);
+    assert_int_equal(LAR_LAW_holmes_mow, 6);
+    assert_int_equal(LAR_LAW_ogden, 7);
 }
 
 static void refused(lar_material material, const char *part) {

@@ -170,6 +170,25 @@ static void test_plain_values(void **state) {
     lar_model_destroy(model);
 }
 
+static void test_stiffening_laws(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD "materials:\n"
+             "  - {cells: all, law: ogden, density: 1, c1: 2e3, m1: 1.3, c3: -5, m3: -2, "
+             "bulk_modulus: 1e5}\n"
+             "  - {cells: 2, law: arruda-boyce, density: 1, mu: 1e3, N: 8, bulk_modulus: 1e5}\n"
+             "  - {cells: {list: [102]}, law: veronda-westmann, density: 1, c1: 300, c2: 2.5, "
+             "bulk_modulus: 1e5}\n"
+             "  - {cells: {list: [104]}, law: holmes-mow, density: 1, mu: 3e3, lambda: 1e3, beta: "
+             "0.5}\n");
+    assert_memory_equal(model->material[0].parameter, ((double[]){2e3, 1.3, 0, 0, -5, -2, 1e5}),
+                        56);
+    assert_memory_equal(model->material[1].parameter, ((double[]){1e3, 8, 1e5}), 24);
+    same(lar_material_shear(&model->material[2]), 750);
+    assert_memory_equal(model->material[3].parameter, ((double[]){3e3, 1e3, 0.5}), 24);
+    lar_model_destroy(model);
+}
+
 static void test_materials(void **state) {
     (void)state;
     lar_model *model = scene(
@@ -544,6 +563,7 @@ int main(void) {
         cmocka_unit_test(test_whole_selections),
         cmocka_unit_test(test_plain_values),
         cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_stiffening_laws),
         cmocka_unit_test(test_motion_and_loads),
         cmocka_unit_test(test_surface),
         cmocka_unit_test(test_output),

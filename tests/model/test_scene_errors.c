@@ -137,8 +137,30 @@ static void test_materials(void **state) {
         {"  - {cells: all, law: neo-hookean}\n", "4:5", "for example density: 1050"},
         {"  - {cells: all, law: neo-hokean, density: 1}\n", "4:23",
          "the law \"neo-hokean\" is unknown; did you mean neo-hookean? the laws are: neo-hookean, "
-         "coupled-neo-hookean, mooney-rivlin, yeoh"},
-        {"  - {cells: all, law: ogden, density: 1}\n", "4:23", "the laws are: neo-hookean"},
+         "coupled-neo-hookean, mooney-rivlin, yeoh, arruda-boyce, veronda-westmann, holmes-mow, "
+         "ogden"},
+        {"  - {cells: all, law: gent, density: 1}\n", "4:23", "the laws are: neo-hookean"},
+        {"  - {cells: all, law: ogden, density: 1}\n", "4:5",
+         "or c1, m1 and bulk_modulus (c2, m2, c3 and m3 may be left out), and nothing besides"},
+        {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 2, c2: 3, bulk_modulus: 9}\n", "4:5",
+         "m2 of the law ogden is 0; it is the power of the term of c2 and must be between 0.01 "
+         "and 100, or between -0.01 and -100"},
+        {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 1e5, bulk_modulus: 9}\n", "4:5",
+         "m1 of the law ogden is 100000"},
+        {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: .inf, bulk_modulus: 9}\n", "4:53",
+         "is not a finite number"},
+        {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 2, c3: -9, m3: 1, bulk_modulus: 9}\n",
+         "4:5", "the shear modulus is -2.5 Pa"},
+        {"  - {cells: all, law: arruda-boyce, density: 1, mu: 4, N: 0, bulk_modulus: 9}\n", "4:59",
+         "N is 0; it must be more than zero"},
+        {"  - {cells: all, law: arruda-boyce, density: 1, mu: 4, N: x, bulk_modulus: 9}\n", "4:59",
+         "a number without a unit"},
+        {"  - {cells: all, law: veronda-westmann, density: 1, c1: 4, c2: 4e3, bulk_modulus: 9}\n",
+         "4:5",
+         "c2 of the law veronda-westmann is 4000; it has no unit and must be between 0.001 "
+         "and 1000"},
+        {"  - {cells: all, law: holmes-mow, density: 1, mu: 4, lambda: 3}\n", "4:5",
+         "or mu, lambda and beta, and nothing besides"},
         {"  - {cells: all, law: neo-hookean, density: -1}\n", "4:45",
          "density is -1; it must be more than zero"},
         {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: \"4 kPa\", "

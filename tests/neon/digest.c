@@ -100,7 +100,8 @@ static void pack_element(world *w, int e, int turn, const lar_material *material
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         *lar_block_parameter(&block->head, &w->more[e / LAR_BLOCK], k, lane) =
-            material->parameter[k] * hex8.volume * SCALE;
+            material->parameter[k] *
+            (lar_law_scales(material->law, k) ? hex8.volume * SCALE : 1);
     box->head = block->head;
 }
 

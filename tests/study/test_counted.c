@@ -52,7 +52,8 @@ static void make_block(int law, bool box, uint64_t seed, block *b) {
         for (int h = 0; h < 2; h++) {
             for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
                 *lar_block_parameter(head[h], &b->more, k, lane) =
-                    b->material.parameter[k] * e.volume * 0x1p40;
+                    b->material.parameter[k] *
+                    (lar_law_scales(b->material.law, k) ? e.volume * 0x1p40 : 1);
             for (int m = 0; m < 4; m++) head[h]->stiffness[m][lane] = e.stiffness[m] * 0x1p40;
             for (int a = 0; a < 8; a++) head[h]->node[a][lane] = 4 * (8 * lane + a);
         }
@@ -137,8 +138,9 @@ static void moving_has_the_same_bits(void **state) {
 
 typedef double element_force(const double corner[8][3], const lar_material *material,
                              const double u[8][3], double force[8][3]);
-typedef double counted_force(int law, const double parameter[4], const double corner[8][3],
-                             const double u[8][3], double force[8][3], lar_operations *counts);
+typedef double counted_force(int law, const double parameter[LAR_LAW_PARAMETERS],
+                             const double corner[8][3], const double u[8][3], double force[8][3],
+                             lar_operations *counts);
 
 static void slow_kinds_have_the_same_bits(void **state) {
     (void)state;

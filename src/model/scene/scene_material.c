@@ -47,15 +47,18 @@ static void list_keys(const char *key[KEYS_MAX + 1]) {
     }
 }
 
-/* True when the entry has exactly the form's stiffness keys. */
+/* True when the entry has exactly the form's stiffness keys; terms may be left out. */
 static bool has_form(const lar_yaml *node, const stiffness_form *form) {
     const char *key[KEYS_MAX + 1];
-    int present = 0;
-    for (int i = 0; i < form->count; i++)
-        if (!lar_yaml_get(node, form->key[i].name)) return false;
+    int present = 0, own = 0;
+    for (int i = 0; i < form->count; i++) {
+        bool given = lar_yaml_get(node, form->key[i].name) != NULL;
+        if (!given && !lar_law_may_miss(form->key, i)) return false;
+        own += given;
+    }
     list_keys(key);
     for (int i = OWN_KEYS; key[i]; i++) present += lar_yaml_get(node, key[i]) != NULL;
-    return present == form->count;
+    return present == own;
 }
 
 /* Whether a law's own parameters are the two moduli. */
@@ -66,12 +69,23 @@ static bool is_shear_bulk(const stiffness_form *form) {
     return same;
 }
 
+/* The keys of a form in a sentence: those that it needs, and those that may be left out. */
+static void list_form(const stiffness_form *form, char *text, size_t size) {
+    const char *name[LAR_LAW_PARAMETERS];
+    char needed[120] = "", more[120] = "";
+    for (int wanted = 0; wanted < 2; wanted++) {
+        int count = 0;
+        for (int i = 0; i < form->count; i++)
+            if (lar_law_may_miss(form->key, i) == (wanted == 1)) name[count++] = form->key[i].name;
+        if (count) lar_text_list(name, count, wanted ? more : needed, sizeof needed);
+    }
+    snprintf(text, size, *more ? "%s (%s may be left out)" : "%s", needed, more);
+}
+
 static lar_status no_form(const lar_scene *scene, const lar_yaml *node, lar_law law) {
     const stiffness_form own = own_form(law);
-    const char *name[LAR_LAW_PARAMETERS];
-    char also[160] = "";
-    for (int i = 0; i < own.count; i++) name[i] = own.key[i].name;
-    if (!is_shear_bulk(&own)) lar_text_list(name, own.count, also, sizeof also);
+    char also[300] = "";
+    if (!is_shear_bulk(&own)) list_form(&own, also, sizeof also);
     return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
                           "a material of the law %s needs either shear_modulus and bulk_modulus, "
                           "or youngs_modulus and poisson_ratio%s%s, and nothing besides",
@@ -83,9 +97,15 @@ static lar_status read_numbers(const lar_scene *scene, const lar_yaml *node,
     lar_status status = LAR_OK;
     for (int i = 0; !status && i < form->count; i++) {
         const lar_yaml *number = lar_yaml_get(node, form->key[i].name);
-        status = form->key[i].value == LAR_VALUE_MODULUS
-                     ? lar_scene_positive(scene, number, LAR_IN_PASCAL, &value[i])
-                     : lar_scene_number(scene, number, LAR_IN_PASCAL, &value[i]);
+        const char *what = lar_law_in_pascal(&form->key[i])
+                               ? LAR_IN_PASCAL
+                               : "a number without a unit, for example 5";
+        lar_law_value kind = form->key[i].value;
+        value[i] = 0;
+        if (!number) continue;
+        status = kind == LAR_VALUE_MODULUS || kind == LAR_VALUE_NUMBER
+                     ? lar_scene_positive(scene, number, what, &value[i])
+                     : lar_scene_number(scene, number, what, &value[i]);
     }
     return status;
 }

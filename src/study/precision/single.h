@@ -36,7 +36,7 @@ typedef struct lar_single_box {
 } lar_single_box;
 
 typedef struct lar_single_more {
-    float modulus[1][LAR_SINGLE_BLOCK];
+    float modulus[4][LAR_SINGLE_BLOCK];
 } __attribute__((aligned(64))) lar_single_more;
 
 /* A run of such blocks; law, shape and rows as numbers of hex8_block.h and material.h. */

@@ -44,6 +44,12 @@ LAR_INLINE single_lane single_fma(single_lane a, single_lane b, single_lane c) {
 LAR_INLINE single_lane single_fnma(single_lane a, single_lane b, single_lane c) {
     return (single_lane)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
 }
+LAR_INLINE single_lane single_max(single_lane a, single_lane b) {
+    return (single_lane)_mm512_max_ps((__m512)a, (__m512)b);
+}
+LAR_INLINE single_lane single_sqrt(single_lane a) {
+    return (single_lane)_mm512_sqrt_ps((__m512)a);
+}
 LAR_INLINE single_bits single_bits_of(single_lane a) {
     return (single_bits)a;
 }
@@ -93,6 +99,12 @@ LAR_INLINE single_lane single_fma(single_lane a, single_lane b, single_lane c) {
 }
 LAR_INLINE single_lane single_fnma(single_lane a, single_lane b, single_lane c) {
     return fmaf(-a, b, c);
+}
+LAR_INLINE single_lane single_max(single_lane a, single_lane b) {
+    return a > b ? a : b;
+}
+LAR_INLINE single_lane single_sqrt(single_lane a) {
+    return sqrtf(a);
 }
 LAR_INLINE single_bits single_bits_of(single_lane a) {
     single_bits bits;
@@ -224,6 +236,35 @@ LAR_INLINE single_lane lar_lane_log(single_lane J) {
     return single_fma(single_convert(k), single_set(0x1.62e430p-1F), log_m);
 }
 
+/* e^x as there, by Taylor's series up to r^7; x counts as 87 at most in size. */
+LAR_INLINE single_lane lar_lane_exp_parts(single_lane x, single_lane *power) {
+    static const float term[] = {1.0F / 5040, 1.0F / 720, 1.0F / 120, 1.0F / 24, 1.0F / 6, 0.5F};
+    const single_lane magic = single_set(0x1.8p23F), max = single_set(87);
+    x = -single_max(-max, -single_max(-max, x));
+    single_lane shifted = single_fma(x, single_set(0x1.715476p+0F), magic);
+    single_lane k = shifted - magic;
+    single_lane r = single_fnma(k, single_set(0x1.62e430p-1F), x);
+    r = single_fnma(k, single_set(-0x1.05c610p-29F), r);
+    single_lane sum = single_set(term[0]);
+    for (int n = 1; n < 6; n++) sum = single_fma(sum, r, single_set(term[n]));
+    *power = single_of_bits(((single_bits_of(shifted) + 127) & 0xff) << 23);
+    return single_fma(r * r, sum, r);
+}
+LAR_INLINE single_lane lar_lane_exp(single_lane x) {
+    single_lane power, less_one = lar_lane_exp_parts(x, &power);
+    return single_fma(power, less_one, power);
+}
+LAR_INLINE single_lane lar_lane_expm1(single_lane x) {
+    single_lane power, less_one = lar_lane_exp_parts(x, &power);
+    return single_fma(power, less_one, power - single_set(1));
+}
+
+LAR_INLINE single_lane lar_lane_sign(single_lane x) {
+    return single_of_bits((single_bits_of(x) & INT32_MIN) | 0x3f800000);
+}
+
+#define LAR_LANE_TINY 1e-30F
+
 /* ---- the source, in float ---------------------------------------------------------------- */
 
 #define lar_lane              single_lane
@@ -234,6 +275,8 @@ LAR_INLINE single_lane lar_lane_log(single_lane J) {
 #define lar_lane_set          single_set
 #define lar_lane_fma          single_fma
 #define lar_lane_fnma         single_fnma
+#define lar_lane_sqrt         single_sqrt
+#define lar_lane_max          single_max
 #define lar_lane_round        single_round
 #define lar_ilane_scatter_add single_scatter
 #define lar_ilane_scatter_row single_scatter_row
@@ -244,7 +287,6 @@ LAR_INLINE single_lane lar_lane_log(single_lane J) {
 /* Watching and moving are left to others: what they need does nothing. */
 #define lar_lane_not_greater(a, b) ((void)(a), (void)(b), 0U)
 #define lar_lane_abs(a)            (a)
-#define lar_lane_max(a, b)         ((void)(b), (a))
 #define lar_ilane_to_lane(a)       ((void)(a), single_set(0))
 #define lar_ilane_load(p)          ((void)(p), (single_ilane){0})
 #define lar_ilane_store(p, a)      ((void)(p), (void)(a))

@@ -35,7 +35,7 @@ static inline int64_t lar_operations_all(const lar_operations *o) {
 
 /* Numbers of one block of eight elements, lane by lane, as in mechanics/hex8_block.h. */
 typedef struct lar_counted_block {
-    double modulus[4][8], stiffness[4][8];
+    double modulus[7][8], stiffness[4][8];
     double gradient[6][3][8]; /* of a box: [m][0] along its own axis, m < 3 */
     double shape[4][3][8];
     int32_t node[8][8]; /* 4 times the index */
@@ -51,9 +51,9 @@ void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *f
                         const double *push, lar_operations *counts);
 
 /* Forces of one element of hex8-full, or hex8-matrix; returns det F. */
-double lar_counted_full(int law, const double parameter[4], const double corner[8][3],
+double lar_counted_full(int law, const double parameter[7], const double corner[8][3],
                         const double u[8][3], double force[8][3], lar_operations *counts);
-double lar_counted_matrix(int law, const double parameter[4], const double corner[8][3],
+double lar_counted_matrix(int law, const double parameter[7], const double corner[8][3],
                           const double u[8][3], double force[8][3], lar_operations *counts);
 
 #endif

@@ -38,7 +38,9 @@ static lar_operations count_block(const sample *s, bool box) {
     lar_hex8_prepare(s->corner, &s->material, &element);
     for (int lane = 0; lane < LAR_BLOCK; lane++) {
         for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-            block.modulus[k][lane] = s->material.parameter[k] * element.volume * 0x1p40;
+            block.modulus[k][lane] =
+                s->material.parameter[k] *
+                (lar_law_scales(s->material.law, k) ? element.volume * 0x1p40 : 1);
         for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
             block.stiffness[m][lane] = element.stiffness[m] * 0x1p40;
         for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)

@@ -144,7 +144,7 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, lar_law law, lar_m
     lar_status status = check_pressure_model(feb, node, dialect);
     for (int i = 0; i < dialect->count && !status; i++) {
         const lar_law_parameter *of = &dialect->parameter[i];
-        bool needed = of->value != LAR_VALUE_OPTIONAL && of->value != LAR_VALUE_NOT_OURS;
+        bool needed = !lar_law_may_miss(dialect->parameter, i);
         known[1 + i] = of->name;
         status = read_parameter(feb, node, of->name, needed, &given[i]);
     }
@@ -167,7 +167,7 @@ static lar_law find_law(const char *type) {
 
 static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *type) {
     const char *name[LAR_LAW_COUNT];
-    char list[200];
+    char list[300];
     int count = 0;
     for (int law = 0; law < LAR_LAW_COUNT; law++)
         if (lar_law_table[law].febio->name) name[count++] = lar_law_table[law].febio->name;

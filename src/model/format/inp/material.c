@@ -44,11 +44,13 @@ lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
     return LAR_OK;
 }
 
-/* The material that an option belongs to, and its one line of numbers. More lines are values at
- * other temperatures. */
+/* The material that an option belongs to, and its one line of numbers, or two where there are more
+ * than eight. More lines are values at other temperatures. */
 static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *field, int max,
                               int *count, inp_material **material) {
+    enum { LINE = 8 };
     lar_span line;
+    int more;
     if (deck->current < 0)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "*%.*s stands outside of a material; put it behind its *MATERIAL",
@@ -58,6 +60,10 @@ static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *fi
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT, "*%.*s has no line of numbers; add it",
                         inp_shown(card->keyword), card->keyword.at);
     lar_status status = inp_fields(deck, line, field, max, count);
+    if (!status && *count == LINE && max > LINE + 1 && inp_data_line(&deck->reader, &line)) {
+        status = inp_fields(deck, line, field + LINE, max - LINE, &more);
+        *count += more;
+    }
     if (!status && inp_data_line(&deck->reader, &line))
         return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
                         "*%.*s depends on temperature or other fields, which Lariat does not have; "
@@ -114,31 +120,41 @@ lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
     return check_law(deck, material);
 }
 
+/* What a constant may be. */
+static lar_status check_constant(const inp_deck *deck, const inp_card *card, const lar_law_row *law,
+                                 const lar_law_parameter *of, double given) {
+    if (of->value == LAR_VALUE_SOFTNESS && !(given > 0.0))
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "%s is %g, which asks for a material that cannot change its volume; "
+                        "give it %s = 2 / K, with a bulk modulus K of some hundred times the shear "
+                        "modulus",
+                        of->name, given, of->name);
+    if (of->value == LAR_VALUE_NOT_OURS && given != 0.0)
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "%s is %g; Lariat's %s law does not have that term, give it 0 or leave "
+                        "it out",
+                        of->name, given, law->title);
+    if (of->value == LAR_VALUE_NUMBER && !(given > 0.0))
+        return inp_fail(deck, card->line, LAR_ERROR_MODEL, "%s is %g; it must be more than zero",
+                        of->name, given);
+    return LAR_OK;
+}
+
 /* The constants of a law, in the order of its deck. */
 static lar_status read_constants(inp_deck *deck, const inp_card *card, const lar_law_row *law,
                                  const lar_span *field, int fields, double *given) {
     const lar_law_dialect *dialect = law->abaqus;
     for (int i = 0; i < dialect->count; i++) {
         const lar_law_parameter *of = &dialect->parameter[i];
-        lar_status status = of->value == LAR_VALUE_CONSTANT
-                                ? inp_number(deck, field, fields, i, of->name, &given[i])
-                                : inp_optional(deck, field, fields, i, of->name, 0.0, &given[i]);
+        bool needed = of->value == LAR_VALUE_CONSTANT || of->value == LAR_VALUE_NUMBER;
+        lar_status status = needed ? inp_number(deck, field, fields, i, of->name, &given[i])
+                                   : inp_optional(deck, field, fields, i, of->name, 0.0, &given[i]);
         if (status) return status;
     }
-    for (int i = 0; i < dialect->count; i++) {
-        const lar_law_parameter *of = &dialect->parameter[i];
-        if (of->value == LAR_VALUE_SOFTNESS && !(given[i] > 0.0))
-            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                            "%s is %g, which asks for a material that cannot change its volume; "
-                            "give it %s = 2 / K, with a bulk modulus K of some hundred times C10",
-                            of->name, given[i], of->name);
-        if (of->value == LAR_VALUE_NOT_OURS && given[i] != 0.0)
-            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                            "%s is %g; Lariat's %s law does not have that term, give it 0 or leave "
-                            "it out",
-                            of->name, given[i], law->title);
-    }
-    return LAR_OK;
+    lar_status status = LAR_OK;
+    for (int i = 0; i < dialect->count && !status; i++)
+        status = check_constant(deck, card, law, &dialect->parameter[i], given[i]);
+    return status;
 }
 
 static int find_constant(const lar_law_dialect *dialect, const char *name) {
@@ -159,50 +175,112 @@ static bool has_constants(const lar_law_dialect *dialect, const lar_law_dialect 
     return dialect->count > 0;
 }
 
-/* The law that a card asks for: LAR_LAW_COUNT, none of ours. */
-static lar_law asked_law(const inp_card *card) {
+/* What a card asks for: LAR_LAW_COUNT, none of ours; as a series of so many terms, 0 where it is
+ * none. */
+typedef struct asked_law {
+    lar_law law;
+    int terms;
+} asked_law;
+
+static asked_law find_asked(const inp_card *card) {
     lar_span ignored;
     for (int law = LAR_LAW_COUNT - 1; law >= 0; law--) {
-        const char *name = lar_law_table[law].abaqus->name;
-        if (name && inp_parameter(card, name, &ignored)) return (lar_law)law;
+        const lar_law_dialect *dialect = lar_law_table[law].abaqus;
+        if (dialect->series && inp_parameter(card, dialect->series, &ignored))
+            return (asked_law){(lar_law)law, 1}; /* without N */
+        if (dialect->name && inp_parameter(card, dialect->name, &ignored))
+            return (asked_law){(lar_law)law, 0};
     }
-    return LAR_LAW_COUNT;
+    return (asked_law){LAR_LAW_COUNT, 0};
 }
 
 /* What Abaqus calls our laws; ends with NULL. */
-static int list_laws(const char *name[LAR_LAW_COUNT + 1]) {
+enum { NAMES_MAX = 2 * LAR_LAW_COUNT };
+static int list_laws(const char *name[NAMES_MAX + 1]) {
     int count = 0;
-    for (int law = 0; law < LAR_LAW_COUNT; law++)
-        if (lar_law_table[law].abaqus->name) name[count++] = lar_law_table[law].abaqus->name;
+    for (int law = 0; law < LAR_LAW_COUNT; law++) {
+        const lar_law_dialect *dialect = lar_law_table[law].abaqus;
+        if (dialect->name) name[count++] = dialect->name;
+        if (dialect->series && strcmp(dialect->series, dialect->name) != 0)
+            name[count++] = dialect->series;
+    }
     name[count] = NULL;
     return count;
 }
 
 static lar_status refuse_law(inp_deck *deck, const inp_card *card) {
-    const char *name[LAR_LAW_COUNT + 1];
-    char list[200];
+    const char *name[NAMES_MAX + 1];
+    char list[300];
     lar_text_list(name, list_laws(name), list, sizeof list);
     return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
                     "this kind of *HYPERELASTIC is not read; Lariat has %s, with constants", list);
 }
 
-lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
-    const char *known[LAR_LAW_COUNT + 2];
+static int terms_max(const lar_law_dialect *dialect) {
+    return dialect->count / (dialect->per_term + 1);
+}
+
+/* The terms of a series, N of its card. */
+static lar_status read_terms(inp_deck *deck, const inp_card *card, asked_law *asked) {
+    lar_span text;
+    int64_t count;
+    const lar_law_row *law = &lar_law_table[asked->law];
+    if (!inp_parameter(card, "N", &text)) return LAR_OK;
+    if (!lar_span_int64(text, &count) || count < 1)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "N=%.*s of *HYPERELASTIC is no number of terms; give 1, 2 or 3",
+                        inp_shown(text), text.at);
+    if (count > terms_max(law->abaqus))
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "N=%lld of *HYPERELASTIC; Lariat's %s law has %d terms at most",
+                        (long long)count, law->title, terms_max(law->abaqus));
+    asked->terms = (int)count;
+    return LAR_OK;
+}
+
+/* Fields of a series of fewer terms than there are, to where those of the longest one stand. */
+static void spread(const lar_law_dialect *dialect, int terms, lar_span *field, int *fields) {
+    lar_span from[LAR_LAW_GIVEN];
+    int per_term = dialect->per_term, given = *fields < LAR_LAW_GIVEN ? *fields : LAR_LAW_GIVEN;
+    memcpy(from, field, (size_t)given * sizeof *from);
+    for (int i = 0; i < dialect->count; i++) {
+        int behind = i - per_term * terms_max(dialect);
+        int at = behind < 0 ? i : per_term * terms + behind;
+        bool there = behind < 0 ? i < per_term * terms : behind < terms;
+        field[i] = there && at < given ? from[at] : (lar_span){"", 0};
+    }
+    *fields = dialect->count;
+}
+
+/* The numbers of a card in the order of the law's row. */
+static lar_status read_card(inp_deck *deck, const inp_card *card, asked_law asked,
+                            inp_material **material, double given[LAR_LAW_GIVEN]) {
+    const lar_law_row *law = &lar_law_table[asked.law];
     lar_span field[LAR_LAW_GIVEN + 1]; /* and a temperature */
-    double given[LAR_LAW_GIVEN] = {0}, own[LAR_LAW_GIVEN];
-    int fields, count = list_laws(known);
-    inp_material *material;
-    lar_law asked = asked_law(card), law = 0;
-    if (asked == LAR_LAW_COUNT) return refuse_law(deck, card);
-    known[count] = "MODULI";
-    known[count + 1] = NULL;
-    lar_status status = inp_only(deck, card, known);
-    if (!status)
-        status = read_option(deck, card, field, lar_law_table[asked].abaqus->count + 1, &fields,
-                             &material);
-    if (!status) status = read_constants(deck, card, &lar_law_table[asked], field, fields, given);
+    int fields, count = law->abaqus->count;
+    if (asked.terms) count = asked.terms * (law->abaqus->per_term + 1);
+    lar_status status = read_option(deck, card, field, count + 1, &fields, material);
     if (status) return status;
-    while (!has_constants(lar_law_table[law].abaqus, lar_law_table[asked].abaqus, given, own))
+    if (asked.terms) spread(law->abaqus, asked.terms, field, &fields);
+    return read_constants(deck, card, law, field, fields, given);
+}
+
+lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
+    const char *known[NAMES_MAX + 3];
+    double given[LAR_LAW_GIVEN] = {0}, own[LAR_LAW_GIVEN];
+    int count = list_laws(known);
+    inp_material *material;
+    asked_law asked = find_asked(card);
+    lar_law law = 0;
+    if (asked.law == LAR_LAW_COUNT) return refuse_law(deck, card);
+    known[count++] = "MODULI";
+    if (asked.terms) known[count++] = "N";
+    known[count] = NULL;
+    lar_status status = inp_only(deck, card, known);
+    if (!status && asked.terms) status = read_terms(deck, card, &asked);
+    if (!status) status = read_card(deck, card, asked, &material, given);
+    if (status) return status;
+    while (!has_constants(lar_law_table[law].abaqus, lar_law_table[asked.law].abaqus, given, own))
         law++; /* as far as the one that is asked for */
     status = take_law(deck, card, material, law);
     if (status) return status;
@@ -314,8 +392,8 @@ static lar_status notice_law(inp_deck *deck, const inp_material *material) {
     if (law->abaqus->volume)
         return inp_notice(deck, material->line,
                           "material '%.60s': Lariat's %s law answers a change of volume by %s "
-                          "instead of (J - 1)^2 / D1, which is equal where the volume changes "
-                          "little",
+                          "instead of (J - 1)^2 / D1 or what Abaqus has for it, which is equal "
+                          "where the volume changes little",
                           material->name, law->title, law->abaqus->volume);
     return LAR_OK;
 }
