@@ -72,8 +72,7 @@ static void add_number(lar_json *json, double value) {
     }
     /* Viewers get the shorter of two that read as the same number. */
     if (!json->out) snprintf(number, sizeof number, "%.9g", value);
-    if (json->out || strtod(number, NULL) != value)
-        snprintf(number, sizeof number, "%.17g", value);
+    if (json->out || strtod(number, NULL) != value) snprintf(number, sizeof number, "%.17g", value);
     char *comma = strchr(number, ','); /* of the host's locale */
     if (comma) *comma = '.';
     add_word(json, number);
@@ -166,6 +165,18 @@ void lar_json_vector(lar_json *json, const char *name, const double *v, int coun
         add_number(json, v[i]);
     }
     add(json, "]", 1);
+}
+
+void lar_json_integers(lar_json *json, const char *name, const int32_t *v, int count) {
+    lar_json_open(json, name, '[');
+    for (int i = 0; i < count; i++) lar_json_integer(json, NULL, v[i]);
+    lar_json_close(json);
+}
+
+void lar_json_hash(lar_json *json, const char *name, uint64_t hash) {
+    char text[17];
+    snprintf(text, sizeof text, "%016" PRIx64, hash);
+    lar_json_text(json, name, text);
 }
 
 void lar_json_raw(lar_json *json, const char *text, size_t length) {

@@ -56,6 +56,8 @@ void lar_json_number(lar_json *json, const char *name, double value);
 void lar_json_integer(lar_json *json, const char *name, int64_t value);
 void lar_json_boolean(lar_json *json, const char *name, bool value);
 void lar_json_vector(lar_json *json, const char *name, const double *v, int count);
+void lar_json_integers(lar_json *json, const char *name, const int32_t *v, int count);
+void lar_json_hash(lar_json *json, const char *name, uint64_t hash); /* 16 digits, as a text */
 
 /* Members or values that are JSON already. */
 void lar_json_raw(lar_json *json, const char *text, size_t length);

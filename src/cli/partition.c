@@ -41,9 +41,7 @@ static void write_scheme(lar_json *json, const lar_partition_scheme *s) {
 
 static void write_json(const lar_partition_report *r) {
     lar_json json = lar_json_to(stdout);
-    lar_json_open(&json, "grid", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(&json, NULL, r->grid[i]);
-    lar_json_close(&json);
+    lar_json_integers(&json, "grid", r->grid, 3);
     lar_json_integer(&json, "processors", r->processors);
     lar_json_integer(&json, "diameter", r->diameter);
     lar_json_integer(&json, "elements", r->elements);

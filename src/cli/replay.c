@@ -107,12 +107,7 @@ static void write_json(const replay *r) {
     lar_json_text(&json, "element", cli_element_names[r->recorded.element]);
     lar_json_integer(&json, "steps", (int64_t)r->report.steps);
     lar_json_number(&json, "time_step", r->recorded.time_step);
-    lar_json_text(&json, "grid", r->parallel.grid);
-    lar_json_text(&json, "grid_reason", r->parallel.reason);
-    lar_json_integer(&json, "processors", r->parallel.processors);
-    lar_json_integer(&json, "threads", r->parallel.threads);
-    lar_json_text(&json, "scheme", r->parallel.scheme);
-    lar_json_text(&json, "comm", r->parallel.comm);
+    cli_write_parallel(&json, &r->parallel);
     lar_json_text(&json, "isa", lar_simulation_isa(r->simulation));
     lar_json_number(&json, "wall_time", r->elapsed);
     lar_json_integer(&json, "hashes", (int64_t)r->report.hashes);

@@ -32,8 +32,6 @@ typedef struct verify {
 
 static void write_json(const verify *v) {
     const lar_schedule_proof *proof = &v->report.proof;
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, v->report.hash);
     lar_json json = lar_json_to(stdout);
     lar_json_text(&json, "title", v->info.title);
     lar_json_integer(&json, "elements", v->info.elements);
@@ -57,7 +55,7 @@ static void write_json(const verify *v) {
     lar_json_integer(&json, "verified_steps", (int64_t)v->report.listed);
     lar_json_integer(&json, "delays", (int64_t)v->report.seed);
     lar_json_integer(&json, "steps", (int64_t)v->setting.steps);
-    lar_json_text(&json, "state_hash", hash);
+    lar_json_hash(&json, "state_hash", v->report.hash);
     lar_json_boolean(&json, "verified", true);
     lar_json_end(&json);
 }

@@ -94,6 +94,5 @@ void lar_server_tell_reading(lar_server *server, const lar_job_end *end) {
         if (question->element >= 0) write_element(server, end, json);
         if (question->energy) write_energy(&end->reading, json);
     }
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }

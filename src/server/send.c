@@ -98,9 +98,7 @@ static lar_status write_embedded(lar_json *json, const lar_model *model, lar_err
 
 static void write_scan(lar_json *json, const lar_image *image) {
     lar_json_open(json, "scan", '{');
-    lar_json_open(json, "size", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(json, NULL, image->size[i]);
-    lar_json_close(json);
+    lar_json_integers(json, "size", image->size, 3);
     lar_json_open(json, "labels", '[');
     for (int32_t i = 0; i < image->name_count; i++) {
         lar_json_open(json, NULL, '{');
@@ -288,7 +286,9 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
 /* ---- notes ------------------------------------------------------------------------------------
  */
 
-void lar_viewer_text(lar_viewer *viewer, char *text) {
+void lar_viewer_tell(lar_viewer *viewer, lar_json *json) {
+    lar_json_end(json);
+    char *text = json->failed ? NULL : lar_strdup(lar_json_data(json));
     if (!text) return;
     if (viewer->notes == LAR_NOTES_MAX) {
         free(viewer->note[0]);
@@ -304,8 +304,7 @@ void lar_viewer_note(lar_server *server, lar_viewer *viewer, const char *sentenc
     lar_json_begin(json);
     lar_json_text(json, "kind", "note");
     lar_json_text(json, "text", sentence);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t tool,
@@ -322,8 +321,7 @@ void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t 
     else
         lar_json_integer(json, "tool", tool);
     lar_json_text(json, "state", state);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 /* ---- sending ----------------------------------------------------------------------------------

@@ -21,9 +21,7 @@ static void write_json(const bench_frame *frame, const lar_bench_kernel_result *
     lar_json_number(&json, "bytes_per_element", r->bytes_per_element);
     lar_json_integer(&json, "operations_per_element", LAR_BENCH_OPERATIONS);
     lar_json_integer(&json, "nodes", r->nodes);
-    lar_json_open(&json, "edge", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(&json, NULL, r->edge[i]);
-    lar_json_close(&json);
+    lar_json_integers(&json, "edge", r->edge, 3);
     lar_json_number(&json, "scaled_jacobian_min", r->scaled_jacobian_min);
     lar_json_integer(&json, "samples", r->repeat);
     lar_json_integer(&json, "steps_per_sample", (int64_t)r->steps);

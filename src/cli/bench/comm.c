@@ -54,9 +54,7 @@ static void write_json(const bench_frame *frame, const lar_bench_comm_result *r)
     lar_json json = bench_open_json(frame);
     lar_json_integer(&json, "packet_bytes", r->bytes);
     lar_json_integer(&json, "samples", r->repeat);
-    lar_json_open(&json, "cores", '[');
-    for (int i = 0; i < 2; i++) lar_json_integer(&json, NULL, r->cores[i]);
-    lar_json_close(&json);
+    lar_json_integers(&json, "cores", r->cores, 2);
     lar_json_number(&json, "portion_ns", r->portion);
     lar_json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, r, &r->row[i]);

@@ -40,8 +40,6 @@ static void write_row(lar_json *json, const lar_bench_scaling_row *row) {
 }
 
 static void write_json(const scaling_settings *s, const lar_bench_scaling_result *r) {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
     lar_json json = bench_open_json(&s->frame);
     lar_json_text(&json, "title", r->info.title);
     lar_json_integer(&json, "elements", r->info.elements);
@@ -54,7 +52,7 @@ static void write_json(const scaling_settings *s, const lar_bench_scaling_result
     lar_json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
     lar_json_integer(&json, "steps_per_sample", (int64_t)r->steps);
     if (r->core_to_core.median > 0) bench_write_spread(&json, "core_to_core_ns", &r->core_to_core);
-    lar_json_text(&json, "state_hash", hash);
+    lar_json_hash(&json, "state_hash", r->hash);
     lar_json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, &r->row[i]);
     lar_json_close(&json);

@@ -19,8 +19,6 @@ static double real_time_factor(const lar_bench_step_result *r) {
 }
 
 static void write_json(const bench_frame *frame, const lar_bench_step_result *r) {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
     lar_json json = bench_open_json(frame);
     lar_json_text(&json, "title", r->info.title);
     lar_json_integer(&json, "elements", r->info.elements);
@@ -42,7 +40,7 @@ static void write_json(const bench_frame *frame, const lar_bench_step_result *r)
     lar_json_number(&json, "ns_per_element", 1e3 * r->microseconds.median / r->info.elements);
     lar_json_number(&json, "real_time_factor", real_time_factor(r));
     lar_json_integer(&json, "touching", r->contact.touching);
-    lar_json_text(&json, "state_hash", hash);
+    lar_json_hash(&json, "state_hash", r->hash);
     bench_close_json(frame, &json);
 }
 

@@ -64,9 +64,7 @@ void mesh_report_json(const mesh_report *report) {
 void mesh_report_labels_json(const char *path, const lar_label_list *list) {
     lar_json json = lar_json_to(stdout);
     lar_json_text(&json, "file", path);
-    lar_json_open(&json, "voxels", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(&json, NULL, list->size[i]);
-    lar_json_close(&json);
+    lar_json_integers(&json, "voxels", list->size, 3);
     lar_json_open(&json, "labels", '[');
     for (int32_t i = 0; i < list->count; i++) {
         const lar_label_row *row = &list->row[i];

@@ -98,9 +98,7 @@ void cli_print_crossings(const lar_mesh_quality *quality) {
 
 void cli_write_quality(lar_json *json, const lar_mesh_quality *quality) {
     lar_json_open(json, "quality", '{');
-    lar_json_open(json, "jacobian_histogram", '[');
-    for (int b = 0; b < 10; b++) lar_json_integer(json, NULL, quality->jacobian_bin[b]);
-    lar_json_close(json);
+    lar_json_integers(json, "jacobian_histogram", quality->jacobian_bin, 10);
     lar_json_number(json, "above_02", quality->above_02);
     lar_json_number(json, "above_05", quality->above_05);
     lar_json_number(json, "mean_edge", quality->mean_edge);

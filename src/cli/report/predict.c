@@ -100,9 +100,7 @@ void predict_report_json(const predict_report *report) {
     const lar_prediction *p = report->prediction;
     const lar_network_result *r = &p->network;
     lar_json json = lar_json_to(stdout);
-    lar_json_open(&json, "grid", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(&json, NULL, r->grid[i]);
-    lar_json_close(&json);
+    lar_json_integers(&json, "grid", r->grid, 3);
     lar_json_integer(&json, "processors", r->processors);
     lar_json_integer(&json, "threads", r->threads);
     lar_json_text(&json, "scheme", report->scheme);

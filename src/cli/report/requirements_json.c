@@ -194,9 +194,7 @@ void requirements_write_json(const requirements_report *p) {
     if (p->title) {
         lar_json_text(&json, "title", p->title);
         lar_json_boolean(&json, "demonstration", p->r->demonstration);
-        lar_json_open(&json, "grid", '[');
-        for (int i = 0; i < 3; i++) lar_json_integer(&json, NULL, p->r->grid[i]);
-        lar_json_close(&json);
+        lar_json_integers(&json, "grid", p->r->grid, 3);
         lar_json_integer(&json, "elements_max", p->r->elements_max);
     }
     write_quantities(&json, "quantities", &p->r->quantities);

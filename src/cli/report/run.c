@@ -104,8 +104,6 @@ void run_report_json(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     int32_t max_parts;
     uint64_t divided = lar_simulation_divided_steps(simulation, &max_parts);
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
     lar_json json = lar_json_to(out);
     lar_json_text(&json, "title", report->info.title);
     lar_json_integer(&json, "elements", report->info.elements);
@@ -115,12 +113,7 @@ void run_report_json(const run_report *report, FILE *out) {
     lar_json_number(&json, "time", lar_simulation_time(simulation));
     lar_json_number(&json, "time_step", lar_simulation_time_step(simulation));
     lar_json_number(&json, "stable_step", report->info.stable_step);
-    lar_json_text(&json, "grid", report->parallel->grid);
-    lar_json_text(&json, "grid_reason", report->parallel->reason);
-    lar_json_integer(&json, "processors", report->parallel->processors);
-    lar_json_integer(&json, "threads", report->parallel->threads);
-    lar_json_text(&json, "scheme", report->parallel->scheme);
-    lar_json_text(&json, "comm", report->parallel->comm);
+    cli_write_parallel(&json, report->parallel);
     lar_json_text(&json, "isa", lar_simulation_isa(simulation));
     lar_json_number(&json, "wall_time", stepping_time(report));
     write_times(&json, report->clock);
@@ -134,7 +127,7 @@ void run_report_json(const run_report *report, FILE *out) {
     write_rest(&json, report);
     lar_json_integer(&json, "divided_steps", (int64_t)divided);
     lar_json_integer(&json, "most_parts", max_parts);
-    lar_json_text(&json, "state_hash", hash);
+    lar_json_hash(&json, "state_hash", lar_simulation_hash(simulation));
     lar_json_boolean(&json, "verify", report->verify);
     lar_json_integer(&json, "frames", report->frames);
     lar_json_boolean(&json, "interrupted", report->interrupted);

@@ -93,19 +93,12 @@ static void print_devices(const view_report *report, FILE *out) {
 
 void view_report_json(const view_report *report, FILE *out) {
     const lar_session_status *s = &report->status;
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(report->simulation));
     lar_json json = lar_json_to(out);
     lar_json_text(&json, "title", report->info.title);
     lar_json_text(&json, "url", report->url);
     lar_json_integer(&json, "elements", report->info.elements);
     lar_json_integer(&json, "nodes", report->info.nodes);
-    lar_json_text(&json, "grid", report->parallel->grid);
-    lar_json_text(&json, "grid_reason", report->parallel->reason);
-    lar_json_integer(&json, "processors", report->parallel->processors);
-    lar_json_integer(&json, "threads", report->parallel->threads);
-    lar_json_text(&json, "scheme", report->parallel->scheme);
-    lar_json_text(&json, "comm", report->parallel->comm);
+    cli_write_parallel(&json, report->parallel);
     lar_json_text(&json, "isa", lar_simulation_isa(report->simulation));
     lar_json_text(&json, "state", state_names[s->state]);
     lar_json_text(&json, "message", s->message);
@@ -130,7 +123,7 @@ void view_report_json(const view_report *report, FILE *out) {
     lar_json_integer(&json, "viewers", report->viewers_max);
     write_tools(&json, report);
     write_devices(&json, report);
-    lar_json_text(&json, "state_hash", hash);
+    lar_json_hash(&json, "state_hash", lar_simulation_hash(report->simulation));
     lar_json_end(&json);
 }
 
