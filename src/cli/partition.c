@@ -1,7 +1,6 @@
 /* lariat partition: who computes what. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/commands.h"

@@ -1,6 +1,5 @@
 /* Sets of nodes: who has a node, and in which directions it must travel (traffic.h). */
 #include <stdlib.h>
-#include <string.h>
 
 #include "divide/cost.h"
 #include "divide/traffic.h"

@@ -1,6 +1,5 @@
 /* Viewers that ask for values: whose turn it is, and what they are told. */
 #include <stdio.h>
-#include <string.h>
 
 #include "server/state.h"
 

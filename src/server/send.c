@@ -1,6 +1,5 @@
 /* What viewers are told: docs/viewer-protocol.md. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

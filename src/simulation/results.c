@@ -5,7 +5,6 @@
  * beside and renamed). Positions are those of the reference; the point array "displacement"
  * moves them (ParaView: Warp By Vector). */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

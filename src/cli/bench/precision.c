@@ -1,6 +1,5 @@
 /* lariat bench precision: what single precision would lose and win. */
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 #include "cli/bench/frame.h"

@@ -1,7 +1,6 @@
 /* lariat bench scaling: what several processors are worth on this machine. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/bench/frame.h"

@@ -1,7 +1,6 @@
 #include "cli/report/info.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 /* The words of scenes; hands are in none. */

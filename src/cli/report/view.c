@@ -1,7 +1,6 @@
 #include "cli/report/view.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 #include "cli/parallel.h"
 #include "base/json.h"

@@ -1,6 +1,5 @@
 #include "model/format/vtk/vtk_xml_write.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
