@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "study/device_client.h"
 
 static volatile sig_atomic_t stopped;

@@ -5,7 +5,7 @@
 
 #include "cli/build_info.h"
 #include "cli/commands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "study/doctor.h"
 
 typedef struct findings {

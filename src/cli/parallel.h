@@ -3,7 +3,7 @@
 #ifndef LAR_CLI_PARALLEL_H
 #define LAR_CLI_PARALLEL_H
 
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/commands.h"
 #include "study/parallel.h"
 #include "study/processes.h"

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "study/partition.h"
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
 #include "study/bench/step_clock.h"

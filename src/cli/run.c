@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "study/verify.h"
 

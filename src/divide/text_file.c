@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 #include "base/text.h"
 #include "divide/distribution.h"
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/json_read.h"
+#include "base/json/read.h"
 #include "base/pose.h"
 #include "base/text.h"
 

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "base/pin.h"
 #include "base/thread.h"
 #include "comm/socket.h"

@@ -19,7 +19,7 @@
 #include "base/clock.h"
 #include "server/files.h"
 #include "server/hands.h"
-#include "base/json.h"
+#include "base/json/write.h"
 #include "server/scan.h"
 #include "server/work.h"
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "step/measure.h"
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"

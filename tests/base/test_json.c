@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "base/json.h"
-#include "base/json_read.h"
+#include "base/json/write.h"
+#include "base/json/read.h"
 
 typedef struct page {
     char *text;

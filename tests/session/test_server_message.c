@@ -1,5 +1,5 @@
 /* What viewers may say, word by word; and what is written for them is JSON. */
-#include "base/json.h"
+#include "base/json/write.h"
 #include "server/message.h"
 #include "testing.h"
 

@@ -13,7 +13,7 @@
 #ifndef LAR_CLI_BENCH_FRAME_H
 #define LAR_CLI_BENCH_FRAME_H
 
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/options.h"
 #include "study/bench/baseline.h"
 #include "study/bench/kernel.h"

@@ -3,7 +3,7 @@
 #ifndef LAR_CLI_REPORT_MESH_QUALITY_H
 #define LAR_CLI_REPORT_MESH_QUALITY_H
 
-#include "base/json.h"
+#include "base/json/write.h"
 #include "lariat.h"
 #include "study/real_time.h"
 

@@ -1,7 +1,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "base/json.h"
+#include "base/json/write.h"
 #include "cli/report/requirements.h"
 
 static void write_quantities(lar_json *json, const char *name, const lar_quantities *q) {

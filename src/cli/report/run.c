@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/parallel.h"
-#include "base/json.h"
+#include "base/json/write.h"
 
 /* Wall time that the simulated time is compared with: the steps, and the waiting between them when
  * they were paced. Writing frames is no part of it unless it had to fit between two ticks. */

@@ -3,7 +3,7 @@
 #include <inttypes.h>
 
 #include "cli/parallel.h"
-#include "base/json.h"
+#include "base/json/write.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
 static const char *const cause_names[] = {"", "step", "division", "machine"};

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
-#include "base/part_file.h"
+#include "base/file/folder.h"
+#include "base/file/part_file.h"
 #include "model/demo/demo_scene.h"
 #include "model/format/mesh_io.h"
 

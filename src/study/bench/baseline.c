@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json_read.h"
+#include "base/json/read.h"
 #include "base/memory.h"
 #include "base/text.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 #include "study/bench/fma_peak.h"
 #include "study/machine.h"
 

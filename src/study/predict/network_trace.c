@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 
 enum { BARS_MAX = 256 };
 

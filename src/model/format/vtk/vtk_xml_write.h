@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 
 /* A text inside an attribute's quotes. Control characters, which XML cannot hold, become '?'. */
 lar_status lar_part_attribute(lar_part_file *out, const char *text);

@@ -1,4 +1,4 @@
-#include "base/json_read.h"
+#include "base/json/read.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -6,8 +6,8 @@
  *     if (!status) fprintf(out.file, ...);
  *     return lar_part_close(&out, status);
  */
-#ifndef LAR_BASE_PART_FILE_H
-#define LAR_BASE_PART_FILE_H
+#ifndef LAR_BASE_FILE_PART_FILE_H
+#define LAR_BASE_FILE_PART_FILE_H
 
 #include <stddef.h>
 #include <stdio.h>

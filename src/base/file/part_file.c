@@ -1,4 +1,4 @@
-#include "base/part_file.h"
+#include "base/file/part_file.h"
 
 #include <errno.h>
 #include <stdarg.h>

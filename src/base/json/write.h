@@ -18,8 +18,8 @@
  * Numbers are written so that they read as the same double; what is not finite becomes null. Text
  * that is not UTF-8 gets replacement characters.
  */
-#ifndef LAR_BASE_JSON_H
-#define LAR_BASE_JSON_H
+#ifndef LAR_BASE_JSON_WRITE_H
+#define LAR_BASE_JSON_WRITE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "base/json.h"
+#include "base/json/write.h"
 
 #include <inttypes.h>
 #include <math.h>
