@@ -12,7 +12,7 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
   lariat_optimise(s "^server/" ${sources})
   target_link_libraries(lariat_core PRIVATE PkgConfig::LWS)
 else()
-  target_sources(lariat_core PRIVATE server/absent.c server/json.c server/message.c)
+  target_sources(lariat_core PRIVATE server/absent.c server/message.c)
 endif()
 set(LARIAT_VIEWER_BELOW_PREFIX ${CMAKE_INSTALL_DATADIR}/lariat/viewer)
 set_property(SOURCE server/files.c APPEND PROPERTY COMPILE_DEFINITIONS

@@ -1,6 +1,5 @@
 #include "base/text.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,4 +152,22 @@ bool lar_span_equal(lar_span span, const char *word) {
 
 bool lar_span_equal_nocase(lar_span span, const char *word) {
     return strlen(word) == span.length && strncasecmp(span.at, word, span.length) == 0;
+}
+
+int lar_utf8_length(const unsigned char *text, size_t length) {
+    if (length == 0) return 0;
+    int bytes = text[0] < 0x80             ? 1
+                : (text[0] & 0xe0) == 0xc0 ? 2
+                : (text[0] & 0xf0) == 0xe0 ? 3
+                : (text[0] & 0xf8) == 0xf0 ? 4
+                                           : 0;
+    if (bytes == 0 || (size_t)bytes > length) return 0;
+    uint32_t code = bytes == 1 ? text[0] : text[0] & (0x7fu >> bytes);
+    for (int i = 1; i < bytes; i++) {
+        if ((text[i] & 0xc0) != 0x80) return 0;
+        code = code << 6 | (text[i] & 0x3fu);
+    }
+    static const uint32_t min[] = {0, 0, 0x80, 0x800, 0x10000};
+    bool surrogate = code >= 0xd800 && code <= 0xdfff;
+    return code < min[bytes] || code > 0x10ffff || surrogate ? 0 : bytes;
 }

@@ -63,6 +63,9 @@ bool lar_span_split(lar_span span, char separator, lar_span *head, lar_span *res
 bool lar_span_equal(lar_span span, const char *word);
 bool lar_span_equal_nocase(lar_span span, const char *word);
 
+/* Bytes of the UTF-8 character at the beginning of `text`; 0: there is none (RFC 3629). */
+int lar_utf8_length(const unsigned char *text, size_t length);
+
 /* Puts '?' where a character would steer a terminal that shows the text: control characters, also
  * those beyond ASCII (U+0080 to U+009F in UTF-8). All other UTF-8 stays. NULL is fine. */
 void lar_text_show(char *text);

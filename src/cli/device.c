@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "study/device_client.h"
 
 static volatile sig_atomic_t stopped;
@@ -16,26 +16,26 @@ static void stop(int signal) {
 }
 
 static void write_json(const lar_device_client_options *o, const lar_device_client_report *r) {
-    json_writer json = json_begin(stdout);
-    json_text(&json, "address", o->address);
-    json_number(&json, "seconds", r->seconds);
-    json_integer(&json, "sent", (int64_t)r->sent);
-    json_integer(&json, "answered", (int64_t)r->answered);
-    json_integer(&json, "lost", (int64_t)r->lost);
-    json_integer(&json, "strange", (int64_t)r->strange);
-    json_integer(&json, "steps", (int64_t)r->steps);
-    json_open(&json, "round_trip_us", '{');
-    json_number(&json, "p50", 1e6 * r->round_trip_p50);
-    json_number(&json, "p99", 1e6 * r->round_trip_p99);
-    json_number(&json, "p999", 1e6 * r->round_trip_p999);
-    json_number(&json, "max", 1e6 * r->round_trip_max);
-    json_close(&json);
-    json_number(&json, "largest_force", r->force_max);
-    json_number(&json, "mean_force", r->force_mean);
-    json_number(&json, "largest_torque", r->torque_max);
-    json_integer(&json, "touching", (int64_t)r->touching);
-    json_integer(&json, "holding", (int64_t)r->holding);
-    json_end(&json);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "address", o->address);
+    lar_json_number(&json, "seconds", r->seconds);
+    lar_json_integer(&json, "sent", (int64_t)r->sent);
+    lar_json_integer(&json, "answered", (int64_t)r->answered);
+    lar_json_integer(&json, "lost", (int64_t)r->lost);
+    lar_json_integer(&json, "strange", (int64_t)r->strange);
+    lar_json_integer(&json, "steps", (int64_t)r->steps);
+    lar_json_open(&json, "round_trip_us", '{');
+    lar_json_number(&json, "p50", 1e6 * r->round_trip_p50);
+    lar_json_number(&json, "p99", 1e6 * r->round_trip_p99);
+    lar_json_number(&json, "p999", 1e6 * r->round_trip_p999);
+    lar_json_number(&json, "max", 1e6 * r->round_trip_max);
+    lar_json_close(&json);
+    lar_json_number(&json, "largest_force", r->force_max);
+    lar_json_number(&json, "mean_force", r->force_mean);
+    lar_json_number(&json, "largest_torque", r->torque_max);
+    lar_json_integer(&json, "touching", (int64_t)r->touching);
+    lar_json_integer(&json, "holding", (int64_t)r->holding);
+    lar_json_end(&json);
 }
 
 static void print_report(const lar_device_client_report *r) {

@@ -5,7 +5,7 @@
 
 #include "cli/build_info.h"
 #include "cli/commands.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "study/doctor.h"
 
 typedef struct findings {
@@ -17,51 +17,51 @@ typedef struct findings {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_measured(json_writer *json, const findings *f) {
+static void write_measured(lar_json *json, const findings *f) {
     const lar_doctor_measured *m = &f->measured;
-    json_open(json, "wakes_late_us", '{');
-    json_number(json, "p50", m->late.p50);
-    json_number(json, "p99", m->late.p99);
-    json_number(json, "p999", m->late.p999);
-    json_number(json, "max", m->late.max);
-    json_close(json);
-    json_number(json, "missed", m->missed);
-    json_number(json, "wall_per_step_us", 1e6 * m->step);
-    json_number(json, "time_step", m->time_step);
-    json_integer(json, "elements", m->elements);
-    json_number(json, "bytes_per_element", m->bytes);
-    json_number(json, "real_time_elements", floor(m->holds));
-    json_number(json, "memory_elements", m->fits > 0 ? floor(m->fits) : NAN);
+    lar_json_open(json, "wakes_late_us", '{');
+    lar_json_number(json, "p50", m->late.p50);
+    lar_json_number(json, "p99", m->late.p99);
+    lar_json_number(json, "p999", m->late.p999);
+    lar_json_number(json, "max", m->late.max);
+    lar_json_close(json);
+    lar_json_number(json, "missed", m->missed);
+    lar_json_number(json, "wall_per_step_us", 1e6 * m->step);
+    lar_json_number(json, "time_step", m->time_step);
+    lar_json_integer(json, "elements", m->elements);
+    lar_json_number(json, "bytes_per_element", m->bytes);
+    lar_json_number(json, "real_time_elements", floor(m->holds));
+    lar_json_number(json, "memory_elements", m->fits > 0 ? floor(m->fits) : NAN);
 }
 
 static void write_json(const findings *f) {
     const lar_doctor_machine *here = &f->here;
-    json_writer json = json_begin(stdout);
-    json_text(&json, "version", lar_version());
-    json_text(&json, "commit", cli_build_commit);
-    json_text(&json, "compiler", cli_build_compiler);
-    json_text(&json, "flags", cli_build_flags);
-    json_open(&json, "features", '[');
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "version", lar_version());
+    lar_json_text(&json, "commit", cli_build_commit);
+    lar_json_text(&json, "compiler", cli_build_compiler);
+    lar_json_text(&json, "flags", cli_build_flags);
+    lar_json_open(&json, "features", '[');
     for (int i = 0; i < LAR_FEATURES; i++) {
-        json_open(&json, NULL, '{');
-        json_text(&json, "name", f->feature[i].name);
-        json_text(&json, "gives", f->feature[i].gives);
-        json_boolean(&json, "there", f->feature[i].there);
-        json_text(&json, "get", f->feature[i].there ? "" : f->feature[i].get);
-        json_close(&json);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "name", f->feature[i].name);
+        lar_json_text(&json, "gives", f->feature[i].gives);
+        lar_json_boolean(&json, "there", f->feature[i].there);
+        lar_json_text(&json, "get", f->feature[i].there ? "" : f->feature[i].get);
+        lar_json_close(&json);
     }
-    json_close(&json);
-    json_text(&json, "cpu", here->machine.cpu);
-    json_integer(&json, "cores", here->machine.cores);
-    json_integer(&json, "usable_cores", here->usable_cores);
-    json_text(&json, "isa", here->machine.isa);
-    json_number(&json, "load", here->machine.load[0] < 0 ? NAN : here->machine.load[0]);
-    json_number(&json, "memory", here->memory > 0 ? here->memory : NAN);
-    json_number(&json, "free_memory", here->free > 0 ? here->free : NAN);
-    json_boolean(&json, "real_time_priority", here->priority);
-    json_number(&json, "clock_tick", here->clock_tick);
+    lar_json_close(&json);
+    lar_json_text(&json, "cpu", here->machine.cpu);
+    lar_json_integer(&json, "cores", here->machine.cores);
+    lar_json_integer(&json, "usable_cores", here->usable_cores);
+    lar_json_text(&json, "isa", here->machine.isa);
+    lar_json_number(&json, "load", here->machine.load[0] < 0 ? NAN : here->machine.load[0]);
+    lar_json_number(&json, "memory", here->memory > 0 ? here->memory : NAN);
+    lar_json_number(&json, "free_memory", here->free > 0 ? here->free : NAN);
+    lar_json_boolean(&json, "real_time_priority", here->priority);
+    lar_json_number(&json, "clock_tick", here->clock_tick);
     if (f->is_measured) write_measured(&json, f);
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */

@@ -93,6 +93,15 @@ void cli_print_reason(const lar_parallel *parallel, FILE *out) {
                 parallel->divided ? "chosen" : parallel->grid, parallel->reason);
 }
 
+void cli_write_parallel(lar_json *json, const lar_parallel *parallel) {
+    lar_json_text(json, "grid", parallel->grid);
+    lar_json_text(json, "grid_reason", parallel->reason);
+    lar_json_integer(json, "processors", parallel->processors);
+    lar_json_integer(json, "threads", parallel->threads);
+    lar_json_text(json, "scheme", parallel->scheme);
+    lar_json_text(json, "comm", parallel->comm);
+}
+
 /* ---- processes ------------------------------------------------------------------------------ */
 
 int cli_processes_begin(const cli_command *command, const cli_parallel *p, int argc, char **argv,

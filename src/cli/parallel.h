@@ -3,6 +3,7 @@
 #ifndef LAR_CLI_PARALLEL_H
 #define LAR_CLI_PARALLEL_H
 
+#include "base/json/write.h"
 #include "cli/commands.h"
 #include "study/parallel.h"
 #include "study/processes.h"
@@ -67,8 +68,9 @@ int cli_choose_grid(const cli_command *command, const cli_parallel *parallel,
                     const lar_model *model, const lar_grid_aim *aim, lar_options *options,
                     lar_grid_choice *choice);
 /* Why, where one was chosen. */
-
 void cli_print_reason(const lar_parallel *parallel, FILE *out);
+/* Who computes, and why so. */
+void cli_write_parallel(lar_json *json, const lar_parallel *parallel);
 
 /* Into the parallel part of the library's options. */
 void cli_parallel_set(const cli_parallel *parallel, lar_options *options);

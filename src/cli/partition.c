@@ -1,11 +1,10 @@
 /* lariat partition: who computes what. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "study/partition.h"
 
@@ -13,72 +12,70 @@ static const double DEFAULT_SECONDS = 25;
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_cost(json_writer *json, const char *name, const lar_partition_cost *cost) {
+static void write_cost(lar_json *json, const char *name, const lar_partition_cost *cost) {
     if (!cost->known) return;
-    json_open(json, name, '{');
-    json_integer(json, "worst", cost->worst);
-    json_integer(json, "total", cost->total);
-    json_close(json);
+    lar_json_open(json, name, '{');
+    lar_json_integer(json, "worst", cost->worst);
+    lar_json_integer(json, "total", cost->total);
+    lar_json_close(json);
 }
 
-static void write_scheme(json_writer *json, const lar_partition_scheme *s) {
-    json_open(json, NULL, '{');
-    json_text(json, "scheme", s->name);
-    json_number(json, "vectors_mean", s->vectors_mean);
-    json_integer(json, "vectors_max", s->vectors_max);
-    json_number(json, "local_vectors_mean", s->local_mean);
-    json_integer(json, "local_vectors_max", s->local_max);
-    json_number(json, "global_vectors_mean", s->global_mean);
-    json_integer(json, "global_vectors_max", s->global_max);
-    json_number(json, "bytes_mean", s->bytes_mean);
-    json_integer(json, "bytes_max", s->bytes_max);
-    json_number(json, "packets_mean", s->packets_mean);
-    json_integer(json, "packets_max", s->packets_max);
-    json_number(json, "packet_bytes_mean", s->packet_bytes_mean);
-    json_integer(json, "packet_bytes_max", s->packet_bytes_max);
-    json_close(json);
+static void write_scheme(lar_json *json, const lar_partition_scheme *s) {
+    lar_json_open(json, NULL, '{');
+    lar_json_text(json, "scheme", s->name);
+    lar_json_number(json, "vectors_mean", s->vectors_mean);
+    lar_json_integer(json, "vectors_max", s->vectors_max);
+    lar_json_number(json, "local_vectors_mean", s->local_mean);
+    lar_json_integer(json, "local_vectors_max", s->local_max);
+    lar_json_number(json, "global_vectors_mean", s->global_mean);
+    lar_json_integer(json, "global_vectors_max", s->global_max);
+    lar_json_number(json, "bytes_mean", s->bytes_mean);
+    lar_json_integer(json, "bytes_max", s->bytes_max);
+    lar_json_number(json, "packets_mean", s->packets_mean);
+    lar_json_integer(json, "packets_max", s->packets_max);
+    lar_json_number(json, "packet_bytes_mean", s->packet_bytes_mean);
+    lar_json_integer(json, "packet_bytes_max", s->packet_bytes_max);
+    lar_json_close(json);
 }
 
 static void write_json(const lar_partition_report *r) {
-    json_writer json = json_begin(stdout);
-    json_open(&json, "grid", '[');
-    for (int i = 0; i < 3; i++) json_integer(&json, NULL, r->grid[i]);
-    json_close(&json);
-    json_integer(&json, "processors", r->processors);
-    json_integer(&json, "diameter", r->diameter);
-    json_integer(&json, "elements", r->elements);
-    json_integer(&json, "nodes", r->nodes);
-    json_text(&json, "method", lar_partition_method_name[r->method]);
-    json_integer(&json, "elements_min", r->load_min);
-    json_integer(&json, "elements_max", r->load_max);
-    json_boolean(&json, "balanced", r->balanced);
-    json_number(&json, "n_pav", r->mean_processors);
-    json_integer(&json, "shared_nodes", r->shared);
-    json_integer(&json, "irregular_nodes", r->irregular);
-    json_integer(&json, "scattered_nodes", r->scattered);
-    json_integer(&json, "cost_before", r->cost[LAR_PARTITION_CUT].worst);
-    json_integer(&json, "cost_after", r->cost[r->method].worst);
-    json_number(&json, "cost_reduction", r->reduction);
-    json_open(&json, "costs", '{');
+    lar_json json = lar_json_to(stdout);
+    lar_json_integers(&json, "grid", r->grid, 3);
+    lar_json_integer(&json, "processors", r->processors);
+    lar_json_integer(&json, "diameter", r->diameter);
+    lar_json_integer(&json, "elements", r->elements);
+    lar_json_integer(&json, "nodes", r->nodes);
+    lar_json_text(&json, "method", lar_partition_method_name[r->method]);
+    lar_json_integer(&json, "elements_min", r->load_min);
+    lar_json_integer(&json, "elements_max", r->load_max);
+    lar_json_boolean(&json, "balanced", r->balanced);
+    lar_json_number(&json, "n_pav", r->mean_processors);
+    lar_json_integer(&json, "shared_nodes", r->shared);
+    lar_json_integer(&json, "irregular_nodes", r->irregular);
+    lar_json_integer(&json, "scattered_nodes", r->scattered);
+    lar_json_integer(&json, "cost_before", r->cost[LAR_PARTITION_CUT].worst);
+    lar_json_integer(&json, "cost_after", r->cost[r->method].worst);
+    lar_json_number(&json, "cost_reduction", r->reduction);
+    lar_json_open(&json, "costs", '{');
     for (int m = 0; m < LAR_PARTITION_METHODS; m++)
         write_cost(&json, lar_partition_method_name[m], &r->cost[m]);
-    json_close(&json);
-    json_integer(&json, "generations", r->generations);
-    json_number(&json, "seconds", r->seconds);
-    json_integer(&json, "threads", r->schedules.threads);
-    json_text(&json, "channels", r->schedules.channels);
-    json_open(&json, "schedules", '{');
-    json_text(&json, "scheme", r->schedules.scheme);
-    json_number(&json, "batches_mean", r->schedules.batches_mean);
-    json_integer(&json, "batches_max", r->schedules.batches_max);
-    json_number(&json, "waits_mean", r->schedules.waits_mean);
-    json_integer(&json, "waits_max", r->schedules.waits_max);
-    json_integer(&json, "buffer_bytes_max", r->schedules.buffer_bytes_max);
-    json_close(&json);
-    json_open(&json, "schemes", '[');
+    lar_json_close(&json);
+    lar_json_integer(&json, "generations", r->generations);
+    lar_json_number(&json, "seconds", r->seconds);
+    lar_json_integer(&json, "threads", r->schedules.threads);
+    lar_json_text(&json, "channels", r->schedules.channels);
+    lar_json_open(&json, "schedules", '{');
+    lar_json_text(&json, "scheme", r->schedules.scheme);
+    lar_json_number(&json, "batches_mean", r->schedules.batches_mean);
+    lar_json_integer(&json, "batches_max", r->schedules.batches_max);
+    lar_json_number(&json, "waits_mean", r->schedules.waits_mean);
+    lar_json_integer(&json, "waits_max", r->schedules.waits_max);
+    lar_json_integer(&json, "buffer_bytes_max", r->schedules.buffer_bytes_max);
+    lar_json_close(&json);
+    lar_json_open(&json, "schemes", '[');
     for (int s = 0; s < LAR_PARTITION_SCHEMES; s++) write_scheme(&json, &r->scheme[s]);
-    json_close(&json);
-    json_end(&json);
+    lar_json_close(&json);
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */

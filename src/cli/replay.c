@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
 #include "study/bench/step_clock.h"
@@ -99,29 +99,24 @@ static int look(void *context, uint64_t step) {
 static void write_json(const replay *r) {
     char hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(r->simulation));
-    json_writer json = json_begin(stdout);
-    json_text(&json, "recording", r->settings.recording);
-    json_text(&json, "title", r->info.title);
-    json_integer(&json, "elements", r->info.elements);
-    json_integer(&json, "nodes", r->info.nodes);
-    json_text(&json, "element", cli_element_names[r->recorded.element]);
-    json_integer(&json, "steps", (int64_t)r->report.steps);
-    json_number(&json, "time_step", r->recorded.time_step);
-    json_text(&json, "grid", r->parallel.grid);
-    json_text(&json, "grid_reason", r->parallel.reason);
-    json_integer(&json, "processors", r->parallel.processors);
-    json_integer(&json, "threads", r->parallel.threads);
-    json_text(&json, "scheme", r->parallel.scheme);
-    json_text(&json, "comm", r->parallel.comm);
-    json_text(&json, "isa", lar_simulation_isa(r->simulation));
-    json_number(&json, "wall_time", r->elapsed);
-    json_integer(&json, "hashes", (int64_t)r->report.hashes);
-    json_boolean(&json, "equal", true);
-    json_text(&json, "fault", r->fault);
-    json_text(&json, "state_hash", *r->fault ? "" : hash);
-    json_integer(&json, "frames", r->frames);
-    json_boolean(&json, "interrupted", cli_stop_asked != 0);
-    json_end(&json);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "recording", r->settings.recording);
+    lar_json_text(&json, "title", r->info.title);
+    lar_json_integer(&json, "elements", r->info.elements);
+    lar_json_integer(&json, "nodes", r->info.nodes);
+    lar_json_text(&json, "element", cli_element_names[r->recorded.element]);
+    lar_json_integer(&json, "steps", (int64_t)r->report.steps);
+    lar_json_number(&json, "time_step", r->recorded.time_step);
+    cli_write_parallel(&json, &r->parallel);
+    lar_json_text(&json, "isa", lar_simulation_isa(r->simulation));
+    lar_json_number(&json, "wall_time", r->elapsed);
+    lar_json_integer(&json, "hashes", (int64_t)r->report.hashes);
+    lar_json_boolean(&json, "equal", true);
+    lar_json_text(&json, "fault", r->fault);
+    lar_json_text(&json, "state_hash", *r->fault ? "" : hash);
+    lar_json_integer(&json, "frames", r->frames);
+    lar_json_boolean(&json, "interrupted", cli_stop_asked != 0);
+    lar_json_end(&json);
 }
 
 static void write_table(const replay *r) {

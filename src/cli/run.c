@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
@@ -181,27 +182,16 @@ static run_report report_of(const run *r) {
 }
 
 static int write_run_json(run *r, const run_report *report) {
-    char path[PATH_SIZE], part[PATH_SIZE + 8];
+    char path[PATH_SIZE];
+    lar_part_file out;
+    lar_error error;
     int length = snprintf(path, sizeof path, "%s/run.json", r->settings.out);
     if (length < 0 || (size_t)length >= sizeof path)
         return fail(r, CLI_FAILED, "the name of the folder for results is too long");
-    snprintf(part, sizeof part, "%s.part", path);
-    FILE *file = fopen(part, "w");
-    bool good = file != NULL;
-    int cause = errno;
-    if (file) {
-        run_report_json(report, file);
-        good = fflush(file) == 0 && !ferror(file);
-        cause = errno;
-        if (fclose(file) != 0 && good) good = false, cause = errno;
-        if (good && rename(part, path) != 0) good = false, cause = errno;
-        if (!good) remove(part);
-    }
-    if (good) return CLI_DONE;
-    return cli_complain(&cli_run, CLI_FAILED,
-                        "%s: cannot be written: %s; check the folder, its permissions and the "
-                        "free space",
-                        path, strerror(cause));
+    lar_status status = lar_part_open(&out, path, &error);
+    if (!status) run_report_json(report, out.file);
+    if (lar_part_close(&out, status) == LAR_OK) return CLI_DONE;
+    return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
 }
 
 static int report(run *r) {

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "cli/parallel.h"
 #include "study/verify.h"
 
@@ -32,34 +32,32 @@ typedef struct verify {
 
 static void write_json(const verify *v) {
     const lar_schedule_proof *proof = &v->report.proof;
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, v->report.hash);
-    json_writer json = json_begin(stdout);
-    json_text(&json, "title", v->info.title);
-    json_integer(&json, "elements", v->info.elements);
-    json_integer(&json, "nodes", v->info.nodes);
-    json_text(&json, "grid", v->parallel.grid);
-    json_integer(&json, "processors", v->parallel.processors);
-    json_integer(&json, "threads", v->parallel.threads);
-    json_text(&json, "scheme", v->parallel.scheme);
-    json_text(&json, "comm", v->parallel.comm);
-    json_open(&json, "schedules", '{');
-    json_integer(&json, "batches", proof->batches);
-    json_integer(&json, "waits", proof->waits);
-    json_integer(&json, "packets", proof->packets);
-    json_integer(&json, "empty_packets", proof->empty_packets);
-    json_integer(&json, "vectors", proof->vectors);
-    json_integer(&json, "sums", proof->sums);
-    json_boolean(&json, "balanced", proof->balanced);
-    json_integer(&json, "spread", proof->spread);
-    json_close(&json);
-    json_integer(&json, "passes", v->report.passes);
-    json_integer(&json, "verified_steps", (int64_t)v->report.listed);
-    json_integer(&json, "delays", (int64_t)v->report.seed);
-    json_integer(&json, "steps", (int64_t)v->setting.steps);
-    json_text(&json, "state_hash", hash);
-    json_boolean(&json, "verified", true);
-    json_end(&json);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "title", v->info.title);
+    lar_json_integer(&json, "elements", v->info.elements);
+    lar_json_integer(&json, "nodes", v->info.nodes);
+    lar_json_text(&json, "grid", v->parallel.grid);
+    lar_json_integer(&json, "processors", v->parallel.processors);
+    lar_json_integer(&json, "threads", v->parallel.threads);
+    lar_json_text(&json, "scheme", v->parallel.scheme);
+    lar_json_text(&json, "comm", v->parallel.comm);
+    lar_json_open(&json, "schedules", '{');
+    lar_json_integer(&json, "batches", proof->batches);
+    lar_json_integer(&json, "waits", proof->waits);
+    lar_json_integer(&json, "packets", proof->packets);
+    lar_json_integer(&json, "empty_packets", proof->empty_packets);
+    lar_json_integer(&json, "vectors", proof->vectors);
+    lar_json_integer(&json, "sums", proof->sums);
+    lar_json_boolean(&json, "balanced", proof->balanced);
+    lar_json_integer(&json, "spread", proof->spread);
+    lar_json_close(&json);
+    lar_json_integer(&json, "passes", v->report.passes);
+    lar_json_integer(&json, "verified_steps", (int64_t)v->report.listed);
+    lar_json_integer(&json, "delays", (int64_t)v->report.seed);
+    lar_json_integer(&json, "steps", (int64_t)v->setting.steps);
+    lar_json_hash(&json, "state_hash", v->report.hash);
+    lar_json_boolean(&json, "verified", true);
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */

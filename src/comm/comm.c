@@ -176,10 +176,6 @@ void lar_comm_complete(lar_comm *comm, uint64_t steps) {
     comm->completed_known = true;
 }
 
-const char *lar_comm_backend_name(const lar_comm *comm) {
-    return comm->backend->name;
-}
-
 /* ---- who is lost ------------------------------------------------------------------------- */
 
 double lar_comm_now(void) {

@@ -98,7 +98,6 @@ void lar_comm_abort(lar_comm *comm);
 
 int32_t lar_comm_self(const lar_comm *comm);
 int32_t lar_comm_count(const lar_comm *comm);
-const char *lar_comm_backend_name(const lar_comm *comm);
 
 /* Room that a packet takes in the receive buffer: payload, padding, tail. */
 static inline size_t lar_comm_padded(size_t bytes) {

@@ -36,7 +36,6 @@
 
 #ifdef LAR_HAVE_UCX
 #include <stdlib.h>
-#include <string.h>
 
 #include "comm/ucx_state.h"
 

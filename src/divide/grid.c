@@ -74,24 +74,6 @@ int32_t lar_grid_distance(const lar_grid *grid, int32_t p1, int32_t p2) {
     return abs(c1[0] - c2[0]) + abs(c1[1] - c2[1]) + abs(c1[2] - c2[2]);
 }
 
-/* |a| + |b| + |c| is the greatest of the sums with any signs: four of them, up to the sign of the
- * whole. So the greatest distance is the greatest range of x +- y +- z, without visiting pairs. */
-int32_t lar_grid_spread(const lar_grid *grid, const int32_t *set, int32_t count) {
-    int32_t max = 0;
-    for (int signs = 0; signs < 4; signs++) {
-        int32_t low = INT32_MAX, high = INT32_MIN;
-        for (int32_t i = 0; i < count; i++) {
-            int32_t c[3];
-            lar_grid_place(grid, set[i], c);
-            int32_t sum = c[0] + (signs & 1 ? -c[1] : c[1]) + (signs & 2 ? -c[2] : c[2]);
-            if (sum < low) low = sum;
-            if (sum > high) high = sum;
-        }
-        if (count > 0 && high - low > max) max = high - low;
-    }
-    return max;
-}
-
 void lar_grid_spread_along(const lar_grid *grid, const int32_t *set, int32_t count,
                            int32_t spread[3]) {
     int32_t low[3], high[3];
@@ -116,11 +98,4 @@ bool lar_grid_neighbours(const lar_grid *grid, int32_t p1, int32_t p2) {
 
 bool lar_grid_neighbours_along(const lar_grid *grid, int axis, int32_t p1, int32_t p2) {
     return lar_grid_neighbours(grid, p1, p2) && lar_grid_distance_along(grid, axis, p1, p2) == 1;
-}
-
-int32_t lar_grid_neighbour(const lar_grid *grid, int32_t p, int axis, int side) {
-    int32_t c[3];
-    lar_grid_place(grid, p, c);
-    c[axis] += side;
-    return lar_grid_processor(grid, c);
 }

@@ -38,9 +38,8 @@ int32_t lar_grid_processor(const lar_grid *grid, const int32_t place[3]);
 int32_t lar_grid_distance_along(const lar_grid *grid, int axis, int32_t p1, int32_t p2);
 int32_t lar_grid_distance(const lar_grid *grid, int32_t p1, int32_t p2);
 
-/* The greatest distance within a set of processors: D (eq. 3.6), and D_x, D_y, D_z (eqs. 3.7 to
- * 3.9). 0 for sets of less than two. */
-int32_t lar_grid_spread(const lar_grid *grid, const int32_t *set, int32_t count);
+/* The greatest distances within a set of processors, D_x, D_y, D_z (eqs. 3.7 to 3.9). 0 for sets of
+ * less than two. */
 void lar_grid_spread_along(const lar_grid *grid, const int32_t *set, int32_t count,
                            int32_t spread[3]);
 
@@ -50,8 +49,5 @@ int32_t lar_grid_diameter(const lar_grid *grid);
 /* Whether a channel joins the two (eq. 3.10), one along this axis (eqs. 3.11 to 3.13). */
 bool lar_grid_neighbours(const lar_grid *grid, int32_t p1, int32_t p2);
 bool lar_grid_neighbours_along(const lar_grid *grid, int axis, int32_t p1, int32_t p2);
-
-/* The neighbour of p along an axis, side -1 or +1; -1 at the border of the grid. */
-int32_t lar_grid_neighbour(const lar_grid *grid, int32_t p, int axis, int side);
 
 #endif

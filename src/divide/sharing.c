@@ -1,6 +1,5 @@
 /* Sets of nodes: who has a node, and in which directions it must travel (traffic.h). */
 #include <stdlib.h>
-#include <string.h>
 
 #include "divide/cost.h"
 #include "divide/traffic.h"
@@ -51,40 +50,4 @@ bool lar_node_scattered(const lar_grid *grid, const int32_t *set, int32_t count)
     int32_t corners = 1;
     for (int axis = 0; axis < 3; axis++) corners <<= direction >> axis & 1;
     return count != corners;
-}
-
-bool lar_node_at_side(const lar_grid *grid, const int32_t *set, int32_t count, int32_t p, int axis,
-                      int side) {
-    int32_t spread[3], place[3], other[3];
-    lar_grid_spread_along(grid, set, count, spread);
-    if (spread[axis] != 1) return false;
-    lar_grid_place(grid, p, place);
-    for (int32_t i = 0; i < count; i++) {
-        lar_grid_place(grid, set[i], other);
-        if ((other[axis] - place[axis]) * side < 0) return false;
-    }
-    return true;
-}
-
-static bool element_at_side(const lar_mesh *mesh, const lar_sharing *sharing, int32_t e, int32_t p,
-                            int axis, int side) {
-    for (int a = 0; a < 8; a++) {
-        const int32_t *set;
-        int32_t count = lar_sharing_of(sharing, mesh->element[e][a], &set);
-        if (lar_node_at_side(&sharing->grid, set, count, p, axis, side)) return true;
-    }
-    return false;
-}
-
-int32_t lar_elements_at_side(const lar_mesh *mesh, const lar_sharing *sharing,
-                             const lar_distribution *distribution, int32_t p, int axis, int side,
-                             uint8_t *mark) {
-    int32_t count = 0;
-    for (int32_t e = 0; e < mesh->element_count; e++) {
-        mark[e] = distribution->processor[e] == p &&
-                  element_at_side(mesh, sharing, e, p, axis, side) &&
-                  (side > 0 || !element_at_side(mesh, sharing, e, p, axis, 1));
-        count += mark[e];
-    }
-    return count;
 }

@@ -1,11 +1,11 @@
 #include "divide/text_file.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file/part_file.h"
 #include "base/text.h"
 #include "divide/distribution.h"
 
@@ -183,28 +183,8 @@ lar_status lar_text_file_done(lar_text_file *file) {
 
 lar_status lar_text_file_write(const char *path, lar_text_file_print *print, const void *context,
                                lar_error *error) {
-    size_t size = strlen(path) + sizeof ".part";
-    char *part = malloc(size);
-    if (!part) return lar_fail_memory(error, size, path);
-    snprintf(part, size, "%s.part", path);
-    errno = 0;
-    FILE *file = fopen(part, "wb");
-    if (file) print(file, context);
-    bool good = file && fflush(file) == 0 && !ferror(file);
-    int cause = errno;
-    if (file && fclose(file) != 0 && good) {
-        good = false;
-        cause = errno;
-    }
-    if (good && rename(part, path) != 0) {
-        good = false;
-        cause = errno;
-    }
-    if (file && !good) remove(part);
-    free(part);
-    if (good) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause ? cause : EIO));
+    lar_part_file out;
+    lar_status status = lar_part_open(&out, path, error);
+    if (!status) print(out.file, context);
+    return lar_part_close(&out, status);
 }

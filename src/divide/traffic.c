@@ -1,8 +1,5 @@
 #include "divide/traffic.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 const char *const lar_scheme_name[LAR_SCHEMES] = {"all", "local", "one", "two"};
 const char *const lar_channel_use_name[LAR_CHANNEL_USES] = {"sequential", "concurrent"};
 
@@ -90,40 +87,6 @@ void lar_scheme_messages(lar_scheme scheme, lar_channel_use channels, const lar_
 }
 
 /* ---- counts ----------------------------------------------------------------------------- */
-
-typedef struct meter {
-    const lar_grid *grid;
-    lar_traffic *traffic;
-    int64_t *packet; /* [processors][processors][LAR_STAGES] vectors */
-} meter;
-
-static void count_message(void *context, const lar_message *message) {
-    meter *m = context;
-    lar_traffic *t = &m->traffic[message->from];
-    bool local = lar_grid_neighbours(m->grid, message->from, message->to);
-    size_t pair = (size_t)message->from * (size_t)m->grid->count + (size_t)message->to;
-    int64_t *packet = &m->packet[pair * LAR_STAGES + (size_t)message->stage];
-    *(local ? &t->local : &t->global) += 1;
-    if (++*packet == 1) *(local ? &t->local_packets : &t->global_packets) += 1;
-    if (*packet > t->largest_packet) t->largest_packet = *packet;
-}
-
-lar_status lar_traffic_measure(const lar_sharing *sharing, lar_scheme scheme, lar_traffic *traffic,
-                               lar_error *error) {
-    size_t processors = (size_t)sharing->grid.count;
-    size_t packets = processors * processors * LAR_STAGES;
-    meter m = {&sharing->grid, traffic, lar_calloc(packets, sizeof *m.packet)};
-    if (!m.packet) return lar_fail_memory(error, packets * sizeof *m.packet, "packets");
-    memset(traffic, 0, processors * sizeof *traffic);
-    for (int32_t k = 0; k < sharing->node_count; k++) {
-        const int32_t *set;
-        int32_t count = lar_sharing_of(sharing, k, &set);
-        lar_scheme_messages(scheme, LAR_CHANNELS_SEQUENTIAL, &sharing->grid, set, count,
-                            count_message, &m);
-    }
-    free(m.packet);
-    return LAR_OK;
-}
 
 void lar_traffic_formula(lar_scheme scheme, int64_t n, int64_t *local, int64_t *global) {
     static const int64_t form[LAR_SCHEMES][2][3] = {/* n^2, n, 1 */

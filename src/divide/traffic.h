@@ -78,17 +78,6 @@ int lar_node_direction(const lar_grid *grid, const int32_t *set, int32_t count);
 /* Whether partial sums do not work for it: irregular, or not all corners of its box are taken. */
 bool lar_node_scattered(const lar_grid *grid, const int32_t *set, int32_t count);
 
-/* Whether a node belongs to K_p^X+ (side +1, eq. 6.1) or K_p^X- (side -1, eq. 6.3), or the like for
- * another axis: P_k spans one channel along it and p is at its lower, or upper, end. */
-bool lar_node_at_side(const lar_grid *grid, const int32_t *set, int32_t count, int32_t p, int axis,
-                      int side);
-
-/* Elements of p at that side: E_p^X+ (eq. 6.2), or with side -1 without those of the other side
- * (eqs. 6.4, 6.5). mark[element_count] is set to 1 for them and 0 else. Returns how many. */
-int32_t lar_elements_at_side(const lar_mesh *mesh, const lar_sharing *sharing,
-                             const lar_distribution *distribution, int32_t p, int axis, int side,
-                             uint8_t *mark);
-
 /* ---- messages --------------------------------------------------------------------------- */
 
 /* One vector on its way. Messages of a later stage leave when those of the stages before have
@@ -120,10 +109,6 @@ typedef struct lar_traffic {
     int64_t local_packets, global_packets; /* vectors of one stage to one peer are one packet */
     int64_t largest_packet;                /* vectors */
 } lar_traffic;
-
-/* Fills traffic[grid.count] for a scheme, packets as in the sequential use of channels. */
-lar_status lar_traffic_measure(const lar_sharing *sharing, lar_scheme scheme, lar_traffic *traffic,
-                               lar_error *error);
 
 /* Mean number of processors that have a node: n_pav = sum of |P_k| / number of nodes (T 3.5). */
 double lar_sharing_mean(const lar_sharing *sharing);

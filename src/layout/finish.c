@@ -1,7 +1,6 @@
 #include "layout/finish.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/simd.h"
 

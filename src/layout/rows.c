@@ -1,7 +1,6 @@
 #include "layout/rows.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "model/mesh/faces.h"
 

@@ -20,7 +20,7 @@
  *
  *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours share:
  *              96 bytes per element and 32 per node are read instead of 328, and the rest is made
- *              anew in every step, a few blocks at a time (theory.md 3, "Lean blocks").
+ *              anew in every step, a few blocks at a time (docs/performance.md, "Lean blocks").
  *
  * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
  * modal forces are rounded, once each, and the transform back to the nodes is integer arithmetic:

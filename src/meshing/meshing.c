@@ -2,7 +2,6 @@
  * the line of steps behind them (meshing/grid/voxel_grid.h draws it). */
 #include <ctype.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

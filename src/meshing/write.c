@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "meshing/meshing.h"
 #include "model/format/mesh_io.h"
 

@@ -1,6 +1,5 @@
 #include "model/settings.h"
 
-#include <math.h>
 #include <string.h>
 
 void lar_gravity_at(const lar_model *model, const lar_settings *settings, double time,

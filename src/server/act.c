@@ -2,7 +2,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "server/state.h"
@@ -125,8 +124,7 @@ static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what,
     lar_json_text(json, "kind", "saved");
     lar_json_text(json, "what", what);
     lar_json_text(json, "name", name);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 static void tell_added(lar_server *server, lar_viewer *viewer, int32_t tool) {
@@ -134,8 +132,7 @@ static void tell_added(lar_server *server, lar_viewer *viewer, int32_t tool) {
     lar_json_begin(json);
     lar_json_text(json, "kind", "added");
     lar_json_integer(json, "tool", tool);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 void lar_server_job_ended(lar_server *server, const lar_job_end *end) {

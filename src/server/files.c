@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "base/memory.h"
 #include "lariat.h"
 

@@ -1,6 +1,5 @@
 #include "server/hands.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"

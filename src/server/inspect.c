@@ -1,6 +1,5 @@
 /* Viewers that ask for values: whose turn it is, and what they are told. */
 #include <stdio.h>
-#include <string.h>
 
 #include "server/state.h"
 
@@ -56,7 +55,7 @@ static void write_node(const lar_server *server, const lar_job_end *end, lar_jso
     lar_json_vector(json, "rest", end->reading.rest, 3);
     lar_json_vector(json, "displacement", end->reading.displacement, 3);
     write_values(json, end->reading.of_node);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 static void write_element(const lar_server *server, const lar_job_end *end, lar_json *json) {
@@ -66,7 +65,7 @@ static void write_element(const lar_server *server, const lar_job_end *end, lar_
     lar_json_integer(json, "number", lar_model_element_id(server->model, element));
     lar_json_integer(json, "material", lar_model_element_material(server->model, element));
     write_values(json, end->reading.of_element);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 static void write_energy(const lar_reading *reading, lar_json *json) {
@@ -74,7 +73,7 @@ static void write_energy(const lar_reading *reading, lar_json *json) {
     lar_json_number(json, "kinetic", reading->kinetic);
     lar_json_number(json, "strain", reading->strain);
     lar_json_number(json, "hourglass", reading->hourglass);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 void lar_server_tell_reading(lar_server *server, const lar_job_end *end) {
@@ -94,6 +93,5 @@ void lar_server_tell_reading(lar_server *server, const lar_job_end *end) {
         if (question->element >= 0) write_element(server, end, json);
         if (question->energy) write_energy(&end->reading, json);
     }
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json/read.h"
 #include "base/pose.h"
 #include "base/text.h"
-#include "server/json.h"
 
 const lar_field_name lar_field_names[LAR_FIELDS] = {
     {"none", "", "", 0},
@@ -126,7 +126,7 @@ enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 /* ---- reading ---------------------------------------------------------------------------- */
 
 typedef struct reader {
-    const char *at, *end;
+    lar_json_reader in;
     uint32_t seen; /* keys, as bits */
     char text[KEYS][LAR_NAME_MAX + 1];
     double number[KEYS][4];
@@ -148,110 +148,28 @@ static bool refuse(reader *r, lar_close close, const char *format, ...) {
     return false;
 }
 
-static void skip_space(reader *r) {
-    while (r->at < r->end && memchr(" \t\r\n", *r->at, 4)) r->at++;
-}
-
-/* The next character, when it is this one. */
-static bool take(reader *r, char wanted) {
-    skip_space(r);
-    if (r->at >= r->end || *r->at != wanted) return false;
-    r->at++;
-    return true;
-}
-
-static int hex_digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-}
-
-/* One character of a string behind a backslash. What is not ASCII can be no word of the protocol:
- * it becomes 0x7f, which is none either. */
-static bool read_escape(reader *r, char *out) {
-    static const char names[] = "\"\\/bfnrt", values[] = "\"\\/\b\f\n\r\t";
-    char c = r->at < r->end ? *r->at++ : '\0';
-    const char *found = c ? strchr(names, c) : NULL;
-    if (found) {
-        *out = values[found - names];
-        return true;
-    }
-    if (c != 'u' || r->end - r->at < 4) return false;
-    int code = 0;
-    for (int i = 0; i < 4; i++) {
-        int digit = hex_digit(*r->at++);
-        if (digit < 0) return false;
-        code = code * 16 + digit;
-    }
-    *out = code > 0 && code < 0x7f ? (char)code : 0x7f;
-    return true;
-}
-
-/* A string of at most LAR_NAME_MAX characters; longer ones can be nothing we know. */
+/* Longer ones can be nothing we know, and must not become the same as what we do. */
 static bool read_string(reader *r, char text[LAR_NAME_MAX + 1]) {
-    size_t length = 0;
-    if (!take(r, '"')) return false;
-    while (r->at < r->end && *r->at != '"') {
-        char c = *r->at++;
-        if ((unsigned char)c < 0x20) return false;
-        if (c == '\\' && !read_escape(r, &c)) return false;
-        if (length < LAR_NAME_MAX)
-            text[length++] = c;
-        else
-            text[LAR_NAME_MAX - 1] = 0x7f;
-    }
-    text[length] = '\0';
-    return take(r, '"');
-}
-
-static bool is_digit(const reader *r, const char *at) {
-    return at < r->end && *at >= '0' && *at <= '9';
-}
-
-/* JSON's own grammar (RFC 8259, 6): no plus sign, no leading zero, no hexadecimal, no nan. */
-static bool read_number(reader *r, double *value) {
-    skip_space(r);
-    const char *from = r->at, *at = from;
-    if (at < r->end && *at == '-') at++;
-    if (!is_digit(r, at)) return false;
-    if (*at == '0' && is_digit(r, at + 1)) return false;
-    while (is_digit(r, at)) at++;
-    if (at < r->end && *at == '.') {
-        at++;
-        if (!is_digit(r, at)) return false;
-        while (is_digit(r, at)) at++;
-    }
-    if (at < r->end && (*at == 'e' || *at == 'E')) {
-        at++;
-        if (at < r->end && (*at == '+' || *at == '-')) at++;
-        if (!is_digit(r, at)) return false;
-        while (is_digit(r, at)) at++;
-    }
-    r->at = at;
-    return lar_span_double((lar_span){from, (size_t)(at - from)}, value) && isfinite(*value);
+    size_t length;
+    if (!lar_json_take_string(&r->in, text, LAR_NAME_MAX + 1, &length)) return false;
+    if (length > LAR_NAME_MAX) text[LAR_NAME_MAX - 1] = 0x7f;
+    return true;
 }
 
 static bool read_boolean(reader *r, double *value) {
-    skip_space(r);
-    for (int i = 0; i < 2; i++) {
-        const char *word = i ? "true" : "false";
-        size_t length = strlen(word);
-        if ((size_t)(r->end - r->at) < length || memcmp(r->at, word, length) != 0) continue;
-        r->at += length;
-        *value = i;
-        return true;
-    }
-    return false;
+    bool is_true;
+    if (!lar_json_take_boolean(&r->in, &is_true)) return false;
+    *value = is_true;
+    return true;
 }
 
 static bool read_numbers(reader *r, const key_row *row, double *value) {
     bool vector = row->kind == IS_VECTOR;
     int count = vector ? row->count : 1;
-    if (vector && !take(r, '['))
+    if (vector && !lar_json_take(&r->in, '['))
         return refuse(r, LAR_CLOSE_POLICY, "%s must be an array of %d numbers", row->name, count);
     for (int i = 0; i < count; i++) {
-        if ((i > 0 && !take(r, ',')) || !read_number(r, &value[i]))
+        if ((i > 0 && !lar_json_take(&r->in, ',')) || !lar_json_take_number(&r->in, &value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be %s%.0d number%s", row->name,
                           vector ? "an array of " : "a", vector ? count : 0, vector ? "s" : "");
         if (value[i] < row->min || value[i] > row->max)
@@ -260,7 +178,7 @@ static bool read_numbers(reader *r, const key_row *row, double *value) {
         if (row->kind == IS_WHOLE && value[i] != floor(value[i]))
             return refuse(r, LAR_CLOSE_POLICY, "%s must be a whole number", row->name);
     }
-    if (vector && !take(r, ']'))
+    if (vector && !lar_json_take(&r->in, ']'))
         return refuse(r, LAR_CLOSE_POLICY, "%s must be an array of %d numbers", row->name, count);
     return true;
 }
@@ -289,20 +207,23 @@ static bool read_member(reader *r) {
     if (r->seen & 1u << key)
         return refuse(r, LAR_CLOSE_POLICY, "the key %s is there twice", key_table[key].name);
     r->seen |= 1u << key;
-    if (!take(r, ':')) return refuse(r, LAR_CLOSE_POLICY, "a colon is missing behind a key");
+    if (!lar_json_take(&r->in, ':'))
+        return refuse(r, LAR_CLOSE_POLICY, "a colon is missing behind a key");
     return read_value(r, key);
 }
 
 static bool read_object(reader *r) {
-    if (!take(r, '{')) return refuse(r, LAR_CLOSE_POLICY, "a message must be a JSON object");
-    if (!take(r, '}')) {
+    if (!lar_json_take(&r->in, '{'))
+        return refuse(r, LAR_CLOSE_POLICY, "a message must be a JSON object");
+    if (!lar_json_take(&r->in, '}')) {
         do {
             if (!read_member(r)) return false;
-        } while (take(r, ','));
-        if (!take(r, '}')) return refuse(r, LAR_CLOSE_POLICY, "the object does not end");
+        } while (lar_json_take(&r->in, ','));
+        if (!lar_json_take(&r->in, '}'))
+            return refuse(r, LAR_CLOSE_POLICY, "the object does not end");
     }
-    skip_space(r);
-    return r->at == r->end || refuse(r, LAR_CLOSE_POLICY, "there is more behind the object");
+    return (lar_json_next(&r->in) == '\0' && r->in.at == r->in.end) ||
+           refuse(r, LAR_CLOSE_POLICY, "there is more behind the object");
 }
 
 /* ---- meaning ---------------------------------------------------------------------------- */
@@ -399,7 +320,7 @@ static bool set_rest(reader *r, lar_command *command) {
 
 lar_close lar_command_read(const char *text, size_t length, int32_t tools, lar_command *command,
                            char reason[LAR_REASON_BYTES]) {
-    reader r = {.at = text, .end = text + length, .reason = reason};
+    reader r = {.in = {text, text + length}, .reason = reason};
     lar_command found = {0};
     if (length > LAR_MESSAGE_MAX)
         refuse(&r, LAR_CLOSE_SIZE, "a message has at most %d bytes", LAR_MESSAGE_MAX);

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "contact/spares.h"
 #include "server/state.h"
 

@@ -1,6 +1,5 @@
 /* What viewers are told: docs/viewer-protocol.md. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +20,9 @@ static void write_materials(lar_json *json, const lar_model *model, int32_t coun
         lar_json_number(json, "density", info.density);
         lar_json_number(json, "shear_modulus", info.shear_modulus);
         lar_json_number(json, "bulk_modulus", info.bulk_modulus);
-        lar_json_close(json, '}');
+        lar_json_close(json);
     }
-    lar_json_close(json, ']');
+    lar_json_close(json);
 }
 
 static void write_pose(lar_json *json, const lar_tool_pose *pose) {
@@ -53,17 +52,17 @@ static void write_tools(lar_json *json, const lar_session *session) {
         write_tool(json, &info);
         lar_json_open(json, "rest", '{');
         write_pose(json, &info.rest);
-        lar_json_close(json, '}');
-        lar_json_close(json, '}');
+        lar_json_close(json);
+        lar_json_close(json);
     }
-    lar_json_close(json, ']');
+    lar_json_close(json);
     lar_json_open(json, "hands", '[');
     for (int32_t i = 0; i < first; i++)
         if (session->tool[i].info.shape == LAR_TOOL_HAND) lar_json_integer(json, NULL, i);
-    lar_json_close(json, ']');
+    lar_json_close(json);
     lar_json_open(json, "spares", '[');
     for (int32_t i = first; i < session->tools; i++) lar_json_integer(json, NULL, i);
-    lar_json_close(json, ']');
+    lar_json_close(json);
 }
 
 static void write_fields(lar_json *json) {
@@ -74,9 +73,9 @@ static void write_fields(lar_json *json) {
         lar_json_integer(json, "number", lar_field_names[i].field);
         lar_json_text(json, "title", lar_field_names[i].title);
         lar_json_text(json, "unit", lar_field_names[i].unit);
-        lar_json_close(json, '}');
+        lar_json_close(json);
     }
-    lar_json_close(json, ']');
+    lar_json_close(json);
 }
 
 /* Only what viewers get: not one that is too large. */
@@ -90,7 +89,7 @@ static lar_status write_embedded(lar_json *json, const lar_model *model, lar_err
         lar_json_integer(json, "vertices", embedded.vertices);
         lar_json_integer(json, "triangles", embedded.triangles);
         lar_json_integer(json, "nodes", shown.count - shown.surface);
-        lar_json_close(json, '}');
+        lar_json_close(json);
     }
     lar_shown_destroy(&shown);
     return LAR_OK;
@@ -98,18 +97,16 @@ static lar_status write_embedded(lar_json *json, const lar_model *model, lar_err
 
 static void write_scan(lar_json *json, const lar_image *image) {
     lar_json_open(json, "scan", '{');
-    lar_json_open(json, "size", '[');
-    for (int i = 0; i < 3; i++) lar_json_integer(json, NULL, image->size[i]);
-    lar_json_close(json, ']');
+    lar_json_integers(json, "size", image->size, 3);
     lar_json_open(json, "labels", '[');
     for (int32_t i = 0; i < image->name_count; i++) {
         lar_json_open(json, NULL, '{');
         lar_json_integer(json, "label", image->name[i].label);
         lar_json_text(json, "name", image->name[i].name);
-        lar_json_close(json, '}');
+        lar_json_close(json);
     }
-    lar_json_close(json, ']');
-    lar_json_close(json, '}');
+    lar_json_close(json);
+    lar_json_close(json);
 }
 
 /* What the page may set, and what it goes back to. */
@@ -122,7 +119,7 @@ static void write_body(lar_json *json, const lar_model *model) {
     lar_json_number(json, "damping", lar_model_damping(model));
     lar_json_number(json, "stiffness_min", LAR_FACTOR_MIN);
     lar_json_number(json, "stiffness_max", LAR_FACTOR_MAX);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
@@ -144,7 +141,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_json_open(json, "surface", '{');
     lar_json_integer(json, "nodes", surface.nodes);
     lar_json_integer(json, "faces", surface.faces);
-    lar_json_close(json, '}');
+    lar_json_close(json);
     status = write_embedded(json, server->model, error);
     if (status) return status;
     lar_json_vector(json, "lower", info.lower, 3);
@@ -177,13 +174,13 @@ static void write_times(lar_json *json, const char *name, double p50, double p99
     lar_json_number(json, "p99", round(1e9 * p99) / 1e3);
     lar_json_number(json, "p999", round(1e9 * p999) / 1e3);
     lar_json_number(json, "max", round(1e9 * max) / 1e3);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 static void write_bins(lar_json *json, const char *name, const uint32_t bin[LAR_TIME_BINS]) {
     lar_json_open(json, name, '[');
     for (int i = 0; i < LAR_TIME_BINS; i++) lar_json_integer(json, NULL, bin[i]);
-    lar_json_close(json, ']');
+    lar_json_close(json);
 }
 
 static void write_progress(lar_json *json, const lar_session_status *s) {
@@ -231,8 +228,8 @@ static void write_settings(lar_json *json, const lar_session *session) {
     lar_json_open(json, "stiffness", '[');
     for (int32_t i = 0; i < materials; i++)
         lar_json_number(json, NULL, lar_session_stiffness(session, i));
-    lar_json_close(json, ']');
-    lar_json_close(json, '}');
+    lar_json_close(json);
+    lar_json_close(json);
 }
 
 static void write_replay(const lar_server *server, lar_json *json) {
@@ -242,7 +239,7 @@ static void write_replay(const lar_server *server, lar_json *json) {
     lar_json_text(json, "name", server->played);
     lar_json_number(json, "time", s->replay_time);
     lar_json_number(json, "length", s->replay_length);
-    lar_json_close(json, '}');
+    lar_json_close(json);
 }
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
@@ -256,11 +253,11 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     lar_json_open(json, "saved", '[');
     for (int i = 0; i < server->states.count; i++)
         lar_json_text(json, NULL, server->states.name[i]);
-    lar_json_close(json, ']');
+    lar_json_close(json);
     lar_json_open(json, "recordings", '[');
     for (int i = 0; i < server->recordings.count; i++)
         lar_json_text(json, NULL, server->recordings.name[i]);
-    lar_json_close(json, ']');
+    lar_json_close(json);
     write_settings(json, server->session);
     write_replay(server, json);
     lar_json_open(json, "tools", '[');
@@ -279,16 +276,18 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
         lar_json_boolean(json, "limited", force->limited != 0);
         lar_json_number(json, "grasp", force->grasp_force);
         lar_json_text(json, "by", lar_hands_by(&server->hands, i, viewer->number, now));
-        lar_json_close(json, '}');
+        lar_json_close(json);
     }
-    lar_json_close(json, ']');
+    lar_json_close(json);
     lar_json_end(json);
 }
 
 /* ---- notes ------------------------------------------------------------------------------------
  */
 
-void lar_viewer_text(lar_viewer *viewer, char *text) {
+void lar_viewer_tell(lar_viewer *viewer, lar_json *json) {
+    lar_json_end(json);
+    char *text = json->failed ? NULL : lar_strdup(lar_json_data(json));
     if (!text) return;
     if (viewer->notes == LAR_NOTES_MAX) {
         free(viewer->note[0]);
@@ -304,8 +303,7 @@ void lar_viewer_note(lar_server *server, lar_viewer *viewer, const char *sentenc
     lar_json_begin(json);
     lar_json_text(json, "kind", "note");
     lar_json_text(json, "text", sentence);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t tool,
@@ -322,8 +320,7 @@ void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t 
     else
         lar_json_integer(json, "tool", tool);
     lar_json_text(json, "state", state);
-    lar_json_end(json);
-    if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+    lar_viewer_tell(viewer, json);
 }
 
 /* ---- sending ----------------------------------------------------------------------------------
@@ -342,10 +339,8 @@ static int send_json(lar_viewer *viewer, lar_json *json) {
 static int send_hello(lar_server *server, lar_viewer *viewer) {
     lar_json *json = &server->json;
     lar_json_begin(json);
-    /* What is the same for all, but for its opening brace, and what is not. */
-    json->length = 0;
-    json->empty = true;
-    lar_json_raw(json, lar_json_data(&server->hello), server->hello.length);
+    /* What is the same for all, behind its opening brace, and what is not. */
+    lar_json_raw(json, lar_json_data(&server->hello) + 1, server->hello.length - 1);
     lar_json_integer(json, "viewer", (int64_t)viewer->number);
     lar_json_boolean(json, "watches", viewer->watches);
     lar_json_end(json);
@@ -358,10 +353,9 @@ static int send_note(lar_server *server, lar_viewer *viewer) {
     viewer->notes--;
     memmove(viewer->note, viewer->note + 1, (size_t)viewer->notes * sizeof *viewer->note);
     if (viewer->notes > 0) lar_viewer_wants(viewer, LAR_DUE_NOTES);
-    json->length = 0;
-    json->failed = false;
-    json->empty = true;
-    lar_json_raw(json, note, strlen(note));
+    lar_json_begin(json);
+    lar_json_raw(json, note + 1, strlen(note) - 2); /* what is between its braces */
+    lar_json_end(json);
     free(note);
     return send_json(viewer, json);
 }

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "base/pin.h"
 #include "base/thread.h"
 #include "comm/socket.h"
@@ -74,8 +74,7 @@ static void refuse_pictures(lar_server *server, const lar_error *error) {
         lar_json_begin(json);
         lar_json_text(json, "kind", "no_frame");
         lar_json_text(json, "text", error->message);
-        lar_json_end(json);
-        if (!json->failed) lar_viewer_text(viewer, lar_strdup(lar_json_data(json)));
+        lar_viewer_tell(viewer, json);
     }
 }
 

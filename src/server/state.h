@@ -19,7 +19,7 @@
 #include "base/clock.h"
 #include "server/files.h"
 #include "server/hands.h"
-#include "server/json.h"
+#include "base/json/write.h"
 #include "server/scan.h"
 #include "server/work.h"
 
@@ -194,8 +194,8 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error);
 int lar_viewer_send(lar_server *server, lar_viewer *viewer);
 /* A note of kind "note" with a sentence. */
 void lar_viewer_note(lar_server *server, lar_viewer *viewer, const char *sentence);
-/* A text, which becomes the viewer's; NULL is fine. When too many wait, the oldest goes. */
-void lar_viewer_text(lar_viewer *viewer, char *text);
+/* Ends the text and sends it later. When too many wait, the oldest goes. */
+void lar_viewer_tell(lar_viewer *viewer, lar_json *json);
 /* For lar_hands. */
 void lar_server_tell_hand(void *server, uint64_t viewer, int32_t number, int32_t tool,
                           const char *state);

@@ -1,7 +1,6 @@
 /* Executes the requests of a session, on the engine's thread between two ticks. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/clock.h"
 #include "session/session.h"

@@ -114,33 +114,47 @@ static void hurry(lar_session *session) {
     if (player->place >= player->goal) player->rests = false;
 }
 
-/* A tick of what is played: as one of a run, but tools follow the recording. */
-static void play_tick(lar_session *session) {
-    lar_player *player = session->player;
-    lar_error error;
+/* How many steps the tick has. */
+static uint64_t begin_tick(lar_session *session) {
     uint64_t steps = session->tick_steps;
     if (session->stepping && session->steps_left < steps) steps = session->steps_left;
     lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
-    int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
-    lar_status status = lar_player_advance(player, session->simulation, steps, &error);
-    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
-                      lar_clock_thread_ns() - before);
+    return steps;
+}
+
+/* Hands feel it, and everybody is told. */
+static void answer(lar_session *session) {
     lar_session_feel_tools(session);
     session->pace.total.exchanges++;
     lar_pace_answered(&session->pace, lar_clock_ns());
     lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
-    serve_snapshots(session);
-    if (status || player->place >= player->length) rest_player(session, status ? &error : NULL);
+}
+
+/* Rests when all steps that were asked for are done. */
+static void count_steps(lar_session *session, uint64_t steps) {
     if (!session->stepping) return;
     session->steps_left -= steps;
     if (session->steps_left == 0) lar_session_rest(session);
 }
 
+/* A tick of what is played: as one of a run, but tools follow the recording. */
+static void play_tick(lar_session *session) {
+    lar_player *player = session->player;
+    lar_error error;
+    uint64_t steps = begin_tick(session);
+    int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
+    lar_status status = lar_player_advance(player, session->simulation, steps, &error);
+    lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
+                      lar_clock_thread_ns() - before);
+    answer(session);
+    serve_snapshots(session);
+    if (status || player->place >= player->length) rest_player(session, status ? &error : NULL);
+    count_steps(session, steps);
+}
+
 static void tick(lar_session *session) {
     lar_error error;
-    uint64_t steps = session->tick_steps;
-    if (session->stepping && session->steps_left < steps) steps = session->steps_left;
-    lar_pace_begin(&session->pace, (double)steps * session->time_step, lar_clock_ns());
+    uint64_t steps = begin_tick(session);
     lar_status status = lar_session_move_tools(session, &error);
     int64_t begin = lar_clock_ns(), before = lar_clock_thread_ns();
     if (!status) status = lar_simulation_compute(session->simulation, steps, NULL, NULL, &error);
@@ -150,10 +164,7 @@ static void tick(lar_session *session) {
     }
     lar_pace_computed(&session->pace, steps, lar_clock_ns() - begin,
                       lar_clock_thread_ns() - before);
-    lar_session_feel_tools(session);
-    session->pace.total.exchanges++;
-    lar_pace_answered(&session->pace, lar_clock_ns());
-    lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
+    answer(session);
     session->good_step = session->status.step;
     serve_snapshots(session);
     if (session->status.recording &&
@@ -161,9 +172,7 @@ static void tick(lar_session *session) {
         lar_session_record_hash(session);
     if (session->status.state == LAR_SESSION_PLAYING && lar_session_keep_state(session, &error))
         lar_session_stop(session, &error);
-    if (!session->stepping) return;
-    session->steps_left -= steps;
-    if (session->steps_left == 0) lar_session_rest(session);
+    count_steps(session, steps);
 }
 
 /* ---- the thread ---------------------------------------------------------------------------- */

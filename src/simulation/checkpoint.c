@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "base/hash.h"
 #include "base/pose.h"
 #include "contact/spares.h"

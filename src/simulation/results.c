@@ -5,11 +5,10 @@
  * beside and renamed). Positions are those of the reference; the point array "displacement"
  * moves them (ParaView: Warp By Vector). */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "step/measure.h"
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"

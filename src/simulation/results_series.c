@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "model/format/mesh_io.h"
 
 static char *path_with(const lar_series *series, const char *ending) {

@@ -9,7 +9,6 @@
  *     materials    W jumps by dW, the inner force by df          external += dW - dt df v-/2
  *
  * Damping does no work when it changes. */
-#include <math.h>
 #include <string.h>
 
 #include "step/guard.h"

@@ -2,7 +2,6 @@
 
 #include <dlfcn.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
 

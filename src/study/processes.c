@@ -241,9 +241,9 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
 
 /* ---- rendezvous ----------------------------------------------------------------------------- */
 
-static lar_status meet_in_job(lar_processes *p, lar_options *options, lar_error *error) {
+lar_status lar_processes_meet_in_job(lar_comm_job *job, lar_options *options, lar_error *error) {
     lar_comm_options comm = lar_comm_options_default();
-    lar_status status = lar_comm_job_meet(&p->job, &comm, error);
+    lar_status status = lar_comm_job_meet(job, &comm, error);
     if (status) return status;
     options->processor = comm.self;
     options->master = comm.master;
@@ -254,7 +254,7 @@ static lar_status meet_in_job(lar_processes *p, lar_options *options, lar_error 
 static lar_status meet(lar_processes *p, lar_options *options, lar_error *error) {
     options->listener = -1;
     if (!p->several) return LAR_OK;
-    if (p->job.count > 1) return meet_in_job(p, options, error);
+    if (p->job.count > 1) return lar_processes_meet_in_job(&p->job, options, error);
     options->processor = p->self;
     options->master = by_hand(p) ? p->setting.master : p->address;
     if (p->listener < 0) return LAR_OK;

@@ -34,6 +34,11 @@ typedef struct lar_processes_setting {
     char *const *argument; /* outlives lar_processes_start, as all of these do */
 } lar_processes_setting;
 
+/* Into *options: where the processes of a launcher's job meet. */
+struct lar_comm_job;
+lar_status lar_processes_meet_in_job(struct lar_comm_job *job, lar_options *options,
+                                     lar_error *error);
+
 /* LAR_ERROR_ARGUMENT when launcher and options do not belong together. */
 lar_status lar_processes_begin(const lar_processes_setting *setting, lar_processes **processes,
                                lar_error *error);

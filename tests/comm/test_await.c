@@ -46,13 +46,19 @@ static void quiet_time_may_be_long(void **state) {
                      (fleet){.count = 3, .bytes = 256, .body = quiet_time, .patience = 0.1});
 }
 
+typedef struct loss {
+    int32_t victim;
+    bool team; /* threads: nobody can be killed alone */
+} loss;
+
 /* Everyone else awaits what never comes; the victim goes after a while. */
 static const char *await_for_ever(lar_comm *comm, void *context, char text[FLEET_TEXT]) {
-    int32_t victim = *(const int32_t *)context, self = lar_comm_self(comm);
+    const loss *l = context;
+    int32_t self = lar_comm_self(comm);
     lar_error error;
-    if (self == victim) {
+    if (self == l->victim) {
         usleep(50000);
-        if (!fleet_is_team(lar_comm_backend_name(comm))) kill(getpid(), SIGKILL);
+        if (!l->team) kill(getpid(), SIGKILL);
         lar_comm_abort(comm);
         return NULL;
     }
@@ -68,11 +74,12 @@ static void the_dead_are_not_awaited(void **state) {
     for (int32_t victim = 0; victim < 3; victim++)
         for (int i = 0; fleet_backend(i, &info); i++) {
             char texts[3][FLEET_TEXT], expected[40];
+            loss l = {.victim = victim, .team = fleet_is_team(info.name)};
             fleet f = {.backend = info.name,
                        .count = 3,
                        .bytes = 64,
                        .body = await_for_ever,
-                       .context = &victim};
+                       .context = &l};
             (info.start == LAR_COMM_BY_TEAM ? fleet_threads : fleet_fork)(f, texts);
             snprintf(expected, sizeof expected, "processor %d is lost", (int)victim);
             for (int p = 0; p < 3; p++) {

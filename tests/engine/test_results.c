@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "step/measure.h"
 #include "simulation/results_probe.h"
 #include "mechanics/stress.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "server/json.h"
+#include "base/text.h"
 #include "server/message.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

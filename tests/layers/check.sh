@@ -75,7 +75,7 @@ self_test() {
     expect simulation/a.h '#include "session/a.h"' 'simulation may not include session'
     expect session/a.h '#include "study/a.h"' 'session may not include study'
     expect cli/a.h '#include "simulation/a.h"' 'cli may not include simulation'
-    expect cli/a.h '#include "base/a.h"' 'cli may not include base'
+    expect cli/a.h '#include "model/a.h"' 'cli may not include model'
     expect model/a.h '#include "../simulation/a.h"' 'write the path from src'
     expect model/a.h '#include "model/none.h"' 'does not exist'
     expect model/a.h '#include "model/a.h"' 'circle'

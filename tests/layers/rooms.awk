@@ -4,7 +4,7 @@ BEGIN {
     split("base 0 law 1 model 2 mechanics 3 divide 3 comm 3 meshing 4 layout 4 contact 5 step 6 " \
           "parallel 7 simulation 8 session 9 server 10 study 10 cli 11", words, " ")
     for (i = 1; i in words; i += 2) layer[words[i]] = words[i + 1]
-    command_may["cli"] = command_may["study"] = 1
+    command_may["cli"] = command_may["study"] = command_may["base"] = 1
 }
 
 function folder_of(path) {

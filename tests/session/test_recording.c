@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "session/recording/record.h"
 #include "session/recording/words.h"
 #include "session/session.h"

@@ -1,5 +1,5 @@
 /* What viewers may say, word by word; and what is written for them is JSON. */
-#include "server/json.h"
+#include "base/json/write.h"
 #include "server/message.h"
 #include "testing.h"
 
@@ -234,9 +234,9 @@ static void json_is_written_as_it_must_be(void **unused) {
         lar_json_boolean(&json, "on", true);
         lar_json_open(&json, "list", '[');
         lar_json_open(&json, NULL, '{');
-        lar_json_close(&json, '}');
+        lar_json_close(&json);
         lar_json_vector(&json, NULL, (double[]){1, INFINITY}, 2);
-        lar_json_close(&json, ']');
+        lar_json_close(&json);
         lar_json_end(&json);
         assert_false(json.failed);
         assert_string_equal(

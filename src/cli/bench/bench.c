@@ -10,24 +10,22 @@
 /* ---- lariat bench kernel ---------------------------------------------------------------- */
 
 static void write_json(const bench_frame *frame, const lar_bench_kernel_result *r, bool general) {
-    json_writer json = bench_open_json(frame);
-    json_number(&json, "ns_per_element", r->nanoseconds.median);
-    json_integer(&json, "elements", r->elements);
-    json_text(&json, "shape", general ? "general" : "box");
-    json_text(&json, "precision", "double");
-    json_text(&json, "isa", r->isa);
-    json_text(&json, "blocks", r->lean ? "lean" : "whole");
-    json_number(&json, "peak_gflops", r->peak_gflops.median);
-    json_number(&json, "fraction_of_peak", r->fraction_of_peak);
-    json_number(&json, "bytes_per_element", r->bytes_per_element);
-    json_integer(&json, "operations_per_element", LAR_BENCH_OPERATIONS);
-    json_integer(&json, "nodes", r->nodes);
-    json_open(&json, "edge", '[');
-    for (int i = 0; i < 3; i++) json_integer(&json, NULL, r->edge[i]);
-    json_close(&json);
-    json_number(&json, "scaled_jacobian_min", r->scaled_jacobian_min);
-    json_integer(&json, "samples", r->repeat);
-    json_integer(&json, "steps_per_sample", (int64_t)r->steps);
+    lar_json json = bench_open_json(frame);
+    lar_json_number(&json, "ns_per_element", r->nanoseconds.median);
+    lar_json_integer(&json, "elements", r->elements);
+    lar_json_text(&json, "shape", general ? "general" : "box");
+    lar_json_text(&json, "precision", "double");
+    lar_json_text(&json, "isa", r->isa);
+    lar_json_text(&json, "blocks", r->lean ? "lean" : "whole");
+    lar_json_number(&json, "peak_gflops", r->peak_gflops.median);
+    lar_json_number(&json, "fraction_of_peak", r->fraction_of_peak);
+    lar_json_number(&json, "bytes_per_element", r->bytes_per_element);
+    lar_json_integer(&json, "operations_per_element", LAR_BENCH_OPERATIONS);
+    lar_json_integer(&json, "nodes", r->nodes);
+    lar_json_integers(&json, "edge", r->edge, 3);
+    lar_json_number(&json, "scaled_jacobian_min", r->scaled_jacobian_min);
+    lar_json_integer(&json, "samples", r->repeat);
+    lar_json_integer(&json, "steps_per_sample", (int64_t)r->steps);
     bench_write_spread(&json, "ns_per_element_spread", &r->nanoseconds);
     bench_write_spread(&json, "peak_gflops_spread", &r->peak_gflops);
     bench_close_json(frame, &json);

@@ -7,60 +7,58 @@
 #include "study/bench/comm.h"
 
 /* One size of packet. */
-static void write_figures(json_writer *json, const lar_bench_comm_figures *at) {
-    json_number(json, "half_duplex_mb_s", at->half_duplex);
-    json_number(json, "full_duplex_mb_s", at->full_duplex);
-    json_number(json, "send_ns", at->send);
-    json_number(json, "receive_ns", at->receive);
-    json_number(json, "delay_ns", at->delay);
-    json_number(json, "slowdown", at->slowdown);
+static void write_figures(lar_json *json, const lar_bench_comm_figures *at) {
+    lar_json_number(json, "half_duplex_mb_s", at->half_duplex);
+    lar_json_number(json, "full_duplex_mb_s", at->full_duplex);
+    lar_json_number(json, "send_ns", at->send);
+    lar_json_number(json, "receive_ns", at->receive);
+    lar_json_number(json, "delay_ns", at->delay);
+    lar_json_number(json, "slowdown", at->slowdown);
 }
 
-static void write_sizes(json_writer *json, const lar_bench_comm_result *r,
+static void write_sizes(lar_json *json, const lar_bench_comm_result *r,
                         const lar_bench_comm_row *row) {
-    json_open(json, "sizes", '[');
+    lar_json_open(json, "sizes", '[');
     for (int i = 0; i < r->sizes; i++) {
-        json_open(json, NULL, '{');
-        json_integer(json, "bytes", r->size[i]);
-        json_number(json, "latency_ns", row->at[i].latency);
+        lar_json_open(json, NULL, '{');
+        lar_json_integer(json, "bytes", r->size[i]);
+        lar_json_number(json, "latency_ns", row->at[i].latency);
         write_figures(json, &row->at[i]);
-        json_close(json);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
-static void write_row(json_writer *json, const lar_bench_comm_result *r,
+static void write_row(lar_json *json, const lar_bench_comm_result *r,
                       const lar_bench_comm_row *row) {
-    json_open(json, NULL, '{');
-    json_text(json, "name", row->name);
+    lar_json_open(json, NULL, '{');
+    lar_json_text(json, "name", row->name);
     if (row->missing) {
-        json_text(json, "missing", row->missing);
-        json_close(json);
+        lar_json_text(json, "missing", row->missing);
+        lar_json_close(json);
         return;
     }
-    json_number(json, "latency_ns", row->latency.median);
+    lar_json_number(json, "latency_ns", row->latency.median);
     bench_write_spread(json, "latency_ns_spread", &row->latency);
     if (row->moves_packets) {
-        if (row->over_hand > 0) json_number(json, "over_by_hand", row->over_hand);
+        if (row->over_hand > 0) lar_json_number(json, "over_by_hand", row->over_hand);
         write_figures(json, &row->at[r->asked]);
-        json_number(json, "best_half_duplex_mb_s", row->best_half_duplex);
-        json_number(json, "half_bandwidth_bytes", row->half_bandwidth_bytes);
+        lar_json_number(json, "best_half_duplex_mb_s", row->best_half_duplex);
+        lar_json_number(json, "half_bandwidth_bytes", row->half_bandwidth_bytes);
         write_sizes(json, r, row);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void write_json(const bench_frame *frame, const lar_bench_comm_result *r) {
-    json_writer json = bench_open_json(frame);
-    json_integer(&json, "packet_bytes", r->bytes);
-    json_integer(&json, "samples", r->repeat);
-    json_open(&json, "cores", '[');
-    for (int i = 0; i < 2; i++) json_integer(&json, NULL, r->cores[i]);
-    json_close(&json);
-    json_number(&json, "portion_ns", r->portion);
-    json_open(&json, "rows", '[');
+    lar_json json = bench_open_json(frame);
+    lar_json_integer(&json, "packet_bytes", r->bytes);
+    lar_json_integer(&json, "samples", r->repeat);
+    lar_json_integers(&json, "cores", r->cores, 2);
+    lar_json_number(&json, "portion_ns", r->portion);
+    lar_json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, r, &r->row[i]);
-    json_close(&json);
+    lar_json_close(&json);
     bench_close_json(frame, &json);
 }
 

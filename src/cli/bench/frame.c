@@ -14,8 +14,9 @@ bench_frame bench_frame_of(const cli_command *command, const char *bench) {
 
 /* Another processor is worth a word, no refusal: that may be the question. */
 static void note_other_machine(const bench_frame *frame) {
-    const char *cpu = lar_baseline_text(frame->baseline, "machine.cpu");
-    if (cpu && strcmp(cpu, frame->machine.cpu) != 0)
+    char cpu[sizeof frame->machine.cpu];
+    if (lar_baseline_text(frame->baseline, "machine.cpu", cpu, sizeof cpu) &&
+        strcmp(cpu, frame->machine.cpu) != 0)
         cli_complain(frame->command, CLI_DONE, "note: %s was measured on another processor: %s",
                      frame->against, cpu);
 }
@@ -37,98 +38,98 @@ int bench_begin(bench_frame *frame) {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_options(const lar_bench_report *report, json_writer *json) {
-    json_open(json, "options", '{');
+static void write_options(const lar_bench_report *report, lar_json *json) {
+    lar_json_open(json, "options", '{');
     for (int i = 0; i < report->settings; i++) {
         const lar_bench_setting *setting = &report->setting[i];
         double value;
         if (setting->number && sscanf(setting->text, "%lf", &value) == 1)
-            json_number(json, setting->name, value);
+            lar_json_number(json, setting->name, value);
         else
-            json_text(json, setting->name, setting->text);
+            lar_json_text(json, setting->name, setting->text);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
-json_writer bench_open_json(const bench_frame *frame) {
+lar_json bench_open_json(const bench_frame *frame) {
     const lar_machine *machine = &frame->machine;
-    json_writer json = json_begin(stdout);
-    json_text(&json, "bench", frame->report.bench);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "bench", frame->report.bench);
     write_options(&frame->report, &json);
-    json_open(&json, "build", '{');
-    json_text(&json, "version", lar_version());
-    json_text(&json, "commit", cli_build_commit);
-    json_text(&json, "compiler", cli_build_compiler);
-    json_text(&json, "flags", cli_build_flags);
-    json_close(&json);
-    json_open(&json, "machine", '{');
-    json_text(&json, "cpu", machine->cpu);
-    json_integer(&json, "cores", machine->cores);
-    json_text(&json, "isa", machine->isa);
-    json_vector(&json, "load_average", machine->load);
-    json_close(&json);
-    json_text(&json, "date", machine->date);
+    lar_json_open(&json, "build", '{');
+    lar_json_text(&json, "version", lar_version());
+    lar_json_text(&json, "commit", cli_build_commit);
+    lar_json_text(&json, "compiler", cli_build_compiler);
+    lar_json_text(&json, "flags", cli_build_flags);
+    lar_json_close(&json);
+    lar_json_open(&json, "machine", '{');
+    lar_json_text(&json, "cpu", machine->cpu);
+    lar_json_integer(&json, "cores", machine->cores);
+    lar_json_text(&json, "isa", machine->isa);
+    lar_json_vector(&json, "load_average", machine->load, 3);
+    lar_json_close(&json);
+    lar_json_text(&json, "date", machine->date);
     return json;
 }
 
-static void write_comparison(const bench_frame *frame, json_writer *json) {
+static void write_comparison(const bench_frame *frame, lar_json *json) {
     const lar_bench_report *report = &frame->report;
-    json_open(json, "against", '{');
-    json_text(json, "file", frame->against);
-    json_number(json, "tolerance", frame->tolerance);
-    json_open(json, "compared", '[');
+    lar_json_open(json, "against", '{');
+    lar_json_text(json, "file", frame->against);
+    lar_json_number(json, "tolerance", frame->tolerance);
+    lar_json_open(json, "compared", '[');
     for (int i = 0; i < report->figures; i++) {
         lar_comparison c =
             lar_baseline_compare(frame->baseline, &report->figure[i], frame->tolerance);
         if (!c.known) continue;
-        json_open(json, NULL, '{');
-        json_text(json, "name", report->figure[i].name);
-        json_number(json, "earlier", c.earlier);
-        json_number(json, "ratio", c.ratio);
-        json_number(json, "worse", c.worse);
-        json_boolean(json, "failed", c.failed);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "name", report->figure[i].name);
+        lar_json_number(json, "earlier", c.earlier);
+        lar_json_number(json, "ratio", c.ratio);
+        lar_json_number(json, "worse", c.worse);
+        lar_json_boolean(json, "failed", c.failed);
+        lar_json_close(json);
     }
-    json_close(json);
-    json_close(json);
+    lar_json_close(json);
+    lar_json_close(json);
 }
 
-void bench_close_json(const bench_frame *frame, json_writer *json) {
-    json_open(json, "figures", '[');
+void bench_close_json(const bench_frame *frame, lar_json *json) {
+    lar_json_open(json, "figures", '[');
     for (int i = 0; i < frame->report.figures; i++) {
         const lar_bench_figure *figure = &frame->report.figure[i];
-        json_open(json, NULL, '{');
-        json_text(json, "name", figure->name);
-        json_text(json, "unit", figure->unit);
-        json_number(json, "value", figure->value);
-        json_text(json, "better", figure->more ? "more" : "less");
-        json_boolean(json, "judged", figure->judged);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "name", figure->name);
+        lar_json_text(json, "unit", figure->unit);
+        lar_json_number(json, "value", figure->value);
+        lar_json_text(json, "better", figure->more ? "more" : "less");
+        lar_json_boolean(json, "judged", figure->judged);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
     if (frame->baseline) write_comparison(frame, json);
-    json_end(json);
+    lar_json_end(json);
 }
 
-void bench_write_spread(json_writer *json, const char *name, const lar_spread *spread) {
-    json_open(json, name, '{');
-    json_number(json, "min", spread->min);
-    json_number(json, "p25", spread->p25);
-    json_number(json, "median", spread->median);
-    json_number(json, "p75", spread->p75);
-    json_number(json, "p95", spread->p95);
-    json_number(json, "max", spread->max);
-    json_close(json);
+void bench_write_spread(lar_json *json, const char *name, const lar_spread *spread) {
+    lar_json_open(json, name, '{');
+    lar_json_number(json, "min", spread->min);
+    lar_json_number(json, "p25", spread->p25);
+    lar_json_number(json, "median", spread->median);
+    lar_json_number(json, "p75", spread->p75);
+    lar_json_number(json, "p95", spread->p95);
+    lar_json_number(json, "max", spread->max);
+    lar_json_close(json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */
 
 static void print_comparison(const bench_frame *frame) {
     const lar_bench_report *report = &frame->report;
-    const char *date = lar_baseline_text(frame->baseline, "date");
-    const char *commit = lar_baseline_text(frame->baseline, "build.commit");
-    printf("\nagainst %s, measured %s, commit %.12s\n", frame->against, date ? date : "one day",
-           commit ? commit : "unknown");
+    char date[LAR_BENCH_TEXT] = "one day", commit[LAR_BENCH_TEXT] = "unknown";
+    lar_baseline_text(frame->baseline, "date", date, sizeof date);
+    lar_baseline_text(frame->baseline, "build.commit", commit, sizeof commit);
+    printf("\nagainst %s, measured %s, commit %.12s\n", frame->against, date, commit);
     printf("%-32s %12s %12s %8s\n", "", "now", "then", "ratio");
     for (int i = 0; i < report->figures; i++) {
         const lar_bench_figure *figure = &report->figure[i];
@@ -168,8 +169,8 @@ static int judge(const bench_frame *frame) {
         failed++;
     }
     if (worst) return complain_of_worst(frame, worst, failed);
-    const char *missing = lar_baseline_missing(frame->baseline, report);
-    if (missing)
+    char missing[LAR_BENCH_TEXT];
+    if (lar_baseline_missing(frame->baseline, report, missing))
         return cli_complain(frame->command, CLI_FAILED,
                             "%s stands in %s and was not measured now; see above why, or write "
                             "the file anew with --json",

@@ -13,7 +13,7 @@
 #ifndef LAR_CLI_BENCH_FRAME_H
 #define LAR_CLI_BENCH_FRAME_H
 
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "cli/options.h"
 #include "study/bench/baseline.h"
 #include "study/bench/kernel.h"
@@ -43,8 +43,8 @@ bench_frame bench_frame_of(const cli_command *command, const char *bench);
  * exit status; messages are printed. */
 int bench_begin(bench_frame *frame);
 
-json_writer bench_open_json(const bench_frame *frame);
-void bench_close_json(const bench_frame *frame, json_writer *json);
+lar_json bench_open_json(const bench_frame *frame);
+void bench_close_json(const bench_frame *frame, lar_json *json);
 
 /* Prints the comparison where there is one, releases what the frame holds, and returns the exit
  * status. */
@@ -53,6 +53,6 @@ int bench_end(bench_frame *frame);
 int bench_abandon(bench_frame *frame, int status);
 
 /* Some samples, as an object. */
-void bench_write_spread(json_writer *json, const char *name, const lar_spread *spread);
+void bench_write_spread(lar_json *json, const char *name, const lar_spread *spread);
 
 #endif

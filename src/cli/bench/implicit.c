@@ -27,45 +27,45 @@ static double implicit_pace(const lar_bench_implicit_result *r) {
     return r->reached > 0 ? r->implicit_seconds / r->reached : 0;
 }
 
-static void write_implicit(json_writer *json, const implicit_settings *s,
+static void write_implicit(lar_json *json, const implicit_settings *s,
                            const lar_bench_implicit_result *r) {
-    json_open(json, "implicit", '{');
-    json_text(json, "solver", r->solver);
-    json_boolean(json, "static", s->options.implicit.quasi_static);
-    json_number(json, "time_step", s->options.implicit.time_step);
-    json_integer(json, "steps", r->tally.steps);
-    json_integer(json, "newton_iterations", r->tally.newton);
-    json_integer(json, "linear_iterations", r->tally.linear);
-    json_integer(json, "halved", r->tally.halved);
-    json_integer(json, "searched", r->tally.searches);
-    json_integer(json, "rows", r->rows);
-    json_integer(json, "values", r->values);
-    json_number(json, "seconds", r->implicit_seconds);
-    json_number(json, "assembly_seconds", r->tally.assembly);
-    json_number(json, "solving_seconds", r->tally.solving);
-    json_number(json, "seconds_per_second", implicit_pace(r));
-    json_boolean(json, "failed", r->failed);
-    json_number(json, "reached", r->reached);
-    json_text(json, "reason", r->reason);
-    json_close(json);
+    lar_json_open(json, "implicit", '{');
+    lar_json_text(json, "solver", r->solver);
+    lar_json_boolean(json, "static", s->options.implicit.quasi_static);
+    lar_json_number(json, "time_step", s->options.implicit.time_step);
+    lar_json_integer(json, "steps", r->tally.steps);
+    lar_json_integer(json, "newton_iterations", r->tally.newton);
+    lar_json_integer(json, "linear_iterations", r->tally.linear);
+    lar_json_integer(json, "halved", r->tally.halved);
+    lar_json_integer(json, "searched", r->tally.searches);
+    lar_json_integer(json, "rows", r->rows);
+    lar_json_integer(json, "values", r->values);
+    lar_json_number(json, "seconds", r->implicit_seconds);
+    lar_json_number(json, "assembly_seconds", r->tally.assembly);
+    lar_json_number(json, "solving_seconds", r->tally.solving);
+    lar_json_number(json, "seconds_per_second", implicit_pace(r));
+    lar_json_boolean(json, "failed", r->failed);
+    lar_json_number(json, "reached", r->reached);
+    lar_json_text(json, "reason", r->reason);
+    lar_json_close(json);
 }
 
 static void write_json(const implicit_settings *s, const lar_bench_implicit_result *r) {
-    json_writer json = bench_open_json(&s->frame);
-    json_text(&json, "title", r->info.title);
-    json_integer(&json, "elements", r->info.elements);
-    json_integer(&json, "nodes", r->info.nodes);
-    json_integer(&json, "left_out", r->left_out);
-    json_number(&json, "simulated", r->until);
-    json_number(&json, "largest", r->largest);
-    json_number(&json, "apart", r->apart);
-    json_number(&json, "kinetic_most", r->kinetic_max);
-    json_open(&json, "explicit", '{');
-    json_number(&json, "time_step", r->explicit_step);
-    json_integer(&json, "steps", (int64_t)r->explicit_steps);
-    json_number(&json, "seconds", r->explicit_seconds);
-    json_number(&json, "seconds_per_second", explicit_pace(r));
-    json_close(&json);
+    lar_json json = bench_open_json(&s->frame);
+    lar_json_text(&json, "title", r->info.title);
+    lar_json_integer(&json, "elements", r->info.elements);
+    lar_json_integer(&json, "nodes", r->info.nodes);
+    lar_json_integer(&json, "left_out", r->left_out);
+    lar_json_number(&json, "simulated", r->until);
+    lar_json_number(&json, "largest", r->largest);
+    lar_json_number(&json, "apart", r->apart);
+    lar_json_number(&json, "kinetic_most", r->kinetic_max);
+    lar_json_open(&json, "explicit", '{');
+    lar_json_number(&json, "time_step", r->explicit_step);
+    lar_json_integer(&json, "steps", (int64_t)r->explicit_steps);
+    lar_json_number(&json, "seconds", r->explicit_seconds);
+    lar_json_number(&json, "seconds_per_second", explicit_pace(r));
+    lar_json_close(&json);
     write_implicit(&json, s, r);
     bench_close_json(&s->frame, &json);
 }

@@ -6,27 +6,27 @@
 #include "cli/commands.h"
 #include "study/bench/jitter.h"
 
-static void write_percentiles(json_writer *json, const char *name, const lar_percentiles *p) {
-    json_open(json, name, '{');
-    json_number(json, "p50", p->p50);
-    json_number(json, "p99", p->p99);
-    json_number(json, "p999", p->p999);
-    json_number(json, "max", p->max);
-    json_close(json);
+static void write_percentiles(lar_json *json, const char *name, const lar_percentiles *p) {
+    lar_json_open(json, name, '{');
+    lar_json_number(json, "p50", p->p50);
+    lar_json_number(json, "p99", p->p99);
+    lar_json_number(json, "p999", p->p999);
+    lar_json_number(json, "max", p->max);
+    lar_json_close(json);
 }
 
 static void write_json(const bench_frame *frame, const lar_bench_jitter_options *o,
                        const lar_bench_jitter_result *r) {
-    json_writer json = bench_open_json(frame);
-    json_number(&json, "period_us", r->period);
-    json_number(&json, "load_us", o->load);
-    json_integer(&json, "priority", o->priority);
-    json_integer(&json, "samples", r->repeat);
-    json_number(&json, "seconds_per_sample", o->seconds);
-    json_integer(&json, "ticks", (int64_t)r->ticks);
-    json_integer(&json, "misses", (int64_t)r->misses);
-    json_number(&json, "missed", r->missed);
-    json_number(&json, "skipped", r->skipped);
+    lar_json json = bench_open_json(frame);
+    lar_json_number(&json, "period_us", r->period);
+    lar_json_number(&json, "load_us", o->load);
+    lar_json_integer(&json, "priority", o->priority);
+    lar_json_integer(&json, "samples", r->repeat);
+    lar_json_number(&json, "seconds_per_sample", o->seconds);
+    lar_json_integer(&json, "ticks", (int64_t)r->ticks);
+    lar_json_integer(&json, "misses", (int64_t)r->misses);
+    lar_json_number(&json, "missed", r->missed);
+    lar_json_number(&json, "skipped", r->skipped);
     write_percentiles(&json, "late_us", &r->late);
     write_percentiles(&json, "done_us", &r->done);
     bench_write_spread(&json, "late_p50_us_spread", &r->late_p50);

@@ -1,6 +1,5 @@
 /* lariat bench precision: what single precision would lose and win. */
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 #include "cli/bench/frame.h"
@@ -29,49 +28,49 @@ static bool timed(const lar_precision_way *way, int which) {
     return way->went && which != LAR_PRECISION_SINGLE;
 }
 
-static void write_way(json_writer *json, const lar_precision_way *way, int which) {
-    json_open(json, lar_precision_names[which], '{');
-    json_boolean(json, "went", way->went);
+static void write_way(lar_json *json, const lar_precision_way *way, int which) {
+    lar_json_open(json, lar_precision_names[which], '{');
+    lar_json_boolean(json, "went", way->went);
     if (way->went) {
-        json_number(json, "difference", way->difference);
-        json_number(json, "difference_most", way->difference_max);
-        json_number(json, "left", way->left);
-        json_number(json, "speed", way->speed);
-        json_number(json, "strain_energy", way->strain);
-        json_number(json, "energy_drift", way->drift);
-        json_number(json, "bytes_per_element", way->bytes);
+        lar_json_number(json, "difference", way->difference);
+        lar_json_number(json, "difference_most", way->difference_max);
+        lar_json_number(json, "left", way->left);
+        lar_json_number(json, "speed", way->speed);
+        lar_json_number(json, "strain_energy", way->strain);
+        lar_json_number(json, "energy_drift", way->drift);
+        lar_json_number(json, "bytes_per_element", way->bytes);
         if (timed(way, which)) bench_write_spread(json, "ns_per_element_spread", &way->nanoseconds);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void write_json(const settings *s, const outcome *o) {
     const lar_precision_result *first = &o->result[0];
-    json_writer json = bench_open_json(&s->frame);
-    json_integer(&json, "elements", first->elements);
-    json_integer(&json, "nodes", first->nodes);
-    json_text(&json, "isa", first->isa);
-    json_integer(&json, "steps", s->steps);
-    json_number(&json, "time_step", first->time_step);
-    json_open(&json, "ns_per_element", '{'); /* of the first case */
+    lar_json json = bench_open_json(&s->frame);
+    lar_json_integer(&json, "elements", first->elements);
+    lar_json_integer(&json, "nodes", first->nodes);
+    lar_json_text(&json, "isa", first->isa);
+    lar_json_integer(&json, "steps", s->steps);
+    lar_json_number(&json, "time_step", first->time_step);
+    lar_json_open(&json, "ns_per_element", '{'); /* of the first case */
     for (int w = 0; w < LAR_PRECISION_COUNT; w++)
         if (timed(&first->way[w], w))
-            json_number(&json, lar_precision_names[w], first->way[w].nanoseconds.median);
-    json_close(&json);
-    json_open(&json, "cases", '[');
+            lar_json_number(&json, lar_precision_names[w], first->way[w].nanoseconds.median);
+    lar_json_close(&json);
+    lar_json_open(&json, "cases", '[');
     for (int k = 0; k < o->count; k++) {
-        json_open(&json, NULL, '{');
-        json_text(&json, "case", lar_precision_case_names[o->what[k]]);
-        json_number(&json, "largest", o->result[k].largest);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "case", lar_precision_case_names[o->what[k]]);
+        lar_json_number(&json, "largest", o->result[k].largest);
         for (int w = 0; w < LAR_PRECISION_COUNT; w++) write_way(&json, &o->result[k].way[w], w);
-        json_close(&json);
+        lar_json_close(&json);
     }
-    json_close(&json);
+    lar_json_close(&json);
     if (o->stable_known) {
-        json_open(&json, "stable_step_ratio", '{');
+        lar_json_open(&json, "stable_step_ratio", '{');
         for (int w = 0; w < LAR_PRECISION_COUNT; w++)
-            json_number(&json, lar_precision_names[w], o->stable[w]);
-        json_close(&json);
+            lar_json_number(&json, lar_precision_names[w], o->stable[w]);
+        lar_json_close(&json);
     }
     bench_close_json(&s->frame, &json);
 }

@@ -1,7 +1,6 @@
 /* lariat bench scaling: what several processors are worth on this machine. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "cli/bench/frame.h"
@@ -21,43 +20,41 @@ typedef struct scaling_settings {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_row(json_writer *json, const lar_bench_scaling_row *row) {
-    json_open(json, NULL, '{');
-    json_text(json, "grid", row->grid);
-    json_integer(json, "processors", row->processors);
-    json_integer(json, "threads", row->threads);
-    json_text(json, "comm", row->comm);
+static void write_row(lar_json *json, const lar_bench_scaling_row *row) {
+    lar_json_open(json, NULL, '{');
+    lar_json_text(json, "grid", row->grid);
+    lar_json_integer(json, "processors", row->processors);
+    lar_json_integer(json, "threads", row->threads);
+    lar_json_text(json, "comm", row->comm);
     if (row->missing) {
-        json_text(json, "missing", row->missing);
+        lar_json_text(json, "missing", row->missing);
     } else {
-        json_number(json, "us_per_step", row->microseconds.median);
+        lar_json_number(json, "us_per_step", row->microseconds.median);
         bench_write_spread(json, "us_per_step_spread", &row->microseconds);
-        json_number(json, "over_plain", row->over_plain);
-        json_number(json, "speed_up", row->speed_up);
-        json_number(json, "efficiency", row->efficiency);
+        lar_json_number(json, "over_plain", row->over_plain);
+        lar_json_number(json, "speed_up", row->speed_up);
+        lar_json_number(json, "efficiency", row->efficiency);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void write_json(const scaling_settings *s, const lar_bench_scaling_result *r) {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
-    json_writer json = bench_open_json(&s->frame);
-    json_text(&json, "title", r->info.title);
-    json_integer(&json, "elements", r->info.elements);
-    json_integer(&json, "nodes", r->info.nodes);
-    json_text(&json, "isa", r->isa);
-    json_text(&json, "scheme", s->wanted.scheme ? s->wanted.scheme : cli_scheme_names[0]);
-    json_integer(&json, "cores", r->cores);
-    json_boolean(&json, "pinned", r->pinned);
-    json_integer(&json, "samples", r->repeat);
-    json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
-    json_integer(&json, "steps_per_sample", (int64_t)r->steps);
+    lar_json json = bench_open_json(&s->frame);
+    lar_json_text(&json, "title", r->info.title);
+    lar_json_integer(&json, "elements", r->info.elements);
+    lar_json_integer(&json, "nodes", r->info.nodes);
+    lar_json_text(&json, "isa", r->isa);
+    lar_json_text(&json, "scheme", s->wanted.scheme ? s->wanted.scheme : cli_scheme_names[0]);
+    lar_json_integer(&json, "cores", r->cores);
+    lar_json_boolean(&json, "pinned", r->pinned);
+    lar_json_integer(&json, "samples", r->repeat);
+    lar_json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
+    lar_json_integer(&json, "steps_per_sample", (int64_t)r->steps);
     if (r->core_to_core.median > 0) bench_write_spread(&json, "core_to_core_ns", &r->core_to_core);
-    json_text(&json, "state_hash", hash);
-    json_open(&json, "rows", '[');
+    lar_json_hash(&json, "state_hash", r->hash);
+    lar_json_open(&json, "rows", '[');
     for (int i = 0; i < r->rows; i++) write_row(&json, &r->row[i]);
-    json_close(&json);
+    lar_json_close(&json);
     bench_close_json(&s->frame, &json);
 }
 

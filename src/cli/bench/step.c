@@ -19,30 +19,28 @@ static double real_time_factor(const lar_bench_step_result *r) {
 }
 
 static void write_json(const bench_frame *frame, const lar_bench_step_result *r) {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
-    json_writer json = bench_open_json(frame);
-    json_text(&json, "title", r->info.title);
-    json_integer(&json, "elements", r->info.elements);
-    json_integer(&json, "nodes", r->info.nodes);
-    json_text(&json, "isa", r->isa);
-    json_number(&json, "time_step", r->time_step);
-    json_integer(&json, "samples", r->repeat);
-    json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
-    json_integer(&json, "steps_per_sample", (int64_t)r->steps);
-    json_number(&json, "us_per_step", r->microseconds.median);
+    lar_json json = bench_open_json(frame);
+    lar_json_text(&json, "title", r->info.title);
+    lar_json_integer(&json, "elements", r->info.elements);
+    lar_json_integer(&json, "nodes", r->info.nodes);
+    lar_json_text(&json, "isa", r->isa);
+    lar_json_number(&json, "time_step", r->time_step);
+    lar_json_integer(&json, "samples", r->repeat);
+    lar_json_integer(&json, "warm_up_steps", (int64_t)r->warm_up);
+    lar_json_integer(&json, "steps_per_sample", (int64_t)r->steps);
+    lar_json_number(&json, "us_per_step", r->microseconds.median);
     bench_write_spread(&json, "us_per_step_spread", &r->microseconds);
-    json_open(&json, "single_steps_us", '{');
-    json_number(&json, "mean", r->mean);
-    json_number(&json, "p50", r->p50);
-    json_number(&json, "p99", r->p99);
-    json_number(&json, "p999", r->p999);
-    json_number(&json, "max", r->longest);
-    json_close(&json);
-    json_number(&json, "ns_per_element", 1e3 * r->microseconds.median / r->info.elements);
-    json_number(&json, "real_time_factor", real_time_factor(r));
-    json_integer(&json, "touching", r->contact.touching);
-    json_text(&json, "state_hash", hash);
+    lar_json_open(&json, "single_steps_us", '{');
+    lar_json_number(&json, "mean", r->mean);
+    lar_json_number(&json, "p50", r->p50);
+    lar_json_number(&json, "p99", r->p99);
+    lar_json_number(&json, "p999", r->p999);
+    lar_json_number(&json, "max", r->longest);
+    lar_json_close(&json);
+    lar_json_number(&json, "ns_per_element", 1e3 * r->microseconds.median / r->info.elements);
+    lar_json_number(&json, "real_time_factor", real_time_factor(r));
+    lar_json_integer(&json, "touching", r->contact.touching);
+    lar_json_hash(&json, "state_hash", r->hash);
     bench_close_json(frame, &json);
 }
 
@@ -80,8 +78,9 @@ static int report(step_settings *s, const lar_bench_step_result *r) {
 
 /* The steps of a scene do not all cost the same: without --steps as many as the earlier run did. */
 static void take_over(const bench_frame *frame, int64_t *value, const char *key) {
-    const char *text = frame->baseline ? lar_baseline_text(frame->baseline, key) : NULL;
-    long long earlier = text ? strtoll(text, NULL, 10) : -1;
+    char text[LAR_BENCH_TEXT];
+    bool known = frame->baseline && lar_baseline_text(frame->baseline, key, text, sizeof text);
+    long long earlier = known ? strtoll(text, NULL, 10) : -1;
     if (earlier >= 0 && earlier <= LAR_BENCH_STEP_STEPS_MAX) *value = earlier;
 }
 

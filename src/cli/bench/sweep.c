@@ -35,25 +35,25 @@ static void print_table(const lar_sweep_result *r) {
 }
 
 static void write_json(const bench_frame *frame, const lar_sweep_result *r) {
-    json_writer json = bench_open_json(frame);
-    json_number(&json, "bandwidth", r->bandwidth);
-    json_integer(&json, "left_out", r->left_out);
-    json_open(&json, "sweep", '[');
+    lar_json json = bench_open_json(frame);
+    lar_json_number(&json, "bandwidth", r->bandwidth);
+    lar_json_integer(&json, "left_out", r->left_out);
+    lar_json_open(&json, "sweep", '[');
     for (int i = 0; i < r->rows; i++) {
         const lar_sweep_row *row = &r->row[i];
-        json_open(&json, NULL, '{');
-        json_text(&json, "isa", row->kernel.isa);
-        json_text(&json, "shape", lar_sweep_shape_name[row->shape]);
-        json_integer(&json, "elements", row->kernel.elements);
-        json_number(&json, "ns_per_element", row->kernel.nanoseconds.median);
-        json_number(&json, "gflops", row->gflops);
-        json_number(&json, "peak_gflops", row->kernel.peak_gflops.median);
-        json_number(&json, "fraction_of_peak", row->kernel.fraction_of_peak);
-        json_number(&json, "bytes_per_element", row->kernel.bytes_per_element);
-        json_number(&json, "roof_gflops", row->roof);
-        json_close(&json);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "isa", row->kernel.isa);
+        lar_json_text(&json, "shape", lar_sweep_shape_name[row->shape]);
+        lar_json_integer(&json, "elements", row->kernel.elements);
+        lar_json_number(&json, "ns_per_element", row->kernel.nanoseconds.median);
+        lar_json_number(&json, "gflops", row->gflops);
+        lar_json_number(&json, "peak_gflops", row->kernel.peak_gflops.median);
+        lar_json_number(&json, "fraction_of_peak", row->kernel.fraction_of_peak);
+        lar_json_number(&json, "bytes_per_element", row->kernel.bytes_per_element);
+        lar_json_number(&json, "roof_gflops", row->roof);
+        lar_json_close(&json);
     }
-    json_close(&json);
+    lar_json_close(&json);
     bench_close_json(frame, &json);
 }
 

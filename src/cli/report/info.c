@@ -1,7 +1,6 @@
 #include "cli/report/info.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 /* The words of scenes; hands are in none. */
@@ -22,96 +21,97 @@ static void towards(const lar_tool_pose *pose, double out[3]) {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_contacts(json_writer *json, const lar_model *model) {
+static void write_contacts(lar_json *json, const lar_model *model) {
     lar_model_contact_info contact;
-    json_open(json, "contacts", '[');
+    lar_json_open(json, "contacts", '[');
     for (int32_t i = 0; !lar_model_contact(model, i, &contact, NULL); i++) {
-        json_open(json, NULL, '{');
-        json_text(json, "kind", contact.kind);
-        json_integer(json, "faces", contact.faces);
-        json_integer(json, "against", contact.against);
-        json_vector(json, "through", contact.through);
-        json_vector(json, "normal", contact.normal);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "kind", contact.kind);
+        lar_json_integer(json, "faces", contact.faces);
+        lar_json_integer(json, "against", contact.against);
+        lar_json_vector(json, "through", contact.through, 3);
+        lar_json_vector(json, "normal", contact.normal, 3);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
-static void write_tools(json_writer *json, const lar_model *model) {
+static void write_tools(lar_json *json, const lar_model *model) {
     lar_tool_info tool;
-    json_open(json, "tools", '[');
+    lar_json_open(json, "tools", '[');
     for (int32_t i = 0; !lar_model_tool(model, i, &tool, NULL); i++) {
         double direction[3];
         towards(&tool.rest, direction);
-        json_open(json, NULL, '{');
-        json_text(json, "name", tool.name);
-        json_text(json, "shape", shape_word[tool.shape]);
-        json_number(json, "radius", tool.radius);
-        json_number(json, "length", tool.length);
-        json_number(json, "spread", degrees(tool.spread));
-        json_vector(json, "at", tool.rest.position);
-        json_vector(json, "towards", direction);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "name", tool.name);
+        lar_json_text(json, "shape", shape_word[tool.shape]);
+        lar_json_number(json, "radius", tool.radius);
+        lar_json_number(json, "length", tool.length);
+        lar_json_number(json, "spread", degrees(tool.spread));
+        lar_json_vector(json, "at", tool.rest.position, 3);
+        lar_json_vector(json, "towards", direction, 3);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 void info_report_json(const info_report *report) {
     const lar_model *model = report->model;
     const lar_model_info *info = &report->info;
-    json_writer json = json_begin(stdout);
-    json_text(&json, "file", report->path);
-    json_text(&json, "title", info->title);
-    json_integer(&json, "nodes", info->nodes);
-    json_integer(&json, "elements", info->elements);
-    json_integer(&json, "fixed_nodes", info->fixed_nodes);
-    json_vector(&json, "lower", info->lower);
-    json_vector(&json, "upper", info->upper);
-    json_number(&json, "volume", info->volume);
-    json_number(&json, "mass", info->mass);
-    json_number(&json, "shortest_edge", info->shortest_edge);
-    json_open(&json, "scaled_jacobian", '{');
-    json_number(&json, "min", info->scaled_jacobian_min);
-    json_number(&json, "mean", info->scaled_jacobian_mean);
-    json_integer(&json, "worst_element", lar_model_element_id(model, info->scaled_jacobian_worst));
-    json_close(&json);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "file", report->path);
+    lar_json_text(&json, "title", info->title);
+    lar_json_integer(&json, "nodes", info->nodes);
+    lar_json_integer(&json, "elements", info->elements);
+    lar_json_integer(&json, "fixed_nodes", info->fixed_nodes);
+    lar_json_vector(&json, "lower", info->lower, 3);
+    lar_json_vector(&json, "upper", info->upper, 3);
+    lar_json_number(&json, "volume", info->volume);
+    lar_json_number(&json, "mass", info->mass);
+    lar_json_number(&json, "shortest_edge", info->shortest_edge);
+    lar_json_open(&json, "scaled_jacobian", '{');
+    lar_json_number(&json, "min", info->scaled_jacobian_min);
+    lar_json_number(&json, "mean", info->scaled_jacobian_mean);
+    lar_json_integer(&json, "worst_element",
+                     lar_model_element_id(model, info->scaled_jacobian_worst));
+    lar_json_close(&json);
     cli_write_quality(&json, &report->quality);
-    json_number(&json, "stable_step", info->stable_step);
-    json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
-    json_number(&json, "time_step", info->time_step);
+    lar_json_number(&json, "stable_step", info->stable_step);
+    lar_json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
+    lar_json_number(&json, "time_step", info->time_step);
     if (report->timed) cli_write_speed(&json, &report->speed);
-    json_number(&json, "duration", lar_model_duration(model));
-    json_boolean(&json, "until_rest", lar_model_until_rest(model));
-    json_number(&json, "output_interval", lar_model_output_interval(model));
-    json_open(&json, "materials", '[');
+    lar_json_number(&json, "duration", lar_model_duration(model));
+    lar_json_boolean(&json, "until_rest", lar_model_until_rest(model));
+    lar_json_number(&json, "output_interval", lar_model_output_interval(model));
+    lar_json_open(&json, "materials", '[');
     lar_material_info material;
     for (int32_t i = 0; !lar_model_material(model, i, &material, NULL); i++) {
-        json_open(&json, NULL, '{');
-        json_text(&json, "name", material.name);
-        json_text(&json, "law", material.law);
-        json_integer(&json, "elements", material.elements);
-        json_number(&json, "density", material.density);
-        json_number(&json, "shear_modulus", material.shear_modulus);
-        json_number(&json, "bulk_modulus", material.bulk_modulus);
-        json_close(&json);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "name", material.name);
+        lar_json_text(&json, "law", material.law);
+        lar_json_integer(&json, "elements", material.elements);
+        lar_json_number(&json, "density", material.density);
+        lar_json_number(&json, "shear_modulus", material.shear_modulus);
+        lar_json_number(&json, "bulk_modulus", material.bulk_modulus);
+        lar_json_close(&json);
     }
-    json_close(&json);
-    json_open(&json, "sets", '[');
+    lar_json_close(&json);
+    lar_json_open(&json, "sets", '[');
     lar_set_info set;
     for (int32_t i = 0; !lar_model_set(model, i, &set, NULL); i++) {
-        json_open(&json, NULL, '{');
-        json_text(&json, "name", set.name);
-        json_text(&json, "kind", set.kind);
-        json_integer(&json, "count", set.count);
-        json_close(&json);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "name", set.name);
+        lar_json_text(&json, "kind", set.kind);
+        lar_json_integer(&json, "count", set.count);
+        lar_json_close(&json);
     }
-    json_close(&json);
+    lar_json_close(&json);
     write_contacts(&json, model);
     write_tools(&json, model);
-    json_open(&json, "notices", '[');
+    lar_json_open(&json, "notices", '[');
     for (int32_t i = 0; i < lar_model_notice_count(model); i++)
-        json_text(&json, NULL, lar_model_notice_text(model, i));
-    json_end(&json);
+        lar_json_text(&json, NULL, lar_model_notice_text(model, i));
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */

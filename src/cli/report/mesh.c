@@ -6,78 +6,76 @@
 
 /* ---- for machines ---------------------------------------------------------------------------- */
 
-static void write_regions(json_writer *json, const mesh_report *report) {
+static void write_regions(lar_json *json, const mesh_report *report) {
     lar_region_info region;
-    json_open(json, "regions", '[');
+    lar_json_open(json, "regions", '[');
     for (int32_t r = 0; !lar_meshing_region(report->meshing, r, &region, NULL); r++) {
-        json_open(json, NULL, '{');
-        json_text(json, "name", region.name);
-        json_integer(json, "tag", region.tag);
-        json_integer(json, "elements", region.elements);
-        json_number(json, "volume", region.volume);
-        json_number(json, "true_volume", region.true_volume);
-        json_text(json, "tissue", region.tissue);
-        json_text(json, "source", region.source);
-        json_number(json, "shear_modulus", region.shear_modulus);
-        json_number(json, "bulk_modulus", region.bulk_modulus);
-        json_number(json, "density", region.density);
-        json_boolean(json, "held", region.held != 0);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "name", region.name);
+        lar_json_integer(json, "tag", region.tag);
+        lar_json_integer(json, "elements", region.elements);
+        lar_json_number(json, "volume", region.volume);
+        lar_json_number(json, "true_volume", region.true_volume);
+        lar_json_text(json, "tissue", region.tissue);
+        lar_json_text(json, "source", region.source);
+        lar_json_number(json, "shear_modulus", region.shear_modulus);
+        lar_json_number(json, "bulk_modulus", region.bulk_modulus);
+        lar_json_number(json, "density", region.density);
+        lar_json_boolean(json, "held", region.held != 0);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 void mesh_report_json(const mesh_report *report) {
     const lar_meshing_info *info = &report->info;
-    json_writer json = json_begin(stdout);
-    json_text(&json, "scene", report->scene);
-    json_text(&json, "title", info->title);
-    json_integer(&json, "elements", info->elements);
-    json_integer(&json, "nodes", info->nodes);
-    json_number(&json, "size", info->size);
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "scene", report->scene);
+    lar_json_text(&json, "title", info->title);
+    lar_json_integer(&json, "elements", info->elements);
+    lar_json_integer(&json, "nodes", info->nodes);
+    lar_json_number(&json, "size", info->size);
     write_regions(&json, report);
-    json_open(&json, "cleaning", '{');
-    json_integer(&json, "islands", info->islands);
-    json_integer(&json, "island_cells", info->island_cells);
-    json_integer(&json, "pinholes", info->pinholes);
-    json_integer(&json, "pinhole_cells", info->pinhole_cells);
-    json_integer(&json, "added", info->added);
-    json_integer(&json, "removed", info->removed);
-    json_close(&json);
-    json_integer(&json, "cuts", info->cuts);
-    json_text(&json, "fix", info->fix);
-    json_integer(&json, "pads", info->extra_supports);
-    json_integer(&json, "fixed_nodes", info->fixed_nodes);
-    json_open(&json, "scaled_jacobian", '{');
-    json_number(&json, "min", report->model.scaled_jacobian_min);
-    json_number(&json, "mean", report->model.scaled_jacobian_mean);
-    json_close(&json);
+    lar_json_open(&json, "cleaning", '{');
+    lar_json_integer(&json, "islands", info->islands);
+    lar_json_integer(&json, "island_cells", info->island_cells);
+    lar_json_integer(&json, "pinholes", info->pinholes);
+    lar_json_integer(&json, "pinhole_cells", info->pinhole_cells);
+    lar_json_integer(&json, "added", info->added);
+    lar_json_integer(&json, "removed", info->removed);
+    lar_json_close(&json);
+    lar_json_integer(&json, "cuts", info->cuts);
+    lar_json_text(&json, "fix", info->fix);
+    lar_json_integer(&json, "pads", info->extra_supports);
+    lar_json_integer(&json, "fixed_nodes", info->fixed_nodes);
+    lar_json_open(&json, "scaled_jacobian", '{');
+    lar_json_number(&json, "min", report->model.scaled_jacobian_min);
+    lar_json_number(&json, "mean", report->model.scaled_jacobian_mean);
+    lar_json_close(&json);
     cli_write_quality(&json, &info->quality);
-    json_number(&json, "shortest_edge", report->model.shortest_edge);
-    json_number(&json, "stable_step", report->model.stable_step);
-    json_number(&json, "time_step", report->model.time_step);
+    lar_json_number(&json, "shortest_edge", report->model.shortest_edge);
+    lar_json_number(&json, "stable_step", report->model.stable_step);
+    lar_json_number(&json, "time_step", report->model.time_step);
     cli_write_speed(&json, &report->speed);
-    json_number(&json, "seconds", report->seconds);
-    json_end(&json);
+    lar_json_number(&json, "seconds", report->seconds);
+    lar_json_end(&json);
 }
 
 void mesh_report_labels_json(const char *path, const lar_label_list *list) {
-    json_writer json = json_begin(stdout);
-    json_text(&json, "file", path);
-    json_open(&json, "voxels", '[');
-    for (int i = 0; i < 3; i++) json_integer(&json, NULL, list->size[i]);
-    json_close(&json);
-    json_open(&json, "labels", '[');
+    lar_json json = lar_json_to(stdout);
+    lar_json_text(&json, "file", path);
+    lar_json_integers(&json, "voxels", list->size, 3);
+    lar_json_open(&json, "labels", '[');
     for (int32_t i = 0; i < list->count; i++) {
         const lar_label_row *row = &list->row[i];
-        json_open(&json, NULL, '{');
-        json_integer(&json, "label", row->label);
-        json_text(&json, "name", row->name ? row->name : "");
-        json_integer(&json, "voxels", row->voxels);
-        json_number(&json, "volume", (double)row->voxels * list->voxel);
-        json_close(&json);
+        lar_json_open(&json, NULL, '{');
+        lar_json_integer(&json, "label", row->label);
+        lar_json_text(&json, "name", row->name ? row->name : "");
+        lar_json_integer(&json, "voxels", row->voxels);
+        lar_json_number(&json, "volume", (double)row->voxels * list->voxel);
+        lar_json_close(&json);
     }
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------------ */

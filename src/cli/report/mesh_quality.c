@@ -96,22 +96,20 @@ void cli_print_crossings(const lar_mesh_quality *quality) {
     putchar('\n');
 }
 
-void cli_write_quality(json_writer *json, const lar_mesh_quality *quality) {
-    json_open(json, "quality", '{');
-    json_open(json, "jacobian_histogram", '[');
-    for (int b = 0; b < 10; b++) json_integer(json, NULL, quality->jacobian_bin[b]);
-    json_close(json);
-    json_number(json, "above_02", quality->above_02);
-    json_number(json, "above_05", quality->above_05);
-    json_number(json, "mean_edge", quality->mean_edge);
-    json_number(json, "volume", quality->volume);
-    json_number(json, "true_volume", quality->true_volume);
-    json_number(json, "deviation_mean", quality->deviation_mean);
-    json_number(json, "deviation_95", quality->deviation_95);
-    json_number(json, "deviation_max", quality->deviation_max);
-    json_integer(json, "crossings", quality->crossings);
-    json_number(json, "crossing_depth", quality->crossing_depth);
-    json_close(json);
+void cli_write_quality(lar_json *json, const lar_mesh_quality *quality) {
+    lar_json_open(json, "quality", '{');
+    lar_json_integers(json, "jacobian_histogram", quality->jacobian_bin, 10);
+    lar_json_number(json, "above_02", quality->above_02);
+    lar_json_number(json, "above_05", quality->above_05);
+    lar_json_number(json, "mean_edge", quality->mean_edge);
+    lar_json_number(json, "volume", quality->volume);
+    lar_json_number(json, "true_volume", quality->true_volume);
+    lar_json_number(json, "deviation_mean", quality->deviation_mean);
+    lar_json_number(json, "deviation_95", quality->deviation_95);
+    lar_json_number(json, "deviation_max", quality->deviation_max);
+    lar_json_integer(json, "crossings", quality->crossings);
+    lar_json_number(json, "crossing_depth", quality->crossing_depth);
+    lar_json_close(json);
 }
 
 /* ---- speed ----------------------------------------------------------------------------------- */
@@ -138,13 +136,13 @@ void cli_print_speed(const cli_speed *speed) {
            found->holds);
 }
 
-void cli_write_speed(json_writer *json, const cli_speed *speed) {
-    json_open(json, "speed", '{');
-    json_number(json, "real_time_factor", speed->measured ? speed->found.factor : NAN);
-    json_number(json, "wall_per_step_us", speed->measured ? 1e6 * speed->found.step : NAN);
-    json_text(json, "grid", speed->measured ? speed->found.choice.grid : "");
-    json_number(json, "divided_factor", speed->measured ? speed->found.divided : NAN);
-    json_number(json, "real_time_elements", speed->measured ? speed->found.holds : NAN);
-    json_text(json, "why_not", speed->measured ? "" : speed->why.message);
-    json_close(json);
+void cli_write_speed(lar_json *json, const cli_speed *speed) {
+    lar_json_open(json, "speed", '{');
+    lar_json_number(json, "real_time_factor", speed->measured ? speed->found.factor : NAN);
+    lar_json_number(json, "wall_per_step_us", speed->measured ? 1e6 * speed->found.step : NAN);
+    lar_json_text(json, "grid", speed->measured ? speed->found.choice.grid : "");
+    lar_json_number(json, "divided_factor", speed->measured ? speed->found.divided : NAN);
+    lar_json_number(json, "real_time_elements", speed->measured ? speed->found.holds : NAN);
+    lar_json_text(json, "why_not", speed->measured ? "" : speed->why.message);
+    lar_json_close(json);
 }

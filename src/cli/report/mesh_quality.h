@@ -3,7 +3,7 @@
 #ifndef LAR_CLI_REPORT_MESH_QUALITY_H
 #define LAR_CLI_REPORT_MESH_QUALITY_H
 
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "lariat.h"
 #include "study/real_time.h"
 
@@ -20,7 +20,7 @@ void cli_print_jacobians(const lar_mesh_quality *quality);
 void cli_print_deviation(const lar_mesh_quality *quality);
 /* Outer faces that go through each other, or that there are none. */
 void cli_print_crossings(const lar_mesh_quality *quality);
-void cli_write_quality(json_writer *json, const lar_mesh_quality *quality);
+void cli_write_quality(lar_json *json, const lar_mesh_quality *quality);
 
 /* The model's speed on this machine, or why it has none. */
 typedef struct cli_speed {
@@ -31,6 +31,6 @@ typedef struct cli_speed {
 
 cli_speed cli_measure_speed(const lar_model *model);
 void cli_print_speed(const cli_speed *speed);
-void cli_write_speed(json_writer *json, const cli_speed *speed);
+void cli_write_speed(lar_json *json, const cli_speed *speed);
 
 #endif

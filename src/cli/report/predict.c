@@ -18,18 +18,18 @@ static const char *source_of(const lar_cluster *m, int i) {
 
 /* ---- machines ------------------------------------------------------------------------------- */
 
-static void write_machine(json_writer *json, const char *name, const lar_cluster *m) {
-    json_open(json, name, '{');
-    json_text(json, "name", m->name);
-    json_text(json, "title", m->title);
+static void write_machine(lar_json *json, const char *name, const lar_cluster *m) {
+    lar_json_open(json, name, '{');
+    lar_json_text(json, "name", m->name);
+    lar_json_text(json, "title", m->title);
     for (int i = 0; i < LAR_CLUSTER_NUMBERS; i++) {
-        json_open(json, lar_cluster_number_name[i], '{');
-        json_number(json, "value", in_units(m, i));
-        json_text(json, "unit", unit_of(i));
-        json_text(json, "source", source_of(m, i));
-        json_close(json);
+        lar_json_open(json, lar_cluster_number_name[i], '{');
+        lar_json_number(json, "value", in_units(m, i));
+        lar_json_text(json, "unit", unit_of(i));
+        lar_json_text(json, "source", source_of(m, i));
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void print_machine(const lar_cluster *m) {
@@ -40,10 +40,10 @@ static void print_machine(const lar_cluster *m) {
 }
 
 void predict_machines_json(void) {
-    json_writer json = json_begin(stdout);
-    json_open(&json, "machines", '[');
+    lar_json json = lar_json_to(stdout);
+    lar_json_open(&json, "machines", '[');
     for (int i = 0; lar_cluster_at(i); i++) write_machine(&json, NULL, lar_cluster_at(i));
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 void predict_machines_print(void) {
@@ -55,12 +55,12 @@ void predict_machines_print(void) {
 
 /* ---- how long the simulation went on -------------------------------------------------------- */
 
-static void write_settled(json_writer *json, int32_t steps, bool settled, double fastest,
+static void write_settled(lar_json *json, int32_t steps, bool settled, double fastest,
                           double slowest) {
-    json_integer(json, "steps", steps);
-    json_boolean(json, "settled", settled);
-    json_number(json, "fastest_us", 1e6 * fastest);
-    json_number(json, "slowest_us", 1e6 * slowest);
+    lar_json_integer(json, "steps", steps);
+    lar_json_boolean(json, "settled", settled);
+    lar_json_number(json, "fastest_us", 1e6 * fastest);
+    lar_json_number(json, "slowest_us", 1e6 * slowest);
 }
 
 static void print_unsettled(const char *what, double fastest, double slowest) {
@@ -71,65 +71,64 @@ static void print_unsettled(const char *what, double fastest, double slowest) {
 
 /* ---- a model -------------------------------------------------------------------------------- */
 
-static void write_processor(json_writer *json, const lar_network_processor *p) {
-    json_open(json, NULL, '{');
-    json_number(json, "compute_us", 1e6 * p->compute);
-    json_number(json, "exchange_us", 1e6 * p->exchange);
-    json_number(json, "wait_us", 1e6 * p->wait);
-    json_integer(json, "packets", p->packets);
-    json_integer(json, "bytes_sent", p->bytes_sent);
-    json_integer(json, "bytes_received", p->bytes_received);
-    json_close(json);
+static void write_processor(lar_json *json, const lar_network_processor *p) {
+    lar_json_open(json, NULL, '{');
+    lar_json_number(json, "compute_us", 1e6 * p->compute);
+    lar_json_number(json, "exchange_us", 1e6 * p->exchange);
+    lar_json_number(json, "wait_us", 1e6 * p->wait);
+    lar_json_integer(json, "packets", p->packets);
+    lar_json_integer(json, "bytes_sent", p->bytes_sent);
+    lar_json_integer(json, "bytes_received", p->bytes_received);
+    lar_json_close(json);
 }
 
-static void write_check(json_writer *json, const lar_predict_check *c) {
-    json_open(json, "check", '[');
+static void write_check(lar_json *json, const lar_predict_check *c) {
+    lar_json_open(json, "check", '[');
     for (int i = 0; i < LAR_PREDICT_CHECKS; i++) {
-        json_open(json, NULL, '{');
-        json_text(json, "grid", c->grid[i]);
-        json_text(json, "comm", c->comm);
-        json_number(json, "predicted_us", 1e6 * c->predicted[i]);
-        json_number(json, "measured_us", 1e6 * c->measured[i].min);
-        json_number(json, "predicted_over_measured", c->predicted[i] / c->measured[i].min);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "grid", c->grid[i]);
+        lar_json_text(json, "comm", c->comm);
+        lar_json_number(json, "predicted_us", 1e6 * c->predicted[i]);
+        lar_json_number(json, "measured_us", 1e6 * c->measured[i].min);
+        lar_json_number(json, "predicted_over_measured", c->predicted[i] / c->measured[i].min);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 void predict_report_json(const predict_report *report) {
     const lar_prediction *p = report->prediction;
     const lar_network_result *r = &p->network;
-    json_writer json = json_begin(stdout);
-    json_open(&json, "grid", '[');
-    for (int i = 0; i < 3; i++) json_integer(&json, NULL, r->grid[i]);
-    json_close(&json);
-    json_integer(&json, "processors", r->processors);
-    json_integer(&json, "threads", r->threads);
-    json_text(&json, "scheme", report->scheme);
-    json_text(&json, "channels", report->channels);
-    json_integer(&json, "elements", p->elements);
-    json_integer(&json, "nodes", p->nodes);
+    lar_json json = lar_json_to(stdout);
+    lar_json_integers(&json, "grid", r->grid, 3);
+    lar_json_integer(&json, "processors", r->processors);
+    lar_json_integer(&json, "threads", r->threads);
+    lar_json_text(&json, "scheme", report->scheme);
+    lar_json_text(&json, "channels", report->channels);
+    lar_json_integer(&json, "elements", p->elements);
+    lar_json_integer(&json, "nodes", p->nodes);
     write_machine(&json, "machine", report->machine);
-    json_number(&json, "step_us", 1e6 * r->step);
+    lar_json_number(&json, "step_us", 1e6 * r->step);
     write_settled(&json, r->steps, r->settled, r->fastest, r->slowest);
-    json_number(&json, "alone_us", 1e6 * p->alone);
-    json_number(&json, "time_step", p->time_step);
-    json_number(&json, "real_time_factor", p->real_time_factor);
-    json_number(&json, "speed_up", p->speed_up);
-    json_number(&json, "efficiency", p->efficiency);
-    json_number(&json, "occupation", r->occupation);
-    json_open(&json, "occupation_over_step", '[');
-    for (int i = 0; i < LAR_NETWORK_SLICES; i++) json_number(&json, NULL, r->slice[i]);
-    json_close(&json);
-    json_number(&json, "start_step_us", 1e6 * r->start_step);
-    json_open(&json, "occupation_from_start", '[');
-    for (int i = 0; i < LAR_NETWORK_START_SLICES; i++) json_number(&json, NULL, r->start_slice[i]);
-    json_close(&json);
-    json_open(&json, "by_processor", '[');
+    lar_json_number(&json, "alone_us", 1e6 * p->alone);
+    lar_json_number(&json, "time_step", p->time_step);
+    lar_json_number(&json, "real_time_factor", p->real_time_factor);
+    lar_json_number(&json, "speed_up", p->speed_up);
+    lar_json_number(&json, "efficiency", p->efficiency);
+    lar_json_number(&json, "occupation", r->occupation);
+    lar_json_open(&json, "occupation_over_step", '[');
+    for (int i = 0; i < LAR_NETWORK_SLICES; i++) lar_json_number(&json, NULL, r->slice[i]);
+    lar_json_close(&json);
+    lar_json_number(&json, "start_step_us", 1e6 * r->start_step);
+    lar_json_open(&json, "occupation_from_start", '[');
+    for (int i = 0; i < LAR_NETWORK_START_SLICES; i++)
+        lar_json_number(&json, NULL, r->start_slice[i]);
+    lar_json_close(&json);
+    lar_json_open(&json, "by_processor", '[');
     for (int32_t i = 0; i < r->processors; i++) write_processor(&json, &r->of[i]);
-    json_close(&json);
+    lar_json_close(&json);
     if (report->check) write_check(&json, report->check);
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 static void print_occupation(const lar_network_result *r) {
@@ -194,30 +193,30 @@ void predict_report_print(const predict_report *report) {
 /* ---- size scaling --------------------------------------------------------------------------- */
 
 void predict_scaling_json(const predict_scaling *s) {
-    json_writer json = json_begin(stdout);
+    lar_json json = lar_json_to(stdout);
     write_machine(&json, "machine", s->machine);
-    json_integer(&json, "threads", s->threads);
-    json_open(&json, "scaling", '[');
+    lar_json_integer(&json, "threads", s->threads);
+    lar_json_open(&json, "scaling", '[');
     for (int32_t i = 0; i < s->rows * s->scheme_count; i++) {
         const lar_block_prediction *b = &s->row[i];
-        json_open(&json, NULL, '{');
-        json_text(&json, "scheme", lar_predict_scheme_name[s->schemes[i % s->scheme_count]]);
-        json_integer(&json, "processors", s->processors[i / s->scheme_count]);
-        json_open(&json, "grid", '[');
-        for (int k = 0; k < 3; k++) json_integer(&json, NULL, b->grid[k]);
-        json_close(&json);
-        json_integer(&json, "elements_per_processor",
-                     (int64_t)b->edge[0] * b->edge[1] * b->edge[2]);
-        json_number(&json, "step_us", 1e6 * b->step);
+        lar_json_open(&json, NULL, '{');
+        lar_json_text(&json, "scheme", lar_predict_scheme_name[s->schemes[i % s->scheme_count]]);
+        lar_json_integer(&json, "processors", s->processors[i / s->scheme_count]);
+        lar_json_open(&json, "grid", '[');
+        for (int k = 0; k < 3; k++) lar_json_integer(&json, NULL, b->grid[k]);
+        lar_json_close(&json);
+        lar_json_integer(&json, "elements_per_processor",
+                         (int64_t)b->edge[0] * b->edge[1] * b->edge[2]);
+        lar_json_number(&json, "step_us", 1e6 * b->step);
         write_settled(&json, b->steps, b->settled, b->fastest, b->slowest);
-        json_number(&json, "alone_us", 1e6 * b->alone);
-        json_number(&json, "efficiency", b->efficiency);
-        json_number(&json, "occupation", b->occupation);
-        json_integer(&json, "packets_max", b->packets_max);
-        json_integer(&json, "bytes_max", b->bytes_max);
-        json_close(&json);
+        lar_json_number(&json, "alone_us", 1e6 * b->alone);
+        lar_json_number(&json, "efficiency", b->efficiency);
+        lar_json_number(&json, "occupation", b->occupation);
+        lar_json_integer(&json, "packets_max", b->packets_max);
+        lar_json_integer(&json, "bytes_max", b->bytes_max);
+        lar_json_close(&json);
     }
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 void predict_scaling_print(const predict_scaling *s) {
@@ -251,23 +250,23 @@ void predict_scaling_print(const predict_scaling *s) {
 /* ---- critical sub-domain -------------------------------------------------------------------- */
 
 void predict_critical_json(const lar_critical_options *o, const lar_critical *critical) {
-    json_writer json = json_begin(stdout);
-    json_integer(&json, "processors", o->processors);
-    json_integer(&json, "threads", o->threads);
-    json_number(&json, "efficiency", o->efficiency);
-    json_integer(&json, "elements_most", (int64_t)o->edge_max * o->edge_max * o->edge_max);
-    json_open(&json, "critical", '[');
+    lar_json json = lar_json_to(stdout);
+    lar_json_integer(&json, "processors", o->processors);
+    lar_json_integer(&json, "threads", o->threads);
+    lar_json_number(&json, "efficiency", o->efficiency);
+    lar_json_integer(&json, "elements_most", (int64_t)o->edge_max * o->edge_max * o->edge_max);
+    lar_json_open(&json, "critical", '[');
     for (int32_t m = 0; m < o->machines; m++)
         for (int s = 0; s < LAR_PREDICT_SCHEMES; s++) {
-            json_open(&json, NULL, '{');
-            json_text(&json, "name", o->machine[m].name);
-            json_text(&json, "scheme", lar_predict_scheme_name[s]);
-            json_integer(&json, "elements_per_processor", critical[m].elements[s]);
-            json_number(&json, "efficiency", critical[m].efficiency[s]);
-            json_boolean(&json, "settled", !critical[m].unsettled[s]);
-            json_close(&json);
+            lar_json_open(&json, NULL, '{');
+            lar_json_text(&json, "name", o->machine[m].name);
+            lar_json_text(&json, "scheme", lar_predict_scheme_name[s]);
+            lar_json_integer(&json, "elements_per_processor", critical[m].elements[s]);
+            lar_json_number(&json, "efficiency", critical[m].efficiency[s]);
+            lar_json_boolean(&json, "settled", !critical[m].unsettled[s]);
+            lar_json_close(&json);
         }
-    json_end(&json);
+    lar_json_end(&json);
 }
 
 void predict_critical_print(const lar_critical_options *o, const lar_critical *critical) {

@@ -2,7 +2,7 @@
 #ifndef LAR_CLI_REPORT_PREDICT_H
 #define LAR_CLI_REPORT_PREDICT_H
 
-#include "cli/report/json.h"
+#include "base/json/write.h"
 #include "study/predict/predict_check.h"
 
 typedef struct predict_report {

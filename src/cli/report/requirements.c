@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/report/json.h"
+#include "base/json/write.h"
 
 static const char *const method_text[LAR_METHODS] = {
     "implicit, CG (4.1)", "explicit, matrices (4.2.1)", "explicit, vector (4.2.2)",

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/parallel.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 
 /* Wall time that the simulated time is compared with: the steps, and the waiting between them when
  * they were paced. Writing frames is no part of it unless it had to fit between two ticks. */
@@ -24,39 +24,39 @@ static double ns_per_element(const run_report *report) {
 
 /* ---- for machines ----------------------------------------------------------------------- */
 
-static void write_times(json_writer *json, const lar_step_clock *clock) {
-    json_open(json, "wall_per_step_us", '{');
-    json_number(json, "p50", lar_step_clock_quantile(clock, 0.5));
-    json_number(json, "p99", lar_step_clock_quantile(clock, 0.99));
-    json_number(json, "p999", lar_step_clock_quantile(clock, 0.999));
-    json_number(json, "max", lar_step_clock_longest(clock));
-    json_close(json);
+static void write_times(lar_json *json, const lar_step_clock *clock) {
+    lar_json_open(json, "wall_per_step_us", '{');
+    lar_json_number(json, "p50", lar_step_clock_quantile(clock, 0.5));
+    lar_json_number(json, "p99", lar_step_clock_quantile(clock, 0.99));
+    lar_json_number(json, "p999", lar_step_clock_quantile(clock, 0.999));
+    lar_json_number(json, "max", lar_step_clock_longest(clock));
+    lar_json_close(json);
 }
 
-static void write_energy(json_writer *json, const lar_simulation *simulation) {
+static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_energy energy;
     lar_simulation_energy(simulation, &energy);
-    json_open(json, "energy", '{');
-    json_number(json, "kinetic", energy.kinetic);
-    json_number(json, "strain", energy.strain);
-    json_number(json, "hourglass", energy.hourglass);
-    json_number(json, "external", energy.external);
-    json_number(json, "damping", energy.damping);
-    json_number(json, "contact", energy.contact);
-    json_close(json);
+    lar_json_open(json, "energy", '{');
+    lar_json_number(json, "kinetic", energy.kinetic);
+    lar_json_number(json, "strain", energy.strain);
+    lar_json_number(json, "hourglass", energy.hourglass);
+    lar_json_number(json, "external", energy.external);
+    lar_json_number(json, "damping", energy.damping);
+    lar_json_number(json, "contact", energy.contact);
+    lar_json_close(json);
 }
 
-static void write_contact(json_writer *json, const lar_simulation *simulation) {
+static void write_contact(lar_json *json, const lar_simulation *simulation) {
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
-    json_open(json, "contact", '{');
-    json_integer(json, "touching", info.touching);
-    json_number(json, "deepest", info.deepest);
-    json_integer(json, "possible", (int64_t)info.possible);
-    json_integer(json, "boxed", (int64_t)info.boxed);
-    json_integer(json, "tested", (int64_t)info.tested);
-    json_integer(json, "searches", (int64_t)info.searches);
-    json_close(json);
+    lar_json_open(json, "contact", '{');
+    lar_json_integer(json, "touching", info.touching);
+    lar_json_number(json, "deepest", info.deepest);
+    lar_json_integer(json, "possible", (int64_t)info.possible);
+    lar_json_integer(json, "boxed", (int64_t)info.boxed);
+    lar_json_integer(json, "tested", (int64_t)info.tested);
+    lar_json_integer(json, "searches", (int64_t)info.searches);
+    lar_json_close(json);
 }
 
 /* Name and force of a tool of the scene or a hand, as of the last step. */
@@ -66,79 +66,72 @@ static bool tool_of(const lar_simulation *simulation, int32_t tool, lar_tool_inf
            !lar_simulation_tool_force(simulation, tool, force, NULL);
 }
 
-static void write_tools(json_writer *json, const lar_simulation *simulation) {
-    json_open(json, "tools", '[');
+static void write_tools(lar_json *json, const lar_simulation *simulation) {
+    lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
         lar_tool_info info;
         lar_tool_force force;
         if (!tool_of(simulation, i, &info, &force)) continue;
-        json_open(json, NULL, '{');
-        json_text(json, "tool", info.name);
-        json_vector(json, "force", force.force);
-        json_number(json, "grasp", force.grasp_force);
-        json_integer(json, "touching", force.touching);
-        json_integer(json, "held", force.held);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "tool", info.name);
+        lar_json_vector(json, "force", force.force, 3);
+        lar_json_number(json, "grasp", force.grasp_force);
+        lar_json_integer(json, "touching", force.touching);
+        lar_json_integer(json, "held", force.held);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 /* Only what is known. */
-static void write_rest(json_writer *json, const run_report *report) {
+static void write_rest(lar_json *json, const run_report *report) {
     const lar_rest *rest = report->rest;
-    json_open(json, "rest", '{');
-    json_boolean(json, "followed", rest != NULL);
-    json_boolean(json, "reached", rest && rest->reached);
+    lar_json_open(json, "rest", '{');
+    lar_json_boolean(json, "followed", rest != NULL);
+    lar_json_boolean(json, "reached", rest && rest->reached);
     if (rest) {
         double step = lar_simulation_time_step(report->simulation);
-        json_number(json, "since", rest->since);
-        json_number(json, "limit", step * (double)rest->limit);
+        lar_json_number(json, "since", rest->since);
+        lar_json_number(json, "limit", step * (double)rest->limit);
         if (rest->strain > 0)
-            json_number(json, "kinetic_over_strain", rest->kinetic / rest->strain);
-        if (rest->looked && isfinite(rest->left)) json_number(json, "left", rest->left);
+            lar_json_number(json, "kinetic_over_strain", rest->kinetic / rest->strain);
+        if (rest->looked && isfinite(rest->left)) lar_json_number(json, "left", rest->left);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 void run_report_json(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     int32_t max_parts;
     uint64_t divided = lar_simulation_divided_steps(simulation, &max_parts);
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(simulation));
-    json_writer json = json_begin(out);
-    json_text(&json, "title", report->info.title);
-    json_integer(&json, "elements", report->info.elements);
-    json_integer(&json, "nodes", report->info.nodes);
-    json_text(&json, "element", report->element);
-    json_integer(&json, "steps", (int64_t)lar_simulation_steps(simulation));
-    json_number(&json, "time", lar_simulation_time(simulation));
-    json_number(&json, "time_step", lar_simulation_time_step(simulation));
-    json_number(&json, "stable_step", report->info.stable_step);
-    json_text(&json, "grid", report->parallel->grid);
-    json_text(&json, "grid_reason", report->parallel->reason);
-    json_integer(&json, "processors", report->parallel->processors);
-    json_integer(&json, "threads", report->parallel->threads);
-    json_text(&json, "scheme", report->parallel->scheme);
-    json_text(&json, "comm", report->parallel->comm);
-    json_text(&json, "isa", lar_simulation_isa(simulation));
-    json_number(&json, "wall_time", stepping_time(report));
+    lar_json json = lar_json_to(out);
+    lar_json_text(&json, "title", report->info.title);
+    lar_json_integer(&json, "elements", report->info.elements);
+    lar_json_integer(&json, "nodes", report->info.nodes);
+    lar_json_text(&json, "element", report->element);
+    lar_json_integer(&json, "steps", (int64_t)lar_simulation_steps(simulation));
+    lar_json_number(&json, "time", lar_simulation_time(simulation));
+    lar_json_number(&json, "time_step", lar_simulation_time_step(simulation));
+    lar_json_number(&json, "stable_step", report->info.stable_step);
+    cli_write_parallel(&json, report->parallel);
+    lar_json_text(&json, "isa", lar_simulation_isa(simulation));
+    lar_json_number(&json, "wall_time", stepping_time(report));
     write_times(&json, report->clock);
-    json_number(&json, "ns_per_element", ns_per_element(report));
-    json_number(&json, "real_time_factor", real_time_factor(report));
-    json_boolean(&json, "realtime", report->clock->paced);
-    json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
+    lar_json_number(&json, "ns_per_element", ns_per_element(report));
+    lar_json_number(&json, "real_time_factor", real_time_factor(report));
+    lar_json_boolean(&json, "realtime", report->clock->paced);
+    lar_json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     write_contact(&json, simulation);
     write_tools(&json, simulation);
     write_rest(&json, report);
-    json_integer(&json, "divided_steps", (int64_t)divided);
-    json_integer(&json, "most_parts", max_parts);
-    json_text(&json, "state_hash", hash);
-    json_boolean(&json, "verify", report->verify);
-    json_integer(&json, "frames", report->frames);
-    json_boolean(&json, "interrupted", report->interrupted);
-    json_end(&json);
+    lar_json_integer(&json, "divided_steps", (int64_t)divided);
+    lar_json_integer(&json, "most_parts", max_parts);
+    lar_json_hash(&json, "state_hash", lar_simulation_hash(simulation));
+    lar_json_boolean(&json, "verify", report->verify);
+    lar_json_integer(&json, "frames", report->frames);
+    lar_json_boolean(&json, "interrupted", report->interrupted);
+    lar_json_end(&json);
 }
 
 /* ---- for people ------------------------------------------------------------------------- */

@@ -1,22 +1,21 @@
 #include "cli/report/view.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 #include "cli/parallel.h"
-#include "cli/report/json.h"
+#include "base/json/write.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
 static const char *const cause_names[] = {"", "step", "division", "machine"};
 
-static void write_times(json_writer *json, const char *name, double p50, double p99, double p999,
+static void write_times(lar_json *json, const char *name, double p50, double p99, double p999,
                         double max) {
-    json_open(json, name, '{');
-    json_number(json, "p50", 1e6 * p50);
-    json_number(json, "p99", 1e6 * p99);
-    json_number(json, "p999", 1e6 * p999);
-    json_number(json, "max", 1e6 * max);
-    json_close(json);
+    lar_json_open(json, name, '{');
+    lar_json_number(json, "p50", 1e6 * p50);
+    lar_json_number(json, "p99", 1e6 * p99);
+    lar_json_number(json, "p999", 1e6 * p999);
+    lar_json_number(json, "max", 1e6 * max);
+    lar_json_close(json);
 }
 
 static int32_t max_parts(const view_report *report) {
@@ -25,19 +24,19 @@ static int32_t max_parts(const view_report *report) {
     return max;
 }
 
-static void write_tools(json_writer *json, const view_report *report) {
-    json_open(json, "tools", '[');
+static void write_tools(lar_json *json, const view_report *report) {
+    lar_json_open(json, "tools", '[');
     for (int32_t i = 0; i < report->tools; i++) {
         const lar_tool_load *load = &report->tool[i].load;
-        json_open(json, NULL, '{');
-        json_text(json, "tool", report->tool[i].name);
-        json_number(json, "largest_force", load->force);
-        json_number(json, "limit", load->limit);
-        json_boolean(json, "limit_reached", load->reached != 0);
-        json_number(json, "largest_grasp", load->grasp_force);
-        json_close(json);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "tool", report->tool[i].name);
+        lar_json_number(json, "largest_force", load->force);
+        lar_json_number(json, "limit", load->limit);
+        lar_json_boolean(json, "limit_reached", load->reached != 0);
+        lar_json_number(json, "largest_grasp", load->grasp_force);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void print_tools(const view_report *report, FILE *out) {
@@ -52,25 +51,25 @@ static void print_tools(const view_report *report, FILE *out) {
 }
 
 /* VIEW_DEVICES at most. Packets are counted for devices on the network only. */
-static void write_devices(json_writer *json, const view_report *report) {
-    json_open(json, "devices", '[');
+static void write_devices(lar_json *json, const view_report *report) {
+    lar_json_open(json, "devices", '[');
     for (int32_t i = 0; i < report->devices; i++) {
         const lar_device_status *d = &report->device[i].status;
-        json_open(json, NULL, '{');
-        json_text(json, "tool", report->device[i].tool);
-        json_text(json, "device", report->device[i].name);
-        json_integer(json, "port", d->port);
-        json_boolean(json, "connected", d->connected != 0);
-        json_integer(json, "received", (int64_t)d->received);
-        json_integer(json, "answered", (int64_t)d->answered);
-        json_integer(json, "refused", (int64_t)d->refused);
-        json_integer(json, "late", (int64_t)d->late);
-        json_integer(json, "lost", (int64_t)d->lost);
-        json_integer(json, "timeouts", (int64_t)d->timeouts);
+        lar_json_open(json, NULL, '{');
+        lar_json_text(json, "tool", report->device[i].tool);
+        lar_json_text(json, "device", report->device[i].name);
+        lar_json_integer(json, "port", d->port);
+        lar_json_boolean(json, "connected", d->connected != 0);
+        lar_json_integer(json, "received", (int64_t)d->received);
+        lar_json_integer(json, "answered", (int64_t)d->answered);
+        lar_json_integer(json, "refused", (int64_t)d->refused);
+        lar_json_integer(json, "late", (int64_t)d->late);
+        lar_json_integer(json, "lost", (int64_t)d->lost);
+        lar_json_integer(json, "timeouts", (int64_t)d->timeouts);
         write_times(json, "answer_us", d->answer_p50, d->answer_p99, d->answer_p999, d->answer_max);
-        json_close(json);
+        lar_json_close(json);
     }
-    json_close(json);
+    lar_json_close(json);
 }
 
 static void print_devices(const view_report *report, FILE *out) {
@@ -93,45 +92,38 @@ static void print_devices(const view_report *report, FILE *out) {
 
 void view_report_json(const view_report *report, FILE *out) {
     const lar_session_status *s = &report->status;
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, lar_simulation_hash(report->simulation));
-    json_writer json = json_begin(out);
-    json_text(&json, "title", report->info.title);
-    json_text(&json, "url", report->url);
-    json_integer(&json, "elements", report->info.elements);
-    json_integer(&json, "nodes", report->info.nodes);
-    json_text(&json, "grid", report->parallel->grid);
-    json_text(&json, "grid_reason", report->parallel->reason);
-    json_integer(&json, "processors", report->parallel->processors);
-    json_integer(&json, "threads", report->parallel->threads);
-    json_text(&json, "scheme", report->parallel->scheme);
-    json_text(&json, "comm", report->parallel->comm);
-    json_text(&json, "isa", lar_simulation_isa(report->simulation));
-    json_text(&json, "state", state_names[s->state]);
-    json_text(&json, "message", s->message);
-    json_integer(&json, "steps", (int64_t)s->step);
-    json_number(&json, "time", s->time);
-    json_number(&json, "time_step", lar_simulation_time_step(report->simulation));
-    json_number(&json, "pace", report->pace);
-    json_number(&json, "wall_time", report->elapsed);
-    json_number(&json, "real_time_factor", s->real_time_factor);
-    json_integer(&json, "ticks", (int64_t)s->ticks);
-    json_integer(&json, "deadline_misses", (int64_t)s->misses);
-    json_integer(&json, "slow_ticks", (int64_t)s->slow_ticks);
+    lar_json json = lar_json_to(out);
+    lar_json_text(&json, "title", report->info.title);
+    lar_json_text(&json, "url", report->url);
+    lar_json_integer(&json, "elements", report->info.elements);
+    lar_json_integer(&json, "nodes", report->info.nodes);
+    cli_write_parallel(&json, report->parallel);
+    lar_json_text(&json, "isa", lar_simulation_isa(report->simulation));
+    lar_json_text(&json, "state", state_names[s->state]);
+    lar_json_text(&json, "message", s->message);
+    lar_json_integer(&json, "steps", (int64_t)s->step);
+    lar_json_number(&json, "time", s->time);
+    lar_json_number(&json, "time_step", lar_simulation_time_step(report->simulation));
+    lar_json_number(&json, "pace", report->pace);
+    lar_json_number(&json, "wall_time", report->elapsed);
+    lar_json_number(&json, "real_time_factor", s->real_time_factor);
+    lar_json_integer(&json, "ticks", (int64_t)s->ticks);
+    lar_json_integer(&json, "deadline_misses", (int64_t)s->misses);
+    lar_json_integer(&json, "slow_ticks", (int64_t)s->slow_ticks);
     write_times(&json, "wall_per_step_us", s->step_p50, s->step_p99, s->step_p999, s->step_max);
     write_times(&json, "wall_per_tick_us", s->tick_p50, s->tick_p99, s->tick_p999, s->tick_max);
-    json_integer(&json, "slow_motion", report->slow_times);
-    json_text(&json, "slow_cause", cause_names[report->slow_cause]);
-    json_number(&json, "skipped", s->skipped);
-    json_integer(&json, "recoveries", (int64_t)s->recoveries);
-    json_text(&json, "recovery", s->recovery);
-    json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
-    json_integer(&json, "most_parts", max_parts(report));
-    json_integer(&json, "viewers", report->viewers_max);
+    lar_json_integer(&json, "slow_motion", report->slow_times);
+    lar_json_text(&json, "slow_cause", cause_names[report->slow_cause]);
+    lar_json_number(&json, "skipped", s->skipped);
+    lar_json_integer(&json, "recoveries", (int64_t)s->recoveries);
+    lar_json_text(&json, "recovery", s->recovery);
+    lar_json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
+    lar_json_integer(&json, "most_parts", max_parts(report));
+    lar_json_integer(&json, "viewers", report->viewers_max);
     write_tools(&json, report);
     write_devices(&json, report);
-    json_text(&json, "state_hash", hash);
-    json_end(&json);
+    lar_json_hash(&json, "state_hash", lar_simulation_hash(report->simulation));
+    lar_json_end(&json);
 }
 
 static void print_pace(const view_report *report, FILE *out) {

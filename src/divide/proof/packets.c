@@ -2,7 +2,6 @@
  * processors both directions. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "divide/proof/proof.h"
 

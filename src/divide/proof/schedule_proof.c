@@ -1,7 +1,6 @@
 #include "divide/proof/schedule_proof.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "divide/proof/proof.h"
 

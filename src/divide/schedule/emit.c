@@ -1,6 +1,5 @@
 /* From a plan to the schedule of its processor: batches without work fall away, the others stand
  * thread after thread; gates and empty packets come in. */
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "divide/text_file.h"
 
 char *lar_schedule_path(const char *folder, int32_t processor) {

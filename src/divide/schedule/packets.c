@@ -1,6 +1,5 @@
 /* The packets of all processors: what they carry, empty ones, and their places in buffers. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "base/union_find.h"

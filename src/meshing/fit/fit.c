@@ -10,8 +10,6 @@
  *     ... and again, until the nodes are still
  */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "meshing/fit/work.h"
 

@@ -117,18 +117,14 @@ static lar_status number_points(point_grid *grid, lar_mesh *mesh, lar_error *err
 
 static lar_status allocate(lar_unfitted_mesh *unfitted, lar_error *error) {
     lar_mesh *mesh = &unfitted->mesh;
-    const size_t nodes = (size_t)mesh->node_count, elements = (size_t)mesh->element_count;
-    mesh->source = lar_strdup("the grid of cubes");
-    mesh->position = lar_calloc(nodes, sizeof *mesh->position);
-    mesh->node_id = lar_calloc(nodes, sizeof *mesh->node_id);
-    mesh->element = lar_calloc(elements, sizeof *mesh->element);
-    mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
-    mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
+    const size_t nodes = (size_t)mesh->node_count;
+    lar_status status =
+        lar_mesh_allocate(mesh, "the grid of cubes", nodes, (size_t)mesh->element_count, error);
+    if (status) return status;
     unfitted->point = lar_calloc(nodes, sizeof *unfitted->point);
     unfitted->meet_start = lar_calloc(nodes + 1, sizeof *unfitted->meet_start);
-    if (!mesh->source || !mesh->position || !mesh->node_id || !mesh->element || !mesh->element_id ||
-        !mesh->element_tag || !unfitted->point || !unfitted->meet_start)
-        return lar_fail_memory(error, nodes * 52 + elements * 48, "the mesh");
+    if (!unfitted->point || !unfitted->meet_start)
+        return lar_fail_memory(error, nodes * 20, "the mesh");
     return LAR_OK;
 }
 

@@ -1,7 +1,6 @@
 #include "meshing/grid/voxel_grid_check.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/vector.h"
 

@@ -1,39 +1,23 @@
 /* Writes the demonstration organ: FOLDER/uterus.vtu and its scenes. */
 #include "model/demo/demo.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
+#include "base/file/part_file.h"
 #include "model/demo/demo_scene.h"
 #include "model/format/mesh_io.h"
 
-/* First under another name, so that a full disk leaves no half file. */
-static lar_status write_text(const char *path, const char *part, const lar_demo_scene *scene,
-                             lar_error *error) {
-    FILE *file = fopen(part, "wb");
-    bool good = file != NULL;
-    for (int i = 0; good && i < LAR_DEMO_SCENE_PARTS; i++) good = fputs(scene->part[i], file) >= 0;
-    int cause = errno;
-    if (file && fclose(file) != 0 && good) good = false, cause = errno;
-    if (good && rename(part, path) != 0) good = false, cause = errno;
-    if (good) return LAR_OK;
-    if (file) remove(part);
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause));
-}
-
 static lar_status write_scene(const char *folder, const lar_demo_scene *scene, lar_error *error) {
     char *path = lar_folder_join(folder, scene->name);
-    char *part = path ? lar_folder_join(folder, "scene.part") : NULL;
-    lar_status status = part ? write_text(path, part, scene, error)
-                             : lar_fail_memory(error, strlen(folder), "a path");
+    if (!path) return lar_fail_memory(error, strlen(folder), "a path");
+    lar_part_file out;
+    lar_status status = lar_part_open(&out, path, error);
+    for (int i = 0; !status && i < LAR_DEMO_SCENE_PARTS; i++)
+        status = lar_part_print(&out, "%s", scene->part[i]);
+    status = lar_part_close(&out, status);
     free(path);
-    free(part);
     return status;
 }
 

@@ -21,19 +21,6 @@ static void empty(whole_table table) {
             for (int i = 0; i < I_SPAN; ++i) table[k][j][i] = -1;
 }
 
-static lar_status reserve(lar_mesh *mesh, size_t nodes, size_t elements, lar_error *error) {
-    mesh->source = lar_strdup("demonstration organ");
-    mesh->position = lar_calloc(nodes, sizeof *mesh->position);
-    mesh->node_id = lar_calloc(nodes, sizeof *mesh->node_id);
-    mesh->element = lar_calloc(elements, sizeof *mesh->element);
-    mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
-    mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
-    const bool all = mesh->source && mesh->position && mesh->node_id && mesh->element &&
-                     mesh->element_id && mesh->element_tag;
-    return all ? LAR_OK
-               : lar_fail_memory(error, nodes * sizeof *mesh->position, "the demonstration organ");
-}
-
 /* Numbers the nodes of both halves; `nodes` becomes grid point -> mesh node. */
 static void place_nodes(const lar_demo_half *half, whole_table nodes, lar_mesh *mesh,
                         int (*grid)[3]) {
@@ -133,7 +120,8 @@ static lar_status assemble(const lar_demo_half *half, lar_mesh *mesh, lar_error 
     int(*grid)[3] = lar_calloc(max_nodes, sizeof *grid);
     if (!grid) return lar_fail_memory(error, max_nodes * sizeof *grid, "the demonstration organ");
     whole_table nodes, cells;
-    lar_status status = reserve(mesh, max_nodes, 2 * (size_t)half->cell_count, error);
+    lar_status status = lar_mesh_allocate(mesh, "demonstration organ", max_nodes,
+                                          2 * (size_t)half->cell_count, error);
     if (!status) {
         place_nodes(half, nodes, mesh, grid);
         place_elements(half, nodes, cells, mesh);

@@ -272,20 +272,6 @@ static lar_status map_ids(const lar_mesh_builder *builder, resolver *ids, lar_er
     return LAR_OK;
 }
 
-static lar_status allocate_mesh(const lar_mesh_builder *builder, lar_mesh *mesh, lar_error *error) {
-    size_t nodes = builder->node_count, elements = builder->element_count;
-    mesh->source = lar_strdup(builder->source);
-    mesh->position = lar_calloc(nodes, sizeof *mesh->position);
-    mesh->node_id = lar_calloc(nodes, sizeof *mesh->node_id);
-    mesh->element = lar_calloc(elements, sizeof *mesh->element);
-    mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
-    mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
-    if (!mesh->source || !mesh->position || !mesh->node_id || !mesh->element || !mesh->element_id ||
-        !mesh->element_tag)
-        return lar_fail_memory(error, nodes * 32 + elements * 44, "the mesh");
-    return LAR_OK;
-}
-
 static lar_status move_elements(const lar_mesh_builder *builder, resolver *ids, lar_mesh *mesh,
                                 lar_error *error) {
     ids->kept = malloc((builder->node_count + 1) * sizeof *ids->kept);
@@ -402,7 +388,9 @@ static lar_status move_set(const lar_mesh_builder *builder, const built_set *set
 lar_status lar_mesh_builder_finish(lar_mesh_builder *builder, lar_mesh *mesh, lar_error *error) {
     resolver ids = {0};
     lar_status status = map_ids(builder, &ids, error);
-    if (!status) status = allocate_mesh(builder, mesh, error);
+    if (!status)
+        status = lar_mesh_allocate(mesh, builder->source, builder->node_count,
+                                   builder->element_count, error);
     if (!status) status = move_elements(builder, &ids, mesh, error);
     if (!status) move_nodes(builder, &ids, mesh);
     /* Without hexahedra no set can be right; lar_mesh_check says what is missing. */

@@ -20,6 +20,19 @@ const uint8_t *lar_solid_corners(int corners) {
     return corners == 4 ? TETRAHEDRON : corners == 5 ? PYRAMID : corners == 6 ? PRISM : NULL;
 }
 
+lar_status lar_mesh_allocate(lar_mesh *mesh, const char *source, size_t nodes, size_t elements,
+                             lar_error *error) {
+    mesh->source = lar_strdup(source);
+    mesh->position = lar_calloc(nodes, sizeof *mesh->position);
+    mesh->node_id = lar_calloc(nodes, sizeof *mesh->node_id);
+    mesh->element = lar_calloc(elements, sizeof *mesh->element);
+    mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
+    mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
+    bool all = mesh->source && mesh->position && mesh->node_id && mesh->element &&
+               mesh->element_id && mesh->element_tag;
+    return all ? LAR_OK : lar_fail_memory(error, nodes * 32 + elements * 44, "the mesh");
+}
+
 void lar_mesh_clear(lar_mesh *mesh) {
     for (int32_t s = 0; s < mesh->set_count; s++) {
         free(mesh->set[s].name);

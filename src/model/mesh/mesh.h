@@ -71,6 +71,11 @@ extern const uint8_t lar_edge_node[12][2];
 /* Signs of the natural coordinates of local node a. */
 extern const int8_t lar_node_sign[8][3];
 
+/* Zeroed arrays of a mesh that is not there yet, and its source; counts stay as they are. Clear it
+ * also after a failure. */
+lar_status lar_mesh_allocate(lar_mesh *mesh, const char *source, size_t nodes, size_t elements,
+                             lar_error *error);
+
 /* Frees what the mesh owns and zeroes it; a zeroed mesh is fine. */
 void lar_mesh_clear(lar_mesh *mesh);
 

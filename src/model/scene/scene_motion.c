@@ -1,8 +1,6 @@
 #include "model/scene/scene.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- curves: `over` or `curve` ------------------------------------------------------------ */
 

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/folder.h"
+#include "base/file/folder.h"
 #include "session/recording/words.h"
 
 static void put_words(lar_recording_writer *writer, const uint64_t *word, size_t count) {

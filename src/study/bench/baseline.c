@@ -6,14 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json/read.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "model/scene/yaml_tree.h"
 
 struct lar_baseline {
     char *path;
-    lar_yaml_tree tree;
-    const lar_yaml *bench, *options, *figures;
+    lar_bytes bytes;
+    lar_json_reader root, options, figures; /* into `bytes`; figures: behind their '[' */
+    char bench[LAR_BENCH_TEXT];
 };
 
 /* ---- reports -------------------------------------------------------------------------------- */
@@ -53,37 +54,55 @@ lar_bench_figure *lar_bench_add(lar_bench_report *report, const char *unit, doub
 
 /* ---- reading -------------------------------------------------------------------------------- */
 
-static bool read_number(const lar_yaml *node, double *value) {
-    return node && node->kind == LAR_YAML_SCALAR && !node->quoted &&
-           lar_span_double((lar_span){node->text, strlen(node->text)}, value) && isfinite(*value);
+typedef struct earlier_figure {
+    char name[LAR_BENCH_TEXT];
+    double value;
+    bool judged;
+} earlier_figure;
+
+static bool read_text(lar_json_reader value, char text[LAR_BENCH_TEXT]) {
+    return value.at && lar_json_next(&value) == '"' &&
+           lar_json_take_string(&value, text, LAR_BENCH_TEXT, NULL) && *text;
 }
 
-static bool is_text(const lar_yaml *node) {
-    return node && node->kind == LAR_YAML_SCALAR && node->quoted && *node->text;
+static bool read_figure(lar_json_reader in, earlier_figure *out) {
+    lar_json_reader value = lar_json_member(in, "value"), judged = lar_json_member(in, "judged");
+    return read_text(lar_json_member(in, "name"), out->name) && value.at && judged.at &&
+           lar_json_take_number(&value, &out->value) &&
+           lar_json_take_boolean(&judged, &out->judged);
+}
+
+/* Figures one after the other: begins with a copy of b->figures. */
+static bool next_figure(lar_json_reader *list, earlier_figure *out) {
+    lar_json_reader figure;
+    return lar_json_element(list, &figure) && read_figure(figure, out);
+}
+
+static int line_of(const lar_baseline *b, const char *at) {
+    int line = 1;
+    for (const char *c = (const char *)b->bytes.data; c < at; c++) line += *c == '\n';
+    return line;
 }
 
 /* What must be known of every figure. */
 static lar_status check_figures(const lar_baseline *b, lar_error *error) {
-    for (const lar_yaml *figure = b->figures->first; figure; figure = figure->next) {
-        double value;
-        const lar_yaml *judged = lar_yaml_get(figure, "judged");
-        if (!is_text(lar_yaml_get(figure, "name")) ||
-            !read_number(lar_yaml_get(figure, "value"), &value) || !judged ||
-            judged->kind != LAR_YAML_SCALAR)
+    lar_json_reader list = b->figures, in;
+    earlier_figure figure;
+    while (lar_json_element(&list, &in))
+        if (!read_figure(in, &figure))
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s:%d: a figure needs a name, a value that is a number, and whether "
                             "it is judged; write the file anew with --json",
-                            b->path, figure->line);
-    }
+                            b->path, line_of(b, in.at));
     return LAR_OK;
 }
 
 static lar_status check(lar_baseline *b, lar_error *error) {
-    b->bench = lar_yaml_get(b->tree.root, "bench");
-    b->options = lar_yaml_get(b->tree.root, "options");
-    b->figures = lar_yaml_get(b->tree.root, "figures");
-    if (!is_text(b->bench) || !b->options || b->options->kind != LAR_YAML_MAPPING || !b->figures ||
-        b->figures->kind != LAR_YAML_LIST || !b->figures->first)
+    b->options = lar_json_member(b->root, "options");
+    b->figures = lar_json_member(b->root, "figures");
+    if (!read_text(lar_json_member(b->root, "bench"), b->bench) || !b->options.at ||
+        lar_json_next(&b->options) != '{' || !b->figures.at || !lar_json_take(&b->figures, '[') ||
+        lar_json_next(&b->figures) == ']')
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: is not what a benchmark writes with --json: \"bench\", \"options\" "
                         "and \"figures\" must be in it",
@@ -92,16 +111,19 @@ static lar_status check(lar_baseline *b, lar_error *error) {
 }
 
 static lar_status read(lar_baseline *b, const char *path, lar_error *error) {
-    lar_bytes bytes = {0};
-    lar_error cause;
     b->path = lar_strdup(path);
     if (!b->path) return lar_fail_memory(error, strlen(path), "a path");
-    lar_status status = lar_bytes_read(path, &bytes, error);
-    if (!status && (status = lar_yaml_parse(path, &bytes, &b->tree, &cause)))
-        lar_fail(error, status, "the earlier run is damaged, write it anew with --json: %s",
-                 cause.message);
-    lar_bytes_free(&bytes);
-    return status ? status : check(b, error);
+    lar_status status = lar_bytes_read(path, &b->bytes, error);
+    if (status) return status;
+    const char *text = (const char *)b->bytes.data;
+    b->root = (lar_json_reader){text, text + b->bytes.size};
+    lar_json_reader whole = b->root;
+    if (!lar_json_is_whole(&whole))
+        return lar_fail(error, LAR_ERROR_FORMAT,
+                        "the earlier run is damaged, write it anew with --json: %s:%d: this is no "
+                        "JSON",
+                        path, line_of(b, whole.at));
+    return check(b, error);
 }
 
 lar_status lar_baseline_open(const char *path, lar_baseline **baseline, lar_error *error) {
@@ -117,56 +139,60 @@ lar_status lar_baseline_open(const char *path, lar_baseline **baseline, lar_erro
 
 void lar_baseline_close(lar_baseline *baseline) {
     if (!baseline) return;
-    lar_yaml_clear(&baseline->tree);
+    lar_bytes_free(&baseline->bytes);
     free(baseline->path);
     free(baseline);
 }
 
-const char *lar_baseline_text(const lar_baseline *baseline, const char *path) {
-    const lar_yaml *node = baseline->tree.root;
+bool lar_baseline_text(const lar_baseline *baseline, const char *path, char *text, size_t size) {
+    lar_json_reader value = baseline->root;
     lar_span left = {path, strlen(path)}, key;
     char name[LAR_BENCH_TEXT];
-    for (bool more = true; node && more;) {
+    for (bool more = true; more;) {
         more = lar_span_split(left, '.', &key, &left);
         snprintf(name, sizeof name, "%.*s", (int)key.length, key.at);
-        node = lar_yaml_get(node, name);
+        value = lar_json_member(value, name);
     }
-    return node && node->kind == LAR_YAML_SCALAR ? node->text : NULL;
+    return lar_json_scalar(value, text, size);
 }
 
 /* ---- comparing ------------------------------------------------------------------------------ */
 
 lar_status lar_baseline_match(const lar_baseline *b, const lar_bench_report *report,
                               lar_error *error) {
-    if (strcmp(b->bench->text, report->bench) != 0)
+    if (strcmp(b->bench, report->bench) != 0)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: is of the benchmark %.40s; compare %s with an earlier run of itself",
-                        b->path, b->bench->text, report->bench);
+                        b->path, b->bench, report->bench);
     for (int i = 0; i < report->settings; i++) {
         const lar_bench_setting *now = &report->setting[i];
-        const lar_yaml *then = lar_yaml_get(b->options, now->name);
-        if (then && then->kind == LAR_YAML_SCALAR && strcmp(then->text, now->text) == 0) continue;
-        char shown[LAR_YAML_SHOWN];
+        lar_json_reader then = lar_json_member(b->options, now->name);
+        char text[LAR_BENCH_TEXT], shown[LAR_BENCH_TEXT + 2] = "unknown";
+        if (lar_json_scalar(then, text, sizeof text)) {
+            if (strcmp(text, now->text) == 0) continue;
+            snprintf(shown, sizeof shown, "\"%s\"", text);
+        }
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: was measured with %s %s, and now it is %s: such figures do not "
                         "compare; give the same options",
-                        b->path, now->name, then ? lar_yaml_show(then, shown) : "unknown",
-                        *now->text ? now->text : "nothing");
+                        b->path, now->name, shown, *now->text ? now->text : "nothing");
     }
     return LAR_OK;
 }
 
-static const lar_yaml *find(const lar_baseline *b, const char *name) {
-    for (const lar_yaml *figure = b->figures->first; figure; figure = figure->next)
-        if (strcmp(lar_yaml_get(figure, "name")->text, name) == 0) return figure;
-    return NULL;
+static bool find(const lar_baseline *b, const char *name, earlier_figure *found) {
+    lar_json_reader list = b->figures;
+    while (next_figure(&list, found))
+        if (strcmp(found->name, name) == 0) return true;
+    return false;
 }
 
 lar_comparison lar_baseline_compare(const lar_baseline *b, const lar_bench_figure *figure,
                                     double tolerance) {
     lar_comparison made = {0};
-    const lar_yaml *then = find(b, figure->name);
-    if (!then || !read_number(lar_yaml_get(then, "value"), &made.earlier)) return made;
+    earlier_figure then;
+    if (!find(b, figure->name, &then)) return made;
+    made.earlier = then.value;
     double good = figure->more ? figure->value : made.earlier;
     double bad = figure->more ? made.earlier : figure->value;
     made.known = true;
@@ -176,13 +202,16 @@ lar_comparison lar_baseline_compare(const lar_baseline *b, const lar_bench_figur
     return made;
 }
 
-const char *lar_baseline_missing(const lar_baseline *b, const lar_bench_report *report) {
-    for (const lar_yaml *figure = b->figures->first; figure; figure = figure->next) {
-        const char *name = lar_yaml_get(figure, "name")->text;
-        bool there = strcmp(lar_yaml_get(figure, "judged")->text, "true") != 0;
+bool lar_baseline_missing(const lar_baseline *b, const lar_bench_report *report,
+                          char name[LAR_BENCH_TEXT]) {
+    lar_json_reader list = b->figures;
+    for (earlier_figure figure; next_figure(&list, &figure);) {
+        bool there = !figure.judged;
         for (int i = 0; i < report->figures && !there; i++)
-            there = strcmp(report->figure[i].name, name) == 0;
-        if (!there) return name;
+            there = strcmp(report->figure[i].name, figure.name) == 0;
+        if (there) continue;
+        memcpy(name, figure.name, LAR_BENCH_TEXT);
+        return true;
     }
-    return NULL;
+    return false;
 }

@@ -9,14 +9,12 @@
  * that is judged is worse when it is so many per cent of the earlier one away on its bad side: a
  * time that is 1.2 of the earlier one and a rate that is 1/1.2 of it are both 20 % worse. What is
  * not judged (the longest step of a run) says more about the moment than about the machine.
- *
- * JSON is read as YAML 1.2, of which it is a part, by the reader of scenes: libyaml is there
- * already, refuses what is damaged with line and column, and is bounded (yaml_tree.h).
  */
 #ifndef LAR_STUDY_BENCH_BASELINE_H
 #define LAR_STUDY_BENCH_BASELINE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "lariat.h"
 
@@ -66,8 +64,9 @@ void lar_baseline_close(lar_baseline *baseline);
 lar_status lar_baseline_match(const lar_baseline *baseline, const lar_bench_report *report,
                               lar_error *error);
 
-/* A number or text of the file by its path, as in "machine.cpu"; NULL: not there. */
-const char *lar_baseline_text(const lar_baseline *baseline, const char *path);
+/* A number or text of the file by its path, as in "machine.cpu", cut to text[size]; false: it is
+ * not there. */
+bool lar_baseline_text(const lar_baseline *baseline, const char *path, char *text, size_t size);
 
 /* Of one figure. */
 typedef struct lar_comparison {
@@ -81,7 +80,8 @@ typedef struct lar_comparison {
 lar_comparison lar_baseline_compare(const lar_baseline *baseline, const lar_bench_figure *figure,
                                     double tolerance);
 
-/* The first figure that the file judges and the report lacks, or NULL. */
-const char *lar_baseline_missing(const lar_baseline *baseline, const lar_bench_report *report);
+/* The name of the first figure that the file judges and the report lacks; false: there is none. */
+bool lar_baseline_missing(const lar_baseline *baseline, const lar_bench_report *report,
+                          char name[LAR_BENCH_TEXT]);
 
 #endif

@@ -55,18 +55,11 @@ static double next_random(uint64_t *state) {
 
 static lar_status fill_mesh(lar_mesh *mesh, const int32_t edge[3], bool general, lar_error *error) {
     const int32_t along_x = edge[0] + 1, along_y = edge[1] + 1;
-    mesh->source = lar_strdup("block");
     mesh->node_count = along_x * along_y * (edge[2] + 1);
     mesh->element_count = edge[0] * edge[1] * edge[2];
-    size_t nodes = (size_t)mesh->node_count, elements = (size_t)mesh->element_count;
-    mesh->position = lar_calloc(nodes, sizeof *mesh->position);
-    mesh->node_id = lar_calloc(nodes, sizeof *mesh->node_id);
-    mesh->element = lar_calloc(elements, sizeof *mesh->element);
-    mesh->element_id = lar_calloc(elements, sizeof *mesh->element_id);
-    mesh->element_tag = lar_calloc(elements, sizeof *mesh->element_tag);
-    if (!mesh->source || !mesh->position || !mesh->node_id || !mesh->element || !mesh->element_id ||
-        !mesh->element_tag)
-        return lar_fail_memory(error, nodes * 32 + elements * 48, "the mesh of the block");
+    lar_status status = lar_mesh_allocate(mesh, "block", (size_t)mesh->node_count,
+                                          (size_t)mesh->element_count, error);
+    if (status) return status;
     uint64_t random = 1;
     for (int32_t n = 0; n < mesh->node_count; n++) {
         const int32_t at[3] = {n % along_x, n / along_x % along_y, n / along_x / along_y};

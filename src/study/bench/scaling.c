@@ -108,16 +108,6 @@ static lar_status end_processes(lar_processes *processes, lar_status status, lar
     return left;
 }
 
-static lar_status meet_in_job(bench *b, lar_options *options, lar_error *error) {
-    lar_comm_options comm = lar_comm_options_default();
-    lar_status status = lar_comm_job_meet(&b->job, &comm, error);
-    if (status) return status;
-    options->processor = comm.self;
-    options->master = comm.master;
-    options->listener = comm.listener;
-    return LAR_OK;
-}
-
 static lar_status serve(lar_processes *processes, const lar_model *model,
                         const lar_options *options, lar_error *error) {
     lar_simulation *simulation = NULL;
@@ -154,7 +144,7 @@ static lar_status serve_all(bench *b, lar_error *error) {
             const lar_bench_scaling_row *row = &r->row[i];
             if (row->missing || !lar_scaling_by_processes(row)) continue;
             lar_options options = options_of(b->options, row);
-            status = meet_in_job(b, &options, error);
+            status = lar_processes_meet_in_job(&b->job, &options, error);
             if (!status) status = serve(NULL, b->options->model, &options, error);
         }
     return status;
@@ -236,7 +226,7 @@ static lar_status take_sample(bench *b, int i, int k, lar_error *error) {
 #endif
     if (i == 0) return run_bound(b, row, &options, sample, error);
     if (lar_scaling_by_processes(row))
-        status = b->job.count > 1 ? meet_in_job(b, &options, error)
+        status = b->job.count > 1 ? lar_processes_meet_in_job(&b->job, &options, error)
                                   : call_processes(b, row, &processes, error);
     if (!status) status = run_steps(b, row, processes, &options, sample, error);
     return end_processes(processes, status, error);

@@ -7,9 +7,9 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/file/part_file.h"
 #include "study/bench/fma_peak.h"
 #include "study/machine.h"
-#include "study/output.h"
 
 /* ---- memory --------------------------------------------------------------------------------- */
 
@@ -218,11 +218,11 @@ lar_status lar_sweep_write_svg(const char *path, const lar_sweep_result *r, cons
         a.y0 = fmin(a.y0, 0.7 * row->gflops);
         a.y1 = fmax(a.y1, 1.4 * row->kernel.peak_gflops.median);
     }
-    lar_output output;
-    lar_status status = lar_output_begin(path, &output, error);
-    if (status) return status;
+    lar_part_file output;
+    lar_status status = lar_part_open(&output, path, error);
+    if (status) return lar_part_close(&output, status);
     a.out = output.file;
     draw_axes(&a, cpu);
     draw_points(&a, r);
-    return lar_output_end(path, &output, error);
+    return lar_part_close(&output, LAR_OK);
 }

@@ -1,7 +1,6 @@
 #include "study/precision/precision.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/clock.h"
 #include "study/precision/precision_cases.h"

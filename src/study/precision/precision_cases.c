@@ -1,7 +1,5 @@
 #include "study/precision/precision_cases.h"
 
-#include <string.h>
-
 #include "base/memory.h"
 #include "model/model.h"
 

@@ -6,7 +6,6 @@
  *     latency(n)              send(n) + latency + n / bandwidth + receive
  */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

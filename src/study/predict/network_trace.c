@@ -1,27 +1,25 @@
 #include "study/predict/network_trace.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
-#include "study/output.h"
+#include "base/file/part_file.h"
 
 enum { BARS_MAX = 256 };
 
 lar_status lar_network_write_csv(const char *path, const lar_network_result *r, lar_error *error) {
-    lar_output o;
-    lar_status status = lar_output_begin(path, &o, error);
-    if (status) return status;
+    lar_part_file o;
+    lar_status status = lar_part_open(&o, path, error);
+    if (status) return lar_part_close(&o, status);
     fprintf(o.file, "kind,processor,thread,peer,begin_us,end_us\n");
     for (size_t i = 0; i < r->span_count; i++) {
         const lar_network_span *s = &r->span[i];
         fprintf(o.file, "%s,%d,%d,%d,%.6g,%.6g\n", lar_span_kind_name[s->kind], (int)s->processor,
                 (int)s->thread, (int)s->peer, 1e6 * s->begin, 1e6 * s->end);
     }
-    return lar_output_end(path, &o, error);
+    return lar_part_close(&o, LAR_OK);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------- */
@@ -131,11 +129,11 @@ static void bars(const picture *p) {
 
 lar_status lar_network_write_svg(const char *path, const lar_network_result *r, const char *title,
                                  lar_error *error) {
-    lar_output o;
+    lar_part_file o;
     if (!(r->step > 0) || !isfinite(r->step))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s: the step takes no time", path);
-    lar_status status = lar_output_begin(path, &o, error);
-    if (status) return status;
+    lar_status status = lar_part_open(&o, path, error);
+    if (status) return lar_part_close(&o, status);
     picture p = {.out = o.file,
                  .result = r,
                  .left = 60,
@@ -156,5 +154,5 @@ lar_status lar_network_write_svg(const char *path, const lar_network_result *r, 
     occupation(&p);
     bars(&p);
     fprintf(o.file, "</svg>\n");
-    return lar_output_end(path, &o, error);
+    return lar_part_close(&o, LAR_OK);
 }

@@ -54,17 +54,6 @@ static lar_status count_mesh(const lar_mesh *mesh, const lar_incidence *incidenc
     return LAR_OK;
 }
 
-lar_status lar_requirements_count(const lar_model *model, lar_quantities *quantities,
-                                  lar_error *error) {
-    lar_incidence incidence = {0};
-    lar_quantities made = *quantities;
-    lar_status status = lar_incidence_build(&model->mesh, &incidence, error);
-    if (!status) status = count_mesh(&model->mesh, &incidence, &made, error);
-    lar_incidence_clear(&incidence);
-    if (!status) *quantities = made;
-    return status;
-}
-
 /* ---- what is sent --------------------------------------------------------------------------- */
 
 static lar_status count_transfers(const lar_schedule_set *set, lar_requirements_sent *sent,

@@ -91,8 +91,4 @@ lar_status lar_requirements_of(const lar_model *model, const lar_requirements_op
                                lar_requirements *out, lar_error *error);
 void lar_requirements_clear(lar_requirements *requirements); /* idempotent */
 
-/* The part that only counts the mesh: n_el, n_k, n_eav, df_el, df_eav; other fields stay. */
-lar_status lar_requirements_count(const lar_model *model, lar_quantities *quantities,
-                                  lar_error *error);
-
 #endif

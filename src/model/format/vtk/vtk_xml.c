@@ -1,7 +1,6 @@
 #include "model/format/vtk/vtk_xml.h"
 
 #include <inttypes.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 

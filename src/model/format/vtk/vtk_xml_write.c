@@ -1,8 +1,5 @@
 #include "model/format/vtk/vtk_xml_write.h"
 
-#include <errno.h>
-#include <inttypes.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -10,57 +7,6 @@
 #include "model/format/vtk/vtk_scalar.h"
 
 enum { BLOCK = 32768, LEVEL = 1, LEVEL_SMALL = 6 };
-
-/* ---- a file that appears whole --------------------------------------------------------- */
-
-static lar_status part_failed(lar_part_file *out, const char *verb, int cause) {
-    return lar_fail(out->error, LAR_ERROR_IO,
-                    "%s: cannot be %s: %s; check the folder, its permissions and the free space",
-                    out->path, verb, strerror(cause));
-}
-
-lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error) {
-    static const char suffix[] = ".part";
-    size_t length = strlen(path);
-    *out = (lar_part_file){.path = path, .error = error, .part = malloc(length + sizeof suffix)};
-    if (!out->part) return lar_fail_memory(error, length + sizeof suffix, path);
-    memcpy(out->part, path, length);
-    memcpy(out->part + length, suffix, sizeof suffix);
-    out->file = fopen(out->part, "wb");
-    return out->file ? LAR_OK : part_failed(out, "opened for writing", errno);
-}
-
-lar_status lar_part_close(lar_part_file *out, lar_status status) {
-    if (out->file) {
-        errno = 0;
-        bool whole = fflush(out->file) == 0 && !ferror(out->file);
-        if (!status && !whole) status = part_failed(out, "written", errno ? errno : EIO);
-        if (fclose(out->file) != 0 && !status) status = part_failed(out, "written", errno);
-        if (!status && rename(out->part, out->path) != 0)
-            status = part_failed(out, "given its name", errno);
-        if (status) remove(out->part);
-    }
-    free(out->part);
-    *out = (lar_part_file){0};
-    return status;
-}
-
-lar_status lar_part_write(lar_part_file *out, const void *data, size_t size) {
-    errno = 0;
-    return fwrite(data, 1, size, out->file) == size
-               ? LAR_OK
-               : part_failed(out, "written", errno ? errno : EIO);
-}
-
-lar_status lar_part_print(lar_part_file *out, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    errno = 0;
-    int written = vfprintf(out->file, format, args);
-    int cause = errno ? errno : EIO;
-    va_end(args);
-    return written >= 0 ? LAR_OK : part_failed(out, "written", cause);
-}
 
 lar_status lar_part_attribute(lar_part_file *out, const char *text) {
     lar_status status = LAR_OK;
@@ -100,6 +46,16 @@ lar_status lar_vtk_writer_add(lar_vtk_writer *w, char *name, lar_vtk_out_array a
     }
     w->array[w->count++] = array;
     return LAR_OK;
+}
+
+lar_status lar_vtk_writer_add_ends(lar_vtk_writer *w, const char *where, size_t cells,
+                                   int corners) {
+    int64_t *ends = lar_calloc(cells, sizeof *ends);
+    if (!ends) return lar_fail_memory(w->error, cells * sizeof *ends, w->out.path);
+    for (size_t c = 0; c < cells; c++) ends[c] = corners * ((int64_t)c + 1);
+    lar_vtk_out_array array = lar_vtk_array(where, "Int64", 1, cells, sizeof *ends, ends);
+    array.owned = ends;
+    return lar_vtk_writer_add(w, lar_strdup("offsets"), array);
 }
 
 static lar_status reserve_packed(lar_vtk_writer *w, size_t more) {

@@ -6,36 +6,13 @@
  * One list of arrays drives both parts: compressing it gives the offsets, then the XML is printed
  * and the compressed bytes follow. Level 1 of zlib: results are mostly noise to it, and a frame
  * must not hold up the run.
- *
- * Files appear whole or not at all: written to PATH.part, renamed at the end. No fsync: a power
- * cut may cost the last frames, but not a run's speed.
  */
 #ifndef LAR_MODEL_FORMAT_VTK_VTK_XML_WRITE_H
 #define LAR_MODEL_FORMAT_VTK_VTK_XML_WRITE_H
 
-#include <stdio.h>
+#include <stdbool.h>
 
-#include "base/memory.h"
-
-/* ---- a file that appears whole ------------------------------------------------------------- */
-
-typedef struct lar_part_file {
-    const char *path;
-    char *part;
-    FILE *file;
-    lar_error *error;
-} lar_part_file;
-
-lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error);
-
-/* Ends the writing: with LAR_OK so far the file gets its name, else nothing stays; also when
- * something was written to out->file past the functions below and has failed. Returns the final
- * status. */
-lar_status lar_part_close(lar_part_file *out, lar_status status);
-
-lar_status lar_part_write(lar_part_file *out, const void *data, size_t size);
-lar_status lar_part_print(lar_part_file *out, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+#include "base/file/part_file.h"
 
 /* A text inside an attribute's quotes. Control characters, which XML cannot hold, become '?'. */
 lar_status lar_part_attribute(lar_part_file *out, const char *text);
@@ -56,6 +33,17 @@ typedef struct lar_vtk_out_array {
     size_t offset;
 } lar_vtk_out_array;
 
+/* Of numbers that are the caller's. */
+static inline lar_vtk_out_array lar_vtk_array(const char *where, const char *type, int components,
+                                              size_t tuples, size_t value_size, const void *data) {
+    return (lar_vtk_out_array){.where = where,
+                               .type = type,
+                               .components = components,
+                               .values = tuples * (size_t)components,
+                               .value_size = value_size,
+                               .data = data};
+}
+
 typedef struct lar_vtk_writer {
     lar_part_file out;
     lar_error *error;
@@ -70,6 +58,10 @@ lar_status lar_vtk_writer_open(lar_vtk_writer *writer, const char *path, lar_err
 
 /* Takes ownership of `name` and array.owned, also on failure. */
 lar_status lar_vtk_writer_add(lar_vtk_writer *writer, char *name, lar_vtk_out_array array);
+
+/* The array "offsets": where the corners of each of `cells` cells end, `corners` of each. */
+lar_status lar_vtk_writer_add_ends(lar_vtk_writer *writer, const char *where, size_t cells,
+                                   int corners);
 
 /* Prints the file: field data, then one piece with these attributes (" NumberOfPoints=...") and
  * the other elements, in this order, NULL at the end; an element without arrays is left out. */

@@ -21,12 +21,8 @@ static lar_status collect_sets(lar_vtk_writer *w, const lar_mesh *mesh) {
         const lar_set *set = &mesh->set[i];
         status =
             lar_vtk_writer_add(w, lar_vtk_encode_name(lar_vtk_set_prefix[set->kind], set->name),
-                               (lar_vtk_out_array){.where = field_data,
-                                                   .type = "Int32",
-                                                   .components = 1,
-                                                   .values = (size_t)set->count,
-                                                   .value_size = sizeof *set->index,
-                                                   .data = set->index});
+                               lar_vtk_array(field_data, "Int32", 1, (size_t)set->count,
+                                             sizeof *set->index, set->index));
     }
     return status;
 }
@@ -35,55 +31,25 @@ static lar_status collect_results(lar_vtk_writer *w, const char *where, const la
                                   int count, int32_t tuples) {
     lar_status status = LAR_OK;
     for (int i = 0; i < count && !status; i++)
-        status = lar_vtk_writer_add(
-            w, lar_strdup(arrays[i].name),
-            (lar_vtk_out_array){.where = where,
-                                .type = "Float64",
-                                .components = arrays[i].components,
-                                .values = (size_t)tuples * (size_t)arrays[i].components,
-                                .value_size = sizeof(double),
-                                .data = arrays[i].values});
+        status =
+            lar_vtk_writer_add(w, lar_strdup(arrays[i].name),
+                               lar_vtk_array(where, "Float64", arrays[i].components, (size_t)tuples,
+                                             sizeof(double), arrays[i].values));
     return status;
 }
 
 static lar_status collect_cells(lar_vtk_writer *w, const lar_mesh *mesh) {
     size_t elements = (size_t)mesh->element_count;
-    lar_status status = lar_vtk_writer_add(w, lar_strdup("connectivity"),
-                                           (lar_vtk_out_array){.where = cells,
-                                                               .type = "Int32",
-                                                               .components = 1,
-                                                               .values = elements * 8,
-                                                               .value_size = sizeof(int32_t),
-                                                               .data = mesh->element});
+    lar_status status = lar_vtk_writer_add(
+        w, lar_strdup("connectivity"),
+        lar_vtk_array(cells, "Int32", 1, elements * 8, sizeof(int32_t), mesh->element));
+    if (!status) status = lar_vtk_writer_add_ends(w, cells, elements, 8);
     if (status) return status;
-    int64_t *ends = lar_calloc(elements, sizeof *ends);
     unsigned char *types = lar_calloc(elements, 1);
-    if (!ends || !types) {
-        free(ends);
-        free(types);
-        return lar_fail_memory(w->error, elements * sizeof *ends, w->out.path);
-    }
-    for (size_t e = 0; e < elements; e++) ends[e] = (int64_t)(e + 1) * 8;
+    if (!types) return lar_fail_memory(w->error, elements, w->out.path);
     memset(types, HEXAHEDRON, elements);
-    lar_vtk_out_array offsets = {.where = cells,
-                                 .type = "Int64",
-                                 .components = 1,
-                                 .values = elements,
-                                 .value_size = sizeof *ends,
-                                 .data = ends,
-                                 .owned = ends};
-    lar_vtk_out_array kinds = {.where = cells,
-                               .type = "UInt8",
-                               .components = 1,
-                               .values = elements,
-                               .value_size = 1,
-                               .data = types,
-                               .owned = types};
-    status = lar_vtk_writer_add(w, lar_strdup("offsets"), offsets);
-    if (status) {
-        free(types);
-        return status;
-    }
+    lar_vtk_out_array kinds = lar_vtk_array(cells, "UInt8", 1, elements, 1, types);
+    kinds.owned = types;
     return lar_vtk_writer_add(w, lar_strdup("types"), kinds);
 }
 
@@ -91,36 +57,25 @@ static lar_status collect_frame(lar_vtk_writer *w, const lar_vtu_frame *frame) {
     const lar_mesh *mesh = frame->mesh;
     const void *position =
         frame->position ? (const void *)frame->position : (const void *)mesh->position;
-    lar_status status = lar_vtk_writer_add(w, lar_strdup("TimeValue"),
-                                           (lar_vtk_out_array){.where = field_data,
-                                                               .type = "Float64",
-                                                               .components = 1,
-                                                               .values = 1,
-                                                               .value_size = sizeof frame->time,
-                                                               .data = &frame->time});
+    lar_status status = lar_vtk_writer_add(
+        w, lar_strdup("TimeValue"),
+        lar_vtk_array(field_data, "Float64", 1, 1, sizeof frame->time, &frame->time));
     if (!status) status = collect_sets(w, mesh);
     if (!status)
         status = collect_results(w, point_data, frame->point_array, frame->point_array_count,
                                  mesh->node_count);
     if (!status && mesh->element_tag)
-        status = lar_vtk_writer_add(w, lar_strdup("tag"),
-                                    (lar_vtk_out_array){.where = cell_data,
-                                                        .type = "Int32",
-                                                        .components = 1,
-                                                        .values = (size_t)mesh->element_count,
-                                                        .value_size = sizeof *mesh->element_tag,
-                                                        .data = mesh->element_tag});
+        status =
+            lar_vtk_writer_add(w, lar_strdup("tag"),
+                               lar_vtk_array(cell_data, "Int32", 1, (size_t)mesh->element_count,
+                                             sizeof *mesh->element_tag, mesh->element_tag));
     if (!status)
         status = collect_results(w, cell_data, frame->cell_array, frame->cell_array_count,
                                  mesh->element_count);
     if (!status)
         status = lar_vtk_writer_add(w, lar_strdup("Points"),
-                                    (lar_vtk_out_array){.where = points,
-                                                        .type = "Float64",
-                                                        .components = 3,
-                                                        .values = (size_t)mesh->node_count * 3,
-                                                        .value_size = sizeof(double),
-                                                        .data = position});
+                                    lar_vtk_array(points, "Float64", 3, (size_t)mesh->node_count,
+                                                  sizeof(double), position));
     return status ? status : collect_cells(w, mesh);
 }
 

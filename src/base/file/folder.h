@@ -1,6 +1,6 @@
 /* Folders and files for what a run writes. */
-#ifndef LAR_BASE_FOLDER_H
-#define LAR_BASE_FOLDER_H
+#ifndef LAR_BASE_FILE_FOLDER_H
+#define LAR_BASE_FILE_FOLDER_H
 
 #include "base/error.h"
 
