@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/vector.h"
 #include "mechanics/hex8_guard.h"
 
 /* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
@@ -48,10 +49,33 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
         for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
 }
 
-/* How stiff an element's barriers are: now, and where its corners will be when the next step ends,
- * if nothing stops them. What is found now counts for the next step. */
-static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e) {
-    enum { STEPS = 2 };
+/* What is found in a step counts from the next one on, until that is over or, where steps are not
+ * divided and nothing is close to it, until the next interval is. */
+enum { SEEN_IN_STEPS = 2 };
+
+static double steps_ahead(const lar_domain *domain, const lar_state *state) {
+    return state->close ? SEEN_IN_STEPS : fmax(SEEN_IN_STEPS, (double)domain->interval + 1);
+}
+
+/* Whether nodes of an element move against each other by more than a tenth of its size in that
+ * time: what springs back when it is let go comes to its barriers from where nobody looks. */
+static bool is_thrown(const lar_domain *domain, const lar_state *state, lar_gid e, double volume) {
+    const lar_gid *node = domain->layout.corner[e];
+    const double *first = state->v + 4 * domain->layout.local[node[0]];
+    double most = 0, ahead = steps_ahead(domain, state) * domain->time_step;
+    for (int a = 1; a < 8; a++) {
+        double away[3];
+        lar_minus(state->v + 4 * domain->layout.local[node[a]], first, away);
+        most = fmax(most, lar_dot(away, away));
+    }
+    double square = 100 * most * ahead * ahead;
+    return square * square * square > volume * volume;
+}
+
+/* How stiff an element's barriers are: now, and where its corners will be after so many steps if
+ * nothing stops them. */
+static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e,
+                          double steps) {
     double rest[8][3], now[8][3], v[8][3];
     lar_guard guard, then;
     corners_of(domain, state, e, rest, now);
@@ -59,7 +83,7 @@ static double barriers_of(const lar_domain *domain, const lar_state *state, lar_
                    lar_domain_material(domain, e), &guard);
     lar_domain_corners(domain, state->v, e, v);
     for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += STEPS * domain->time_step * v[a][i];
+        for (int i = 0; i < 3; i++) now[a][i] += steps * domain->time_step * v[a][i];
     lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
                    lar_domain_material(domain, e), &then);
     return fmax(guard.stiffness, then.stiffness);
@@ -67,12 +91,16 @@ static double barriers_of(const lar_domain *domain, const lar_state *state, lar_
 
 /* (omega dt / 2)^2 of an element as it is strained. */
 static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
-                      const float strain[LAR_STRAIN_NUMBERS]) {
+                      double volume, const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_element_rate *rate = &domain->rate[e];
     const lar_material *material = lar_domain_material(domain, e);
     double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-    double square = factor * rate->square * lar_hex8_growth(material, strain);
-    if (pressed) square += (1 + 2 * LEAD) * barriers_of(domain, state, e) / rate->mass;
+    double square = factor * rate->square * lar_hex8_growth(material, strain), steps = 0;
+    if (pressed)
+        steps = SEEN_IN_STEPS;
+    else if (is_thrown(domain, state, e, volume))
+        steps = steps_ahead(domain, state);
+    if (steps > 0) square += (1 + 2 * LEAD) * barriers_of(domain, state, e, steps) / rate->mass;
     double need = 0.25 * domain->time_step * domain->time_step * square;
     return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
@@ -188,7 +216,11 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
             if (element[lane] < 0) lanes &= ~(1u << lane);
             if (!measures || element[lane] < 0) continue;
             bool pressed = below >> LAR_BLOCK >> lane & 1;
-            double need = need_of(domain, state, element[lane], pressed, monitor->strain[i]);
+            double volume =
+                domain->base[LAR_BLOCK * (size_t)(domain->run_first[r] + block) + (size_t)lane]
+                    .volume;
+            double need =
+                need_of(domain, state, element[lane], pressed, volume, monitor->strain[i]);
             if (!(need <= state->need)) state->need = need;
         }
         lanes &= below >> LAR_BLOCK;
