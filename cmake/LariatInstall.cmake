@@ -19,7 +19,7 @@ target_include_directories(liblariat INTERFACE
 # Linking lariat_core as well brings its libraries along.
 target_link_libraries(liblariat PRIVATE lariat_core)
 if(NOT LARIAT_SANITIZE)
-  target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed)
+  target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections)
 endif()
 
 install(TARGETS liblariat EXPORT LariatTargets

@@ -78,6 +78,36 @@ typedef struct lar_model lar_model;
 LAR_API lar_status lar_model_open(const char *path, lar_model **model, lar_error *error);
 LAR_API void lar_model_destroy(lar_model *model);
 
+/* A named set of a mesh from arrays. */
+typedef struct lar_array_set {
+    const char *name;
+    const char *kind;     /* "nodes" (NULL), "elements" or "faces" */
+    int32_t count;        /* at least 1 */
+    const int32_t *index; /* [count] nodes; elements; or faces as 6 * element + face: corners
+                             0473 1265 0154 3762 0321 4567 of the element, in this order */
+} lar_array_set;
+
+/* Hexahedra in memory. Nodes and elements are numbered by their index. */
+typedef struct lar_mesh_arrays {
+    int32_t nodes, elements, sets; /* counts */
+    const double (*position)[3];   /* [nodes], in metres times the scene's `scale` */
+    const int32_t (*element)[8];   /* [elements] nodes: four around the bottom, counter-clockwise
+                                      seen from above, then those above them */
+    const int32_t *tag;            /* [elements] what scenes select by `tag`; NULL: all 0 */
+    const lar_array_set *set;      /* [sets] what scenes select by name; may be NULL */
+    const double (*fibre)[3];      /* [elements] along fibres, of any length, for `direction: mesh`
+                                      of a material; NULL: none */
+} lar_mesh_arrays;
+
+/* Makes a model of arrays and the text of a scene (YAML, docs/formats.md), which has no key `mesh`,
+ * or `mesh: given`, and no `surface`: no file is read. scene NULL: a soft default material and no
+ * supports. Everything is copied. It behaves like a file with this mesh, to the last bit; where all
+ * elements are left-handed they are turned, as those of files are. LAR_ERROR_MODEL names the
+ * element, node or set that cannot be so; every node must belong to an element. The caller destroys
+ * the model. */
+LAR_API lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
+                                         lar_model **model, lar_error *error);
+
 /* What `lariat info` prints. */
 typedef struct lar_model_info {
     const char *title;         /* lives as long as the model */
@@ -99,10 +129,20 @@ typedef struct lar_model_info {
 LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
                                      lar_error *error);
 
+/* Counts, at once. */
+LAR_API int32_t lar_model_node_count(const lar_model *model);
+LAR_API int32_t lar_model_element_count(const lar_model *model);
+LAR_API int32_t lar_model_material_count(const lar_model *model);
+/* The file that it was read from, as it was named; "model" when there is none. Lives as long as the
+ * model. */
+LAR_API const char *lar_model_source(const lar_model *model);
+
 /* Reference positions of all nodes, [nodes][3], in metres. Lives as long as the model. */
 LAR_API const double (*lar_model_positions(const lar_model *model))[3];
 
-/* The number that the mesh file gives to an element (messages use it); -1 when there is none. */
+/* The number that the mesh file gives to a node or an element (messages use it); -1 when there is
+ * none. */
+LAR_API int64_t lar_model_node_id(const lar_model *model, int32_t node);
 LAR_API int64_t lar_model_element_id(const lar_model *model, int32_t element);
 
 /* One material. Strings live as long as the model. */
@@ -111,7 +151,11 @@ typedef struct lar_material_info {
     const char *law;                    /* as in scenes: "neo-hookean", ... */
     int32_t elements;                   /* that are made of it */
     double density;                     /* [kg/m^3] */
-    double shear_modulus, bulk_modulus; /* at rest [Pa] */
+    double shear_modulus, bulk_modulus; /* at rest [Pa]; of a viscous one: in the end */
+    int32_t viscous_terms;              /* 0: elastic */
+    double instant_shear_modulus;       /* when it is strained at once [Pa] */
+    const char *fibres;                 /* their law, as in scenes: "exp-pow", ...; "": none */
+    double fibre_modulus;               /* d(tension)/d(stretch) of fibres that begin to pull [Pa] */
 } lar_material_info;
 
 /* One named set of the mesh or the scene. */
@@ -168,11 +212,15 @@ LAR_API void lar_model_embedded_move(const lar_model *model, const double (*u)[3
 /* The nodes of an element, eight indices; NULL: no such element. Lives as long as the model. */
 LAR_API const int32_t *lar_model_element_nodes(const lar_model *model, int32_t element);
 
+/* Where viewers look from at first (scene key `view`), a unit vector; 0: the model does not say. */
+LAR_API int lar_model_view(const lar_model *model, double from[3]);
+
 /* What may touch what: one entry of a model's contact. */
 typedef struct lar_model_contact_info {
     const char *kind;             /* "self", "between" or "plane" */
     int32_t faces, against;       /* counts; the second of "between", else 0 */
     double through[3], normal[3]; /* of a plane [m], unit length; else zero */
+    double friction;              /* of a plane: Coulomb's coefficient */
 } lar_model_contact_info;
 
 LAR_API int32_t lar_model_contact_count(const lar_model *model);
@@ -181,6 +229,10 @@ LAR_API lar_status lar_model_contact(const lar_model *model, int32_t index,
                                      lar_model_contact_info *info, lar_error *error);
 
 /* ---- tools ------------------------------------------------------------------------------ */
+
+/* Tools that a simulation has at most, places for those that are added included; of these places.
+ */
+enum { LAR_TOOLS_MAX = 20, LAR_SPARES_MAX = 4 };
 
 typedef enum lar_tool_shape {
     LAR_TOOL_SPHERE = 0, /* radius */
@@ -208,6 +260,9 @@ typedef struct lar_tool_info {
     double length;      /* [m]; 0 where the shape has none */
     double spread;      /* angle between open jaws [rad]; 0 where the shape has none */
     lar_tool_pose rest; /* at the start */
+    int32_t serial;     /* one more for every tool that was added in this place, which tells it from
+                           the one before; 0 for tools that were there from the start */
+    double friction;    /* Coulomb's coefficient; 0 for tools that were added */
 } lar_tool_info;
 
 LAR_API int32_t lar_model_tool_count(const lar_model *model);
@@ -331,6 +386,26 @@ LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 
+/* A label image as lar_meshing_create reads it: a number for every voxel, 0 for nothing. Never
+ * changes; any thread may look at it. */
+typedef struct lar_image lar_image;
+
+typedef struct lar_image_info {
+    int32_t size[3];       /* voxels along i, j, k */
+    int32_t names;         /* labels that the file gives names to */
+    double to_world[3][4]; /* [m]: world = to_world * (i, j, k, 1), at the voxel's centre */
+    const uint16_t *label; /* [size[2]][size[1]][size[0]], i runs fastest; lives as long as the
+                              image */
+} lar_image_info;
+
+/* Reads .nii .nii.gz .nrrd .nhdr; the caller destroys it. */
+LAR_API lar_status lar_image_open(const char *path, lar_image **image, lar_error *error);
+LAR_API void lar_image_destroy(lar_image *image);
+LAR_API void lar_image_inspect(const lar_image *image, lar_image_info *info);
+/* Name `index` of the count, which lives as long as the image, and its label (may be NULL); NULL
+ * beyond. */
+LAR_API const char *lar_image_name(const lar_image *image, int32_t index, int32_t *label);
+
 /* ---- simulation ------------------------------------------------------------------------- */
 
 typedef struct lar_simulation lar_simulation;
@@ -424,6 +499,17 @@ LAR_API lar_status lar_simulation_create(const lar_model *model, const lar_optio
                                          lar_simulation **simulation, lar_error *error);
 LAR_API void lar_simulation_destroy(lar_simulation *simulation);
 
+/* What it was made of: constant while it lives. `info` is the caller's. */
+typedef struct lar_simulation_info {
+    const lar_model *model;
+    lar_element_kind element;
+    int32_t tools;    /* of the model, and lar_options.hands */
+    int32_t spares;   /* places behind these, for tools that are added */
+    double time_step; /* [s] */
+} lar_simulation_info;
+
+LAR_API void lar_simulation_inspect(const lar_simulation *simulation, lar_simulation_info *info);
+
 /* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element or node, place,
  * time and cause; the state is then the one after the failing step, or, with several processors,
  * after the step at which all have stopped, some steps later: nearly always finite and fit for a
@@ -459,15 +545,16 @@ LAR_API const char *lar_simulation_isa(const lar_simulation *simulation);  /* "a
 LAR_API void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]);
 LAR_API void lar_simulation_velocities(const lar_simulation *simulation, double (*out)[3]);
 
-/* 64 bits over step number, displacements and velocities of all nodes. The same for every
- * instruction set, thread count and division of the model. */
+/* 64 bits over step number, displacements and velocities of all nodes, and what viscous elements
+ * remember. The same for every instruction set, thread count and division of the model. */
 LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 
 /* Energies now, in joules. external = work done by loads, prescribed motion and tools since the
- * start, damping = energy taken out, contact = stored in contacts and lost in them;
- * kinetic + strain + hourglass + damping + contact = external (+ start). */
+ * start, damping = energy taken out, contact = stored in contacts and lost in them, viscous = what
+ * the viscous terms of materials have taken, most of it for good; strain = what is left in the end;
+ * kinetic + strain + hourglass + damping + contact + viscous = external (+ start). */
 typedef struct lar_energy {
-    double kinetic, strain, hourglass, external, damping, contact;
+    double kinetic, strain, hourglass, external, damping, contact, viscous;
 } lar_energy;
 
 /* Goes through all nodes and elements: as long as many steps. Asks for no memory. */
@@ -488,6 +575,21 @@ typedef enum lar_field {
 LAR_API lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
                                         const double (*u)[3], float *out, lar_error *error);
 
+/* Von Mises stress, pressure or energy at one node, the mean of its elements that are not inside
+ * out (0 when all are), and in one element, not finite when that is inside out. u and threads as
+ * above; the elements behind faces: lar_surface_info. */
+LAR_API lar_status lar_simulation_node_value(const lar_simulation *simulation, lar_field field,
+                                             int32_t node, const double (*u)[3], double *value,
+                                             lar_error *error);
+LAR_API lar_status lar_simulation_element_value(const lar_simulation *simulation, lar_field field,
+                                                int32_t element, const double (*u)[3],
+                                                double *value, lar_error *error);
+/* What all elements store at u, and what their hourglass control does [J]. u and threads as above.
+ * Not finite when an element is inside out. */
+LAR_API lar_status lar_simulation_stored_energy(const lar_simulation *simulation,
+                                                const double (*u)[3], double *strain,
+                                                double *hourglass, lar_error *error);
+
 /* ---- changing a body while it runs ----------------------------------------------------------
  *
  * From the present step on, in the same step on all processors; in checkpoints and recordings.
@@ -500,15 +602,30 @@ LAR_API lar_status lar_simulation_set_gravity(lar_simulation *simulation, const 
 /* Damping in proportion to mass [1/s], 0 or more, as lar_model_damping: the model's. */
 LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping,
                                               lar_error *error);
-/* How many times as stiff a material is as the model says, 0.1 to 4; -1: all of them. The 64th
- * material and all after it share a factor. While one is stiffer, steps may be divided
- * (lar_simulation_step_parts). Takes as long as some forty steps. */
+/* How many times as stiff a material is as the model says, within these bounds; material -1: all of
+ * them. The 64th material and all after it share a factor. While one is stiffer, steps may be
+ * divided (lar_simulation_step_parts). Takes as long as some forty steps. */
+#define LAR_STIFFNESS_MIN 0.1
+#define LAR_STIFFNESS_MAX 4.0
 LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
                                                 double factor, lar_error *error);
+/* Forces that can be set at a time; one on a set counts once. */
+enum { LAR_FORCES_MAX = 128 };
+/* A constant force on a node [N], besides the model's loads and what is set on sets that it is in;
+ * NULL or zeros: none any more. Node -1 with NULL: all that were set, on sets too, are gone.
+ * Supports take what acts along their axes. LAR_ERROR_ARGUMENT beyond LAR_FORCES_MAX, and for more
+ * than force sums hold (the message says how much that is). */
+LAR_API lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t node,
+                                            const double force[3], lar_error *error);
+/* The same on every node of a set of nodes (lar_model_set): so much on each of them. */
+LAR_API lar_status lar_simulation_set_force_on(lar_simulation *simulation, const char *set,
+                                               const double force[3], lar_error *error);
 /* As they are now. The stiffness of a material that does not exist is 0. */
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+/* What was set on a node and on sets that it is in, together [N]; 0 for no such node. */
+LAR_API void lar_simulation_force(const lar_simulation *simulation, int32_t node, double force[3]);
 
 /* ---- tools and contact of a simulation ---------------------------------------------------- */
 
@@ -541,13 +658,45 @@ LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, in
 LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                              lar_tool_force *force, lar_error *error);
 
+typedef enum lar_touch_kind {
+    LAR_TOUCH_PRESSED = 0, /* the tool pushes a point of a face */
+    LAR_TOUCH_HELD,        /* it has hold of a point of a face */
+    LAR_TOUCH_RUBBED       /* friction at a node */
+} lar_touch_kind;
+
+/* Where a tool and the surface touch. */
+typedef struct lar_touch {
+    double place[3];  /* of the point of the surface [m] */
+    double normal[3]; /* unit, out of the tool; 0 where it holds */
+    double force[3];  /* of the tissue on the tool [N] */
+    double depth;     /* of the point in the tool [m]; 0 where it holds or rubs */
+    lar_touch_kind kind;
+    int32_t jaw;      /* of a grasper that pushes: 0 or 1; else 0 */
+    int32_t face;     /* index into lar_surface_info.face; -1: friction, at node[0] */
+    int32_t node[4];  /* of the model: the face's corners; -1: none */
+    double weight[4]; /* shares of these in the point; they sum to 1 */
+} lar_touch;
+
+/* Where a tool touches in the present state, with the forces that the next step begins with:
+ * copies at most `max` points (0 with NULL: only counts); *count is how many there are, which may
+ * be more. Forces are whole force units, so that their sum is exact in any order. It is what
+ * lar_tool_force says after an advance by that one step, but for the rounding of its mean, where
+ * the step is not divided and nothing is decided anew before it (how steps are divided, how a tool
+ * follows its hand). The same bits and order on every grid, also right after loading. Changes
+ * nothing; takes as long as some steps, on processor 0, because the tool's surroundings are
+ * searched anew. */
+LAR_API lar_status lar_simulation_tool_touches(const lar_simulation *simulation, int32_t tool,
+                                               int32_t max, lar_touch *touch, int32_t *count,
+                                               lar_error *error);
+
 /* Adds a tool in the first spare place, from the present step on, in the same step on all
  * processors: it stands above the body, as that is and as it is at rest, tip down, clear of both.
  * It is in checkpoints and recordings; a reset puts it back there. `shape` (sphere, capsule,
  * grasper), `radius`, `length` and `spread` (0: 60 degrees) of `wanted` count; its name follows
  * from its place in the list: "sphere 1". *tool, its index, may be NULL. LAR_ERROR_ARGUMENT when
  * no place is left, and for a size that does not fit the body: a radius between that at which faces
- * still feel it everywhere and half of the body's diagonal, a length up to five of these. */
+ * still feel it everywhere and half of the body's diagonal, a length up to five of these; and for a
+ * `friction`, which only tools of the scene have. */
 LAR_API lar_status lar_simulation_add_tool(lar_simulation *simulation, const lar_tool_info *wanted,
                                            int32_t *tool, lar_error *error);
 /* Takes one that was added away, from the present step on: it lets go, and its place is free. */
@@ -555,7 +704,7 @@ LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_
                                               lar_error *error);
 
 /* Strained elements and tools that press hard need shorter steps: for as long as they do, every
- * step is computed in several parts, a power of two. Now; 1: steps are not divided. */
+ * step is computed in several parts: 2, 3, 4, 6, 8, 12, ... up to 32. Now; 1: not divided. */
 LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
  * (`max`; may be NULL). Going back, loading and a reset do not change these. */
@@ -585,6 +734,25 @@ LAR_API lar_status lar_simulation_save(const lar_simulation *simulation, const c
  * damaged file, one of another model or of another time step is refused; nothing changes then. */
 LAR_API lar_status lar_simulation_load(lar_simulation *simulation, const char *path,
                                        lar_error *error);
+
+/* The same in memory, for whoever tries one thing after another from the same state: nodes, tools,
+ * settings, and what the tools felt in the last advance (lar_tool_force), to the last bit. Memory
+ * is asked for when it is created and not again, but to reach other processes. It serves all
+ * simulations of the model, on any grid, that have as many tools, hands and spares, the same kind
+ * of element and time step; others are refused (LAR_ERROR_ARGUMENT). One thread at a time. */
+typedef struct lar_saved lar_saved;
+
+/* Empty; the caller destroys it, after or before the simulation, but before the model. */
+LAR_API lar_status lar_saved_create(const lar_simulation *simulation, lar_saved **saved,
+                                    lar_error *error);
+LAR_API void lar_saved_destroy(lar_saved *saved);
+/* Replaces what was saved there. LAR_ERROR_UNSTABLE when the run has broken off: that stays. */
+LAR_API lar_status lar_simulation_save_to(const lar_simulation *simulation, lar_saved *saved,
+                                          lar_error *error);
+/* As often as one likes; counts of contact (lar_contact_info) begin anew, as after
+ * lar_simulation_load. Takes as long as a few steps. */
+LAR_API lar_status lar_simulation_load_from(lar_simulation *simulation, const lar_saved *saved,
+                                            lar_error *error);
 
 /* What a saved state was made with: a simulation that shall take it up needs the same. */
 typedef struct lar_checkpoint_info {
@@ -667,6 +835,8 @@ LAR_API int lar_rest_look(lar_rest *rest, const lar_simulation *simulation);
 
 /* Damping in proportion to mass [1/s]. */
 LAR_API double lar_model_damping(const lar_model *model);
+/* Gravity at a time [s] as the model says [m/s^2]; 1: it follows a curve, 0: it is constant. */
+LAR_API int lar_model_gravity(const lar_model *model, double time, double gravity[3]);
 /* 1: the model asks for a run until it is at rest (a static analysis, `duration: rest`). */
 LAR_API int lar_model_until_rest(const lar_model *model);
 
@@ -700,8 +870,8 @@ typedef struct lar_session_options {
 LAR_API lar_session_options lar_session_options_default(void); /* pace 1, all others 0 */
 
 /* Takes the simulation over until the session is closed: no other call may use it, but
- * lar_simulation_field and what is said to be constant (counts, names, time step). `options` may be
- * NULL. */
+ * lar_simulation_field with lar_simulation_node_value, _element_value and _stored_energy, and what
+ * is said to be constant (counts, names, time step). `options` may be NULL. */
 LAR_API lar_status lar_session_open(lar_simulation *simulation, const lar_session_options *options,
                                     lar_session **session, lar_error *error);
 /* Starts the thread. */
@@ -710,6 +880,16 @@ LAR_API lar_status lar_session_start(lar_session *session, lar_error *error);
  * be under way or come after it, and servers are closed before. The simulation may be used again,
  * and is the caller's to destroy. Closing fails only when a recording could not be completed. */
 LAR_API lar_status lar_session_close(lar_session *session, lar_error *error);
+
+/* What a session was opened with: constant. `info` is the caller's. */
+typedef struct lar_session_info {
+    const lar_simulation *simulation; /* for the calls that are allowed meanwhile */
+    uint64_t tick_steps;              /* steps of a tick */
+    double tick;                      /* the same [s] */
+    lar_session_options options;      /* no zeros where they stand for something; record: NULL */
+} lar_session_info;
+
+LAR_API void lar_session_inspect(const lar_session *session, lar_session_info *info);
 
 /* Asked for here, done at the end of the tick under way, in this order. */
 LAR_API void lar_session_play(lar_session *session);
@@ -720,6 +900,9 @@ LAR_API void lar_session_set_pace(lar_session *session, double pace);
 LAR_API lar_status lar_session_reset(lar_session *session, lar_error *error);
 LAR_API lar_status lar_session_save(lar_session *session, const char *path, lar_error *error);
 LAR_API lar_status lar_session_load(lar_session *session, const char *path, lar_error *error);
+LAR_API lar_status lar_session_save_to(lar_session *session, lar_saved *saved, lar_error *error);
+LAR_API lar_status lar_session_load_from(lar_session *session, const lar_saved *saved,
+                                         lar_error *error);
 /* Begins a recording at `path`, after the end of the one under way; NULL ends that only.
  * LAR_ERROR_IO when there is another file at `path`, or a recording that is being written. */
 LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
@@ -731,6 +914,10 @@ LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gr
 LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
 LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                              lar_error *error);
+LAR_API lar_status lar_session_set_force(lar_session *session, int32_t node, const double force[3],
+                                         lar_error *error);
+LAR_API lar_status lar_session_set_force_on(lar_session *session, const char *set,
+                                            const double force[3], lar_error *error);
 /* As they were at the end of the last tick. */
 LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
 LAR_API double lar_session_damping(const lar_session *session);
@@ -759,11 +946,32 @@ LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
 LAR_API lar_status lar_session_grasp(lar_session *session, int32_t tool, const double point[3],
                                      int32_t *held, lar_error *error);
 LAR_API lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *error);
+
+/* The same without waiting, for threads that serve many, or draw: done between two ticks likewise,
+ * and not before the session is started. LAR_ERROR_PEER while 256 requests wait already: ask again.
+ * What comes of a grasp is known by its ticket, which is any number but 0. */
+LAR_API lar_status lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
+                                         uint64_t ticket, lar_error *error);
+LAR_API lar_status lar_session_ask_release(lar_session *session, int32_t tool, lar_error *error);
+
+/* What came of the latest grasp of a tool that was asked for so and is done. */
+typedef struct lar_grasp_answer {
+    uint64_t ticket;   /* 0: there was none */
+    int32_t held;      /* as of lar_session_grasp */
+    lar_status status; /* likewise: why nothing is held, or LAR_OK */
+} lar_grasp_answer;
+
+LAR_API lar_status lar_session_grasp_answer(const lar_session *session, int32_t tool,
+                                            lar_grasp_answer *answer, lar_error *error);
 /* Of the last tick: pose and force, either may be NULL. The pose is where the tool is: tissue may
  * keep it from where its hand asks it to be. */
 LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
                                           lar_tool_pose *pose, lar_tool_force *force,
                                           lar_error *error);
+
+/* As lar_simulation_tool_touches, between two ticks: waits for that. */
+LAR_API lar_status lar_session_tool_touches(lar_session *session, int32_t tool, int32_t max,
+                                            lar_touch *touch, int32_t *count, lar_error *error);
 
 /* What a tool had to bear since the session was opened. */
 typedef struct lar_tool_load {
@@ -892,8 +1100,11 @@ LAR_API void lar_snapshot_destroy(lar_snapshot *snapshot);
 LAR_API lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot,
                                         double seconds, lar_error *error);
 
+/* Ticks whose forces are kept. */
+enum { LAR_HISTORY_TICKS = 8192 };
+
 /* Forces on a tool, one entry per tick: copies those after tick `after` (0: from the oldest that is
- * kept), at most `max`, oldest first; the last 8192 ticks are kept. *last is the number of the
+ * kept), at most `max`, oldest first. *last is the number of the
  * last one copied (`after` when there is none). Returns how many. */
 LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
                                           int32_t max, float (*force)[3], uint64_t *last);

@@ -38,6 +38,12 @@
 static const int8_t LAR_ROW_LANES[8] __attribute__((unused)) = {0, 2, 1, 3, 4, 6, 5, 7};
 
 #define LAR_INLINE static inline __attribute__((always_inline, unused))
+/* Long functions: in single numbers a call costs less than its copies do. */
+#if LAR_SIMD == LAR_SIMD_C
+#define LAR_LONG static __attribute__((noinline, unused))
+#else
+#define LAR_LONG LAR_INLINE
+#endif
 
 #if LAR_SIMD == LAR_SIMD_AVX512
 

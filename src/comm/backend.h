@@ -17,14 +17,15 @@
 #ifndef LAR_COMM_BACKEND_H
 #define LAR_COMM_BACKEND_H
 
+#include "base/socket.h"
 #include "comm/comm.h"
 
-enum { LAR_COMM_ADDRESS_BYTES = 2048, LAR_COMM_HOST_BYTES = 64 };
+enum { LAR_COMM_ADDRESS_BYTES = 2048 };
 
 /* What a peer must know of a processor. Travels as it stands between equal builds. */
 typedef struct lar_comm_address {
     uint64_t receive_bytes;
-    char host[LAR_COMM_HOST_BYTES]; /* numeric, as seen from processor zero; "" for zero itself */
+    char host[LAR_SOCKET_HOST_BYTES]; /* numeric, as seen from processor zero; "" for zero itself */
     uint32_t bytes;
     unsigned char data[LAR_COMM_ADDRESS_BYTES]; /* the backend's */
 } lar_comm_address;

@@ -12,8 +12,8 @@
 
 #include "base/memory.h"
 #include "base/pin.h"
+#include "base/socket.h"
 #include "base/thread.h"
-#include "comm/socket.h"
 
 static const double HEARTBEAT = 0.1; /* between signs of life [s] */
 /* Silence that says that someone is lost, as a share of the timeout: the rest is for telling the

@@ -9,9 +9,9 @@
 
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/socket.h"
 #include "comm/backend.h"
 #include "comm/mpi_world.h"
-#include "comm/socket.h"
 
 /* ---- the launcher --------------------------------------------------------------------------- */
 
@@ -126,7 +126,7 @@ typedef struct notice {
 } notice;
 
 static lar_status listen_somewhere(bool loopback, int *listener, notice *n) {
-    char host[LAR_COMM_HOST_BYTES] = "127.0.0.1", at[LAR_COMM_ADDRESS_TEXT];
+    char host[LAR_SOCKET_HOST_BYTES] = "127.0.0.1", at[LAR_COMM_ADDRESS_TEXT];
     lar_status status = loopback ? LAR_OK : lar_socket_own_host(host, &n->error);
     snprintf(at, sizeof at, strchr(host, ':') ? "[%s]:0" : "%s:0", host);
     if (!status) status = lar_comm_listen(at, listener, n->master, &n->error);

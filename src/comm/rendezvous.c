@@ -7,7 +7,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include "comm/socket.h"
+#include "base/socket.h"
 
 /* Changes with every change of what travels. Its bytes in another order are another number. */
 static const uint64_t MAGIC = 0x4c61726961740001u;
@@ -254,7 +254,8 @@ static lar_status hear_zero(lar_comm *comm, note *n, double deadline, lar_error 
 static lar_status join_rendezvous(lar_comm *comm, const hello *own, lar_error *error) {
     /* Zero's own limit passes first, so that its sentence arrives. */
     double deadline = start_deadline(comm) + 1;
-    lar_status status = lar_socket_connect(comm->options.master, deadline, &comm->links[0], error);
+    lar_status status =
+        lar_rendezvous_call(0, comm->options.master, deadline, &comm->links[0], error);
     if (status) return status;
     if (lar_socket_send(comm->links[0], own, sizeof *own, deadline)) return lost(0, error);
     note n;
@@ -268,6 +269,14 @@ static lar_status join_rendezvous(lar_comm *comm, const hello *own, lar_error *e
 }
 
 /* ---- both ---------------------------------------------------------------------------------- */
+
+lar_status lar_rendezvous_call(int32_t p, const char *address, double deadline, int *socket,
+                               lar_error *error) {
+    lar_error why;
+    lar_status status = lar_socket_connect(address, deadline, socket, &why);
+    if (!status) return LAR_OK;
+    return lar_fail(error, status, "processor %d is not reached: %s", (int)p, why.message);
+}
 
 lar_status lar_rendezvous_gather(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
@@ -324,4 +333,15 @@ lar_status lar_rendezvous_ready(lar_comm *comm, const lar_error *own, lar_error 
     /* A zero that is gone may have left a refusal. */
     lar_socket_send(comm->links[0], &n, sizeof n, deadline);
     return hear_zero(comm, &n, deadline, error);
+}
+
+lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_COMM_ADDRESS_TEXT],
+                           lar_error *error) {
+    lar_status status = lar_socket_listen(address, listener, error);
+    if (status) return status;
+    const char *colon = strrchr(address, ':');
+    int length = (int)(colon - address);
+    snprintf(bound, LAR_COMM_ADDRESS_TEXT, "%.*s:%d", length < 70 ? length : 70, address,
+             lar_socket_port(*listener));
+    return LAR_OK;
 }

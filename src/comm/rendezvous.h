@@ -26,6 +26,11 @@ lar_status lar_rendezvous_ready(lar_comm *comm, const lar_error *own, lar_error 
  * somebody has gone. Give up then; lar_rendezvous_ready finds out the sentence for all. */
 lar_status lar_rendezvous_check(const lar_comm *comm, lar_error *error);
 
+/* Connects to processor p, again and again while nobody listens there; whoever cannot is told who was
+ * called. */
+lar_status lar_rendezvous_call(int32_t p, const char *address, double deadline, int *socket,
+                               lar_error *error);
+
 /* The next connection at `listener`, checking meanwhile; *guest is -1 at the deadline. */
 lar_status lar_rendezvous_accept(const lar_comm *comm, int listener, double deadline, int *guest,
                                  lar_error *error);

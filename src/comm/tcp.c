@@ -18,9 +18,9 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/socket.h"
 #include "comm/backend.h"
 #include "comm/rendezvous.h"
-#include "comm/socket.h"
 
 enum { CHUNK = 65536, ALL_EVERY = 16 };
 
@@ -92,7 +92,7 @@ static lar_status call(lar_comm *comm, int32_t p, double deadline, lar_error *er
     for (;;) {
         double look = lar_comm_now() + 0.5;
         if (look > deadline) look = deadline;
-        lar_status status = lar_socket_connect(address, look, socket, error);
+        lar_status status = lar_rendezvous_call(p, address, look, socket, error);
         if (!status) break;
         if (lar_comm_now() > deadline || lar_rendezvous_check(comm, error)) return LAR_ERROR_PEER;
     }

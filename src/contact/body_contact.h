@@ -98,6 +98,7 @@ typedef struct lar_body_contact_search_state {
     double skin_min, skin_max; /* [m] */
     uint64_t next;             /* the round that follows the last one */
     bool searching;            /* a search is under way */
+    bool whole;                /* the list is that of `searched`: nothing was left out */
     bool valid;                /* the list belongs to the state */
     bool always;               /* search in every step */
 } lar_body_contact_search_state;

@@ -58,6 +58,17 @@ static void add_forces(lar_conditions *c, const int32_t *local, const lar_condit
     }
 }
 
+/* A force may be set on any node, and its thread applies it. */
+static lar_status note_bearers(const lar_condition_share *share, int32_t nodes, lar_conditions *c,
+                               lar_error *error) {
+    size_t bytes = ((size_t)nodes + 7) / 8;
+    c->bears = lar_calloc(bytes, 1);
+    if (!c->bears) return lar_fail_memory(error, bytes, "supports and loads");
+    for (int32_t n = 0; n < nodes; n++)
+        if (share->loads[n] == share->thread) c->bears[n / 8] |= (uint8_t)(1u << n % 8);
+    return LAR_OK;
+}
+
 lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  const lar_condition_share *share, lar_conditions *c,
                                  lar_error *error) {
@@ -71,7 +82,12 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
     for (int i = 0; i < model->pressure_count; i++) pressures += (size_t)model->pressure[i].count;
     size_t nodes = (size_t)model->mesh.node_count;
     lar_status status = allocate(c, nodes, constraints, forces, pressures, error);
-    if (status) return status;
+    if (!status && share) status = note_bearers(share, model->mesh.node_count, c, error);
+    if (status) {
+        lar_conditions_destroy(c);
+        return status;
+    }
+    c->local = local;
 
     for (int i = 0; i < model->fix_count; i++)
         add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
@@ -98,6 +114,7 @@ void lar_conditions_destroy(lar_conditions *c) {
     free(c->force);
     free(c->pressure);
     free(c->held);
+    free(c->bears);
     *c = (lar_conditions){0};
 }
 
@@ -177,6 +194,46 @@ static double gravity_half_work(const lar_condition_context *context, double tim
     return half_work(gravity, momentum, context->mean_step);
 }
 
+/* ---- forces that were set ------------------------------------------------------------------ */
+
+static bool bears(const lar_conditions *c, int32_t node) {
+    return !c->bears || (c->bears[node / 8] >> node % 8 & 1);
+}
+
+/* As lar_conditions_load. */
+static int32_t add_set_forces(const lar_conditions *c, const lar_condition_context *context,
+                              lar_state *state) {
+    int32_t beyond = -1, count = context->forces ? context->forces->count : 0;
+    for (int32_t k = 0; k < count; k++) {
+        const lar_force_entry *entry = &context->forces->entry[k];
+        lar_force_nodes nodes = lar_force_nodes_of(context->model, entry);
+        for (int32_t i = 0; i < nodes.count; i++) {
+            if (!bears(c, nodes.node[i])) continue;
+            int32_t n = c->local[nodes.node[i]];
+            if (!add_external(state->force + 4 * (size_t)n, context->scale, entry->force))
+                beyond = n;
+        }
+    }
+    return beyond;
+}
+
+static double set_half_work(const lar_conditions *c, const lar_condition_context *context,
+                            const lar_state *state) {
+    int32_t count = context->forces ? context->forces->count : 0;
+    double work = 0;
+    for (int32_t k = 0; k < count; k++) {
+        const lar_force_entry *entry = &context->forces->entry[k];
+        lar_force_nodes nodes = lar_force_nodes_of(context->model, entry);
+        for (int32_t i = 0; i < nodes.count; i++)
+            if (bears(c, nodes.node[i]))
+                work += half_work(entry->force, state->v + 4 * (size_t)c->local[nodes.node[i]],
+                                  context->mean_step);
+    }
+    return work;
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
 double lar_conditions_half_work(const lar_conditions *c, const lar_condition_context *context,
                                 double time, const lar_condition_notes *notes,
                                 const lar_state *state) {
@@ -188,7 +245,7 @@ double lar_conditions_half_work(const lar_conditions *c, const lar_condition_con
             work += half_work(notes->pressure[i][a], state->v + c->pressure[i].node[a], dt);
     if (lar_gravity_varies(context->model, context->settings))
         work += gravity_half_work(context, time, state);
-    return work;
+    return work + set_half_work(c, context, state);
 }
 
 int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context *context,
@@ -210,7 +267,8 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
             if (!add_external(state->force + p->node[a], context->scale, now[a]))
                 beyond = p->node[a] / 4;
     }
-    return beyond;
+    int32_t set = add_set_forces(c, context, state);
+    return set >= 0 ? set : beyond;
 }
 
 void lar_conditions_observe(const lar_conditions *c, const lar_condition_context *context,

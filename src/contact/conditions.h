@@ -16,6 +16,7 @@
 #define LAR_CONTACT_CONDITIONS_H
 
 #include "layout/state.h"
+#include "model/forces.h"
 #include "model/settings.h"
 
 /* One axis of one node held at, or moved to, by * curve(t). */
@@ -47,6 +48,9 @@ typedef struct lar_conditions {
     lar_point_force *force;
     lar_face_pressure *pressure;
     uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
+    /* Of forces that are set while it runs (model/forces.h). */
+    const int32_t *local; /* as it was given */
+    uint8_t *bears;       /* a bit for each node of the model that its thread loads; NULL: all */
 } lar_conditions;
 
 /* Of an axis that is moved, in the step under way. */
@@ -66,6 +70,7 @@ typedef struct lar_condition_notes {
 typedef struct lar_condition_context {
     const lar_model *model;
     const lar_settings *settings; /* NULL: as the model says */
+    const lar_forces *forces;     /* that were set; NULL: none */
     double scale;                 /* force units per newton */
     double time_step;             /* of the step, or the part of it, under way [s] */
     double whole_step;            /* [s] */
@@ -87,7 +92,7 @@ typedef struct lar_condition_share {
     const int32_t *presses; /* [elements of the model] thread that applies pressures on its faces */
 } lar_condition_share;
 
-/* `local` maps global to local nodes. An axis that several entries hold is held once. With a share
+/* `local` maps global to local nodes, and outlives it. An axis that several entries hold is held once. With a share
  * (NULL: all) only the conditions of one thread, and no `held`. */
 lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  const lar_condition_share *share, lar_conditions *conditions,

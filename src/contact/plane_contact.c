@@ -4,7 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/contact.h"
+
 /* ---- set-up -------------------------------------------------------------------------------- */
+
+static inline double dot(const double a[3], const double *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void mark_held(const lar_model *model, uint8_t *held) {
     for (int i = 0; i < model->fix_count; i++)
@@ -19,21 +25,24 @@ static void mark_held(const lar_model *model, uint8_t *held) {
  * these lie along the plane. */
 static void add_node(lar_planes *planes, const lar_contact *plane, const double position[3],
                      int32_t value, unsigned held) {
-    lar_plane_way way;
+    lar_plane_way way = {.held = plane->friction > 0 && held != 0};
     lar_plane_node node = {.value = value};
     double free = 0;
     for (int i = 0; i < 3; i++) {
         way.normal[i] = plane->normal[i];
         node.offset += plane->normal[i] * (position[i] - plane->through[i]);
         way.slide[i] = held >> i & 1 ? 0 : plane->normal[i];
+        way.free[i] = plane->friction > 0 && held >> i & 1 ? 0 : 1;
         free += way.slide[i] * way.slide[i];
     }
     if (free < 1e-6) return;
     for (int i = 0; i < 3; i++) way.slide[i] /= free;
+    way.grip = plane->friction * dot(way.slide, way.slide);
     while (node.way < planes->way_count && memcmp(&planes->way[node.way], &way, sizeof way) != 0)
         node.way++;
     if (node.way == planes->way_count) planes->way[planes->way_count++] = way;
     planes->node[planes->count++] = node;
+    planes->rough = planes->rough || plane->friction > 0;
 }
 
 static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
@@ -97,13 +106,17 @@ lar_status lar_plane_contact_create(const lar_planes *planes, lar_plane_contact 
     *plane_contact = (lar_plane_contact){.planes = planes};
     if (planes->count == 0) return LAR_OK;
     plane_contact->near = lar_calloc((size_t)planes->count, sizeof *plane_contact->near);
-    if (plane_contact->near) return LAR_OK;
+    if (planes->rough)
+        plane_contact->last = lar_calloc((size_t)planes->count, sizeof *plane_contact->last);
+    if (plane_contact->near && (plane_contact->last || !planes->rough)) return LAR_OK;
+    lar_plane_contact_destroy(plane_contact);
     return lar_fail_memory(error, (size_t)planes->count * sizeof *plane_contact->near,
                            "the nodes before planes");
 }
 
 void lar_plane_contact_destroy(lar_plane_contact *plane_contact) {
     free(plane_contact->near);
+    free(plane_contact->last);
     *plane_contact = (lar_plane_contact){0};
 }
 
@@ -115,12 +128,18 @@ static inline double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-static inline double dot(const double a[3], const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double step_travel(const lar_condition_context *context, const lar_state *state) {
     return 1.7320508075688774 * context->whole_step * state->fastest;
+}
+
+/* The same from the nodes before planes themselves: nobody may have said how fast they are. */
+static double travel_of_all(const lar_plane_contact *plane_contact,
+                            const lar_condition_context *context, const lar_state *state) {
+    double fastest = 0;
+    for (int32_t i = 0; i < plane_contact->planes->count; i++)
+        for (int k = 0; k < 3; k++)
+            fastest = larger(fastest, fabs(state->v[plane_contact->planes->node[i].value + k]));
+    return 1.7320508075688774 * context->whole_step * fastest;
 }
 
 /* Looks so far that at the present speed the next search is some dozens of steps away, and never
@@ -129,8 +148,10 @@ static double step_travel(const lar_condition_context *context, const lar_state 
 static void search(lar_plane_contact *plane_contact, const lar_condition_context *context,
                    const lar_state *state, lar_contact_info *seen) {
     enum { AHEAD = 64 };
-    double dt = context->time_step;
-    plane_contact->reach = AHEAD * step_travel(context, state) + 50000 * dt * dt;
+    double dt = context->time_step, travel = step_travel(context, state);
+    /* Friction must not depend on when nodes were looked at, not even after a checkpoint. */
+    if (plane_contact->last) travel = larger(travel, travel_of_all(plane_contact, context, state));
+    plane_contact->reach = AHEAD * travel + 50000 * dt * dt;
     plane_contact->travel = 0;
     plane_contact->near_count = 0;
     const lar_planes *planes = plane_contact->planes;
@@ -205,6 +226,126 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
     sum->deepest = larger(sum->deepest, -height);
 }
 
+/* ---- friction ------------------------------------------------------------------------------ */
+
+/* A search within a step, with friction: who was near has its velocity before the step from `last`;
+ * the others have none. */
+static void search_again(lar_plane_contact *plane_contact, const lar_condition_context *context,
+                         const lar_state *state, lar_contact_info *seen) {
+    int32_t count = plane_contact->near_count, k = 0;
+    lar_plane_near *last = plane_contact->near;
+    plane_contact->near = plane_contact->last;
+    plane_contact->last = last;
+    search(plane_contact, context, state, seen);
+    for (int32_t i = 0; i < plane_contact->near_count; i++) {
+        lar_plane_near *near = &plane_contact->near[i];
+        while (k < count && last[k].node.value < near->node.value) k++;
+        if (k < count && last[k].node.value == near->node.value)
+            memcpy(near->before, last[k].before, sizeof near->before);
+        else
+            near->before[0] = NAN;
+    }
+}
+
+/* Whether a node comes from so far that its velocity before the step does not count: from more than
+ * twice the way that it went in one. Who was not near at the beginning of the step has; so that who
+ * knew of it makes no difference. */
+static bool comes_from_afar(double height, double rate, const double *before) {
+    double reach = height * rate;
+    return height > 0 && !(reach * reach <= 4 * dot(before, before));
+}
+
+/* What a plane makes of the velocity v, from a height before the step; returns whether it does. Its
+ * impulse along its normal changes the velocity along `slide`; of a node with held axes it is
+ * larger than that, by the part that goes into supports. Without `before` no friction. */
+static inline bool meet(const lar_plane_way *way, double height, double rate, const double *before,
+                        const double v[3], double change[3]) {
+    double speed = dot(way->normal, v), stopped = min_velocity(height, rate) - speed;
+    if (!(stopped > 0)) return false;
+    for (int i = 0; i < 3; i++) change[i] = way->slide[i] * stopped;
+    if (!before || !(way->grip > 0)) return true;
+    double along[3] = {v[0], v[1], v[2]};
+    if (way->held) { /* what is left of the motion along the other axes */
+        for (int i = 0; i < 3; i++) along[i] *= way->free[i];
+        speed = dot(way->normal, along);
+    }
+    for (int i = 0; i < 3; i++) along[i] -= way->slide[i] * speed;
+    double square = dot(along, along), both = dot(along, before);
+    if (both < -LAR_FRICTION_NONE * square && comes_from_afar(height, rate, before)) both = 0;
+    double part = lar_friction_part(way->grip * stopped, square, both);
+    for (int i = 0; i < 3; i++) change[i] -= part * along[i];
+    return true;
+}
+
+/* The same, done to a node that has moved by v; returns whether it has changed anything. */
+static inline bool rub(const lar_plane_near *near, const lar_plane_way *way, double height,
+                       double dt, double rate, bool rough, double *restrict u, double *restrict v) {
+    double change[3], start = height - dt * dot(way->normal, v);
+    if (!meet(way, start, rate, rough ? near->before : NULL, v, change)) return false;
+    for (int i = 0; i < 3; i++) {
+        v[i] += change[i];
+        u[i] += dt * change[i];
+    }
+    return true;
+}
+
+/* Friction with one plane can bring a node through another one: the last word has the stop. Planes
+ * that are not met change nothing: who knows of them is up to the search. `met` of `count` have
+ * been met, the last of them by `only`. */
+static void stop_again(const lar_plane_near *near, int32_t count, const lar_plane_way *way,
+                       double dt, double rate, int32_t met, int32_t only, double *u, double *v) {
+    for (int32_t k = 0; k < count; k++) {
+        const lar_plane_way *w = &way[near[k].node.way];
+        double height = near[k].node.offset + dot(w->normal, u);
+        if (height >= 0 || (met == 1 && k == only)) continue;
+        if (rub(&near[k], w, height, dt, rate, false, u, v)) met++;
+    }
+}
+
+/* All planes of one node, of which some have friction. */
+static inline void rub_node(const lar_plane_near *near, int32_t count, const lar_plane_way *way,
+                            double dt, double rate, double *restrict u, double *restrict v,
+                            stops *sum) {
+    const double free[3] = {v[0], v[1], v[2]};
+    int32_t met = 0, only = -1;
+    for (int32_t k = 0; k < count; k++) {
+        const lar_plane_way *w = &way[near[k].node.way];
+        double height = near[k].node.offset + dot(w->normal, u);
+        if (height >= 0) continue;
+        if (rub(&near[k], w, height, dt, rate, true, u, v)) {
+            met++;
+            only = k;
+        }
+        sum->touching += near->weight > 0;
+        sum->deepest = larger(sum->deepest, -(near[k].node.offset + dot(w->normal, u)));
+    }
+    if (met == 0) return;
+    if (count > 1) stop_again(near, count, way, dt, rate, met, only, u, v);
+    const double *before = isnan(near->before[0]) ? free : near->before;
+    double work = 0, damped = 0;
+    for (int i = 0; i < 3; i++) {
+        sum->fastest = larger(sum->fastest, fabs(v[i]));
+        work += (v[i] - free[i]) * (before[i] + v[i]);
+        damped += (v[i] - free[i]) * (before[i] + free[i]);
+    }
+    sum->work += near->weight * work;
+    sum->damped += near->weight * (work + damped);
+}
+
+static void rub_nodes(const lar_plane_contact *plane_contact, double dt, double rate,
+                      lar_state *state, stops *sum) {
+    const lar_plane_near *near = plane_contact->near;
+    const int32_t near_count = plane_contact->near_count;
+    for (int32_t i = 0, count; i < near_count; i += count) {
+        int32_t value = near[i].node.value;
+        for (count = 1; i + count < near_count && near[i + count].node.value == value;) count++;
+        rub_node(&near[i], count, plane_contact->planes->way, dt, rate, state->u + value,
+                 state->v + value, sum);
+    }
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
 void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
                             lar_state *state, bool always, lar_contact_info *seen) {
     if (plane_contact->planes->count == 0) return;
@@ -212,11 +353,13 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     /* Faster within one step than the search allowed for: somebody else may be there now. (What
      * they had before is lost, which costs the energy account a little and the motion nothing.) */
     if (!(plane_contact->travel < plane_contact->reach) && !always)
-        search(plane_contact, context, state, seen);
+        (plane_contact->last ? search_again : search)(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);
     stops sum = {.fastest = state->fastest};
     const lar_plane_way *way = plane_contact->planes->way;
-    for (int32_t i = 0; i < plane_contact->near_count; i++) {
+    if (plane_contact->planes->rough) rub_nodes(plane_contact, dt, rate, state, &sum);
+    int32_t smooth = plane_contact->planes->rough ? 0 : plane_contact->near_count;
+    for (int32_t i = 0; i < smooth; i++) {
         const lar_plane_near *near = &plane_contact->near[i];
         stop_node(near, &way[near->node.way], dt, rate, state->u + near->node.value,
                   state->v + near->node.value, &sum);
@@ -235,14 +378,18 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
 
 int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
                          const lar_state *state, int32_t entry, double ahead[3]) {
-    double dt = context->time_step;
-    int32_t value = planes->node[entry].value;
-    for (; entry < planes->count && planes->node[entry].value == value; entry++) {
-        const lar_plane_way *way = &planes->way[planes->node[entry].way];
-        double height = planes->node[entry].offset + dot(way->normal, state->u + value);
-        double speed = dot(way->normal, ahead);
-        double min = min_velocity(height, 1 / dt);
-        for (int i = 0; i < 3 && speed < min; i++) ahead[i] += way->slide[i] * (min - speed);
-    }
+    double rate = 1 / context->time_step;
+    int32_t first = entry, value = planes->node[entry].value, met = 0, only = -1;
+    while (entry < planes->count && planes->node[entry].value == value) entry++;
+    for (int again = 0; again < (planes->rough ? 2 : 1); again++) /* as rub_node */
+        for (int32_t k = first; k < entry; k++) {
+            const lar_plane_way *way = &planes->way[planes->node[k].way];
+            double height = planes->node[k].offset + dot(way->normal, state->u + value), change[3];
+            if (again && met == 1 && k == only) continue;
+            if (!meet(way, height, rate, again ? NULL : state->v + value, ahead, change)) continue;
+            for (int i = 0; i < 3; i++) ahead[i] += change[i];
+            if (!again) only = k;
+            met++;
+        }
     return entry;
 }

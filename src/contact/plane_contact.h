@@ -11,6 +11,11 @@
  * limit of an infinitely stiff spring without its small time step. It cannot add energy whatever
  * the step (docs/theory.md, contact), nothing sinks in, and a resting node rests.
  *
+ * Friction is decided with all forces known as well: what the stop has changed along the normal
+ * tells the normal force, and so much along the plane is stopped as Coulomb's law allows, down to
+ * nothing (lar_friction_part). A node that sticks stands still, but for rounding, for as long as it
+ * does; no anchor is remembered.
+ *
  * Every processor that has a node stops its copy, with the same bits.
  *
  * Prediction (T 3.8.2) from what has really happened instead of a greatest acceleration: no node
@@ -27,6 +32,10 @@ typedef struct lar_plane_way {
     double normal[3]; /* unit, to where bodies may be */
     double slide[3];  /* the change of velocity per change of its part along the normal: the normal
                          itself, but for axes that supports hold */
+    double free[3];   /* 0 for these axes and 1 for the others; without friction 1 */
+    double grip;      /* Coulomb's coefficient, and times what the plane's impulse is larger than
+                         that along the free axes */
+    int64_t held;     /* friction, and some are 0 in `free` */
 } lar_plane_way;
 
 /* A node before a plane. */
@@ -47,6 +56,7 @@ typedef struct lar_plane_near {
 /* The nodes before planes: constant. */
 typedef struct lar_planes {
     int32_t count, way_count;
+    bool rough;           /* some have friction */
     lar_plane_node *node; /* [count] all planes of a node one after the other */
     lar_plane_way *way;   /* [way_count] */
 } lar_planes;
@@ -56,6 +66,7 @@ typedef struct lar_plane_contact {
     const lar_planes *planes;
     int32_t near_count;
     lar_plane_near *near; /* [near_count] in the order of planes->node */
+    lar_plane_near *last; /* [planes->count] scratch of searches; NULL: without friction */
     double travel;        /* at most this far has any node gone since the search [m] */
     double reach;         /* how far `near` looks [m] */
     bool known;           /* `near` belongs to the state */

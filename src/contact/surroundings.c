@@ -1,12 +1,17 @@
 #include "contact/surroundings.h"
 
+#include "contact/tool_friction.h"
+
 lar_status lar_surroundings_add_contact(const lar_model *model, const int32_t *local,
                                         const lar_condition_share *share, const lar_tool_list *list,
                                         lar_surroundings *surroundings, lar_error *error) {
     surroundings->list = list;
     lar_status status = lar_planes_create(model, local, share, &surroundings->planes, error);
     if (status || !list || list->count == 0) return status;
-    return lar_tool_faces_create(model, local, share, &surroundings->faces, error);
+    status = lar_tool_faces_create(model, local, share, &surroundings->faces, error);
+    if (status || !lar_tool_friction_any(list)) return status;
+    return lar_tool_friction_list(model, local, share, &surroundings->conditions,
+                                  &surroundings->faces, error);
 }
 
 lar_status lar_surroundings_add_bodies(const lar_model *model, const double *mass,

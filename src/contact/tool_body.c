@@ -202,8 +202,17 @@ static bool same_pose(const lar_tool_pose *a, const lar_tool_pose *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
+/* Whether jaws that tissue pushes apart are to open farther in the interval than tools that are
+ * held back go. */
+static bool springs_open(const lar_tool *tool, const lar_tool_limits *limits, const mean_load *mean,
+                         const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand) {
+    return tool->shape == LAR_TOOL_GRASPER && mean->squeeze > 0 &&
+           limits->travel * (hand->opening - now->opening) > law->farthest;
+}
+
 /* A tool that is kept from following goes its own way; one that has come back to its hand follows
- * again. True when it goes elsewhere than before. */
+ * again. Jaws that are opened at once are held back likewise, or what they let go would fly as if
+ * nothing had held it. True when it goes elsewhere than before. */
 static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tools *tools,
                    int32_t index, const mean_load *mean, uint64_t step, uint64_t until,
                    double time_step) {
@@ -212,24 +221,25 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     static const double FASTEST = 0.5; /* [m/s]: no blows */
     lar_tool_follower *follower = &tools->follower[index];
     lar_tool_motion *motion = &tools->motion[index];
-    bool free_again = follower->lagging && follower->load <= 1;
-    if (!follower->lagging && follower->load <= 1) return false;
-    lar_tool_pose now, hand, next;
+    if (!follower->lagging && follower->load <= 1 && !(mean->squeeze > 0)) return false;
+    lar_tool_pose now, hand, then, next;
     lar_tool_at(motion, step, time_step, &now, NULL);
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
-    if (free_again && same_pose(&now, &hand)) {
+    lar_tool_at(&follower->hand, until, time_step, &then, NULL);
+    double steps = (double)(until - step), seconds = steps * time_step;
+    const follow_law law = {.drag = limits->drag * tools->division.hardness,
+                            .seconds = seconds,
+                            .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
+    bool held_back = follower->load > 1 || springs_open(tool, limits, mean, &law, &now, &then);
+    if (!held_back && !follower->lagging) return false;
+    if (!held_back && same_pose(&now, &hand)) {
         int32_t holding = motion->holding;
         *motion = follower->hand;
         motion->holding = holding;
         follower->lagging = 0;
         return true;
     }
-    double steps = (double)(until - step), seconds = steps * time_step;
-    const follow_law law = {.drag = limits->drag * tools->division.hardness,
-                            .seconds = seconds,
-                            .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
-    lar_tool_at(&follower->hand, until, time_step, &hand, NULL);
-    step_pose(tool, limits, mean, &law, &now, &hand, &next);
+    step_pose(tool, limits, mean, &law, &now, &then, &next);
     motion->from = now;
     motion->to = next;
     motion->start = step;
@@ -273,7 +283,7 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
     int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MAX &&
            (asked > room->max * wanted * wanted || hardness > wanted * wanted))
-        wanted *= 2;
+        wanted = lar_more_parts(wanted);
     bool changed =
         hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);
     d->hardness = hardness;
@@ -286,8 +296,7 @@ bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step
 
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
                       double time_step, double unit) {
-    const lar_step_division *division = &tools->division;
-    double need = division->lately / ((double)division->base * division->base);
+    double need = lar_division_need(&tools->division);
     bool changed = false;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_limits *limits = &list->limits[i];

@@ -37,7 +37,7 @@ typedef struct lar_tissue_scale {
 void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MAX. */
-enum { LAR_INTERVAL_MAX = 8, LAR_PARTS_MAX = LAR_STEP_SHARES };
+enum { LAR_INTERVAL_MAX = 8, LAR_PARTS_MAX = 32 };
 /* How hard tools become, and up to what elements' need is remembered: more than any number of parts
  * bears makes no difference, and must be over some time. */
 enum { LAR_HARDNESS_MAX = 64, LAR_NEED_MAX = LAR_PARTS_MAX * LAR_PARTS_MAX };

@@ -6,6 +6,8 @@
 
 #include "base/vector.h"
 #include "contact/tool_contact_face.h"
+#include "contact/tool_friction.h"
+#include "contact/touch_list.h"
 
 /* ---- set-up -------------------------------------------------------------------------------- */
 
@@ -92,6 +94,8 @@ void lar_tool_faces_destroy(lar_tool_faces *faces) {
     free(faces->foreign);
     free(faces->face_of);
     free(faces->weights);
+    free(faces->rub);
+    free(faces->rub_value);
     *faces = (lar_tool_faces){0};
 }
 
@@ -117,6 +121,7 @@ lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes
     *contact = (lar_tool_contact){.list = list, .tools = tools, .faces = faces, .always = always};
     lar_status status = lar_plane_contact_create(planes, &contact->plane_contact, error);
     if (!status && faces->face_count > 0) status = allocate(contact, error);
+    if (!status) status = lar_tool_friction_create(contact, error);
     if (status) {
         lar_tool_contact_destroy(contact);
         return status;
@@ -128,6 +133,7 @@ lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes
 
 void lar_tool_contact_destroy(lar_tool_contact *contact) {
     lar_plane_contact_destroy(&contact->plane_contact);
+    lar_tool_friction_destroy(contact);
     for (int t = 0; t < LAR_TOOLS_MAX; t++) {
         free(contact->vicinity[t].near);
         free(contact->vicinity[t].look);
@@ -200,9 +206,8 @@ double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t coun
     return sqrt(farthest);
 }
 
-/* The pose now, or `ahead` parts of a step later. */
-static void pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
-                     double time_step, lar_tool_pose *pose) {
+void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                       double time_step, lar_tool_pose *pose) {
     int32_t part = state->part + ahead;
     if (part >= state->parts)
         lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
@@ -216,9 +221,9 @@ static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
     if (vicinity->rests && state->step >= motion->end) return 0;
     lar_tool_body *body = &vicinity->body, old = *body;
     lar_tool_pose pose;
-    pose_now(motion, state, 0, time_step, &pose);
+    lar_tool_pose_now(motion, state, 0, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->now);
-    pose_now(motion, state, 1, time_step, &pose);
+    lar_tool_pose_now(motion, state, 1, time_step, &pose);
     lar_tool_place(tool, &pose, body, body->next);
     vicinity->rests = state->step >= motion->end;
     return vicinity->known ? lar_tool_way(old.now, body->now, body->count) : 0;
@@ -226,38 +231,43 @@ static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
 
 /* ---- forces -------------------------------------------------------------------------------- */
 
+/* Somebody looks at this tool; NULL: nobody does. */
+static lar_touch_list *touches_of(const lar_tool_contact *contact, int32_t tool) {
+    return contact->touches && contact->touches->tool == tool ? contact->touches : NULL;
+}
+
 /* Gives the corners their forces in whole units, and the tool exactly the opposite: nothing is lost
  * between them. */
 static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
                  int32_t tool, const double tip[3], const double x[4][3],
                  const double force[4][3]) {
     int32_t *at = &contact->loaded_at[f];
+    int64_t total[3] = {0};
     lar_tool_sum *sum = &contact->sum[tool];
+    lar_touch_list *touches = touches_of(contact, tool);
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
-            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) return;
+            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) {
+                if (touches) touches->pending = 0;
+                return;
+            }
     if (*at < 0) {
         *at = contact->loaded_count++;
         contact->loaded[*at] = (lar_tool_contact_force){.face = f};
     }
     lar_tool_contact_force *loaded = &contact->loaded[*at];
     for (int a = 0; a < 4; a++) {
-        double units[3], arm[3];
+        double arm[3];
+        int64_t whole[3];
         for (int i = 0; i < 3; i++) {
-            int64_t whole = llrint(force[a][i] * context->scale);
-            loaded->force[a][i] += whole;
-            sum->force[i] -= context->shares * whole;
-            units[i] = (double)whole;
+            whole[i] = llrint(force[a][i] * context->scale);
+            loaded->force[a][i] += whole[i];
+            total[i] += whole[i];
             arm[i] = x[a][i] - tip[i];
         }
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
-            if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
-            sum->torque[i] += context->shares * llrint(whole);
-            sum->rest[i] += context->shares * llrint((torque - whole) / LAR_TORQUE_REST);
-        }
+        lar_tool_sum_add(sum, context->shares, arm, whole);
     }
+    if (touches) lar_touch_settle(touches, total, context->scale);
 }
 
 /* Nothing of a run that is about to break. */
@@ -274,6 +284,7 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
                                         .body = &vicinity->body,
                                         .radius = contact->list->tool[tool].radius,
                                         .rate_of = 1 / context->time_step,
+                                        .touches = touches_of(contact, tool),
                                         .closest = INFINITY};
         double center[3];
         lar_tool_contact_corners(patch.face, state->u, patch.x);
@@ -293,6 +304,9 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
         give(contact, context, vicinity->near[i], tool, vicinity->body.now[0].end[0],
              (const double(*)[3])patch.x, (const double(*)[3])patch.force);
+        if (contact->list->tool[tool].friction > 0)
+            lar_tool_friction_press(contact, context, contact->list->tool[tool].friction,
+                                    patch.face, (const double(*)[3])patch.force);
     }
 }
 
@@ -309,8 +323,16 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
     for (int i = 0; i < 3; i++) out[i] += pose->position[i];
 }
 
-/* The spring between a point of a face and its anchor; no stronger than at the length of the tool's
- * radius, so that what is torn away from a tool slips instead of being torn apart. */
+/* How long the spring of a hold may be: what is torn away from a tool slips instead of being torn
+ * apart. Elements that have become so fast that steps need some six parts slip earlier: a hand that
+ * went on pulling would turn them inside out. */
+static double grasp_reach(const lar_tool *tool, const lar_tools *tools) {
+    static const double BORNE_RATE = 30; /* (omega dt / 2)^2 of the fastest element */
+    double need = lar_division_need(&tools->division);
+    return need > BORNE_RATE ? tool->radius * BORNE_RATE / need : tool->radius;
+}
+
+/* The spring between a point of a face and its anchor. */
 static void grasp_point(lar_tool_contact *contact, const lar_condition_context *context,
                         const lar_state *state, const lar_grasp *grasp,
                         const lar_grasp_motion *motion, const lar_contact_law *law) {
@@ -331,9 +353,19 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
         length += pull[i] * pull[i];
     }
     length = sqrt(length);
-    double share = length > stiffness * tool->radius ? stiffness * tool->radius / length : 1;
+    double most = stiffness * grasp_reach(tool, contact->tools);
+    double share = length > most ? most / length : 1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
+    if (touches_of(contact, grasp->tool)) {
+        lar_touch touch = {.kind = LAR_TOUCH_HELD, .face = grasp->face};
+        for (int i = 0; i < 3; i++) {
+            touch.place[i] = point[i];
+            touch.force[i] = -share * pull[i];
+        }
+        memcpy(touch.weight, grasp->weight, sizeof touch.weight);
+        lar_touch_note(contact->touches, &touch);
+    }
     give(contact, context, contact->faces->face_of[grasp->face], grasp->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
     contact->sum[grasp->tool].held++;
@@ -349,8 +381,8 @@ static void apply_grasps(lar_tool_contact *contact, const lar_condition_context 
         lar_grasp_motion *of = &motion[grasp->tool];
         const lar_tool_motion *tool = &contact->tools->motion[grasp->tool];
         if (!of->known) {
-            pose_now(tool, state, 0, context->whole_step, &of->now);
-            pose_now(tool, state, 1, context->whole_step, &of->next);
+            lar_tool_pose_now(tool, state, 0, context->whole_step, &of->now);
+            lar_tool_pose_now(tool, state, 1, context->whole_step, &of->next);
             of->known = true;
         }
         grasp_point(contact, context, state, grasp, of, law);
@@ -391,7 +423,7 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
 static void clear_loaded(lar_tool_contact *contact) {
     for (int32_t i = 0; i < contact->loaded_count; i++)
         contact->loaded_at[contact->loaded[i].face] = -1;
-    contact->loaded_count = 0;
+    contact->loaded_count = contact->rubbed_count = 0;
     contact->seen.touching = 0;
     contact->seen.deepest = 0;
 }
@@ -438,6 +470,7 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
                         state->v[contact->faces->face[loaded->face].value[a] + k];
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
+    if (contact->rubbed_count > 0) lar_tool_friction_half_work(contact, context, state);
 }
 
 void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_context *context,

@@ -22,6 +22,8 @@
 #ifndef LAR_CONTACT_TOOL_CONTACT_H
 #define LAR_CONTACT_TOOL_CONTACT_H
 
+#include <math.h>
+
 #include "contact/plane_contact.h"
 #include "contact/spares.h"
 #include "mechanics/contact.h"
@@ -62,6 +64,12 @@ typedef struct lar_tool_contact_group {
     int32_t first, count;
 } lar_tool_contact_group;
 
+/* A node of the surface that may rub on tools (tool_friction.h). */
+typedef struct lar_tool_rub_node {
+    double rest[3]; /* [m] */
+    bool held;      /* by a support */
+} lar_tool_rub_node;
+
 /* The faces before tools. */
 typedef struct lar_tool_faces {
     int32_t face_count, group_count, foreign_count;
@@ -70,6 +78,10 @@ typedef struct lar_tool_faces {
     int32_t *face_of;              /* [faces of the model's surface] index into `face`, or -1 */
     int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
     lar_point_weights *weights;    /* NULL: no faces */
+    int32_t rub_count, local_count;
+    int32_t *rub_value;     /* [rub_count] 4 * local node, ascending */
+    lar_tool_rub_node *rub; /* [rub_count] moved by the thread; NULL: no tool has friction. Of all
+                               nodes of the processor there are `local_count` */
 } lar_tool_faces;
 
 /* The ball around a group. */
@@ -83,6 +95,12 @@ typedef struct lar_tool_contact_force {
     int32_t face;
     int64_t force[4][3];
 } lar_tool_contact_force;
+
+/* Friction of a node in the step under way [force units]. */
+typedef struct lar_tool_rubbed {
+    int32_t value;
+    int64_t force[3];
+} lar_tool_rubbed;
 
 /* The segments of a tool, where they are and where they will be a step later. */
 typedef struct lar_tool_body {
@@ -103,6 +121,8 @@ typedef struct lar_tool_vicinity {
     double *look;  /* [near_count] the path from which on each must be looked at again */
 } lar_tool_vicinity;
 
+typedef struct lar_touch_list lar_touch_list; /* touch_list.h */
+
 typedef struct lar_tool_contact {
     const lar_tool_list *list; /* NULL: no tools */
     const lar_tools *tools;
@@ -116,7 +136,12 @@ typedef struct lar_tool_contact {
     int32_t *loaded_at;             /* [faces->face_count] index into `loaded`; -1: nothing acts on
                                        the face in this step */
     lar_tool_contact_ball *ball;    /* [faces->group_count] */
+    int64_t *press;                 /* [4 * faces->local_count] sums of mu times what tools push, in
+                                       force units, empty between steps; NULL: without friction */
+    int32_t rubbed_count;
+    lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
+    lar_touch_list *touches; /* who looks wants to know where a tool touches; NULL in steps */
     double travel;  /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved; /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
@@ -157,7 +182,7 @@ void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_con
 void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_context *context,
                            lar_state *state);
 
-/* ---- for tool_contact_face.c, tool_contact_search.c, grasp.c and fault_tool.c ---------------- */
+/* ---- for other sources of tools, grasp.c and fault_tool.c ------------------------------------ */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);
@@ -168,6 +193,25 @@ void lar_tool_contact_weights(int point, int n, double weight[4]);
 /* Corners of a face now [m], and the ball around them. */
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const double *u, double x[4][3]);
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
+/* Adds a force on the tissue [force units], `arm` from the tip, to what the tool feels. */
+static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const double arm[3],
+                                    const int64_t force[3]) {
+    double units[3];
+    for (int i = 0; i < 3; i++) {
+        sum->force[i] -= shares * force[i];
+        units[i] = (double)force[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
+        if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
+        sum->torque[i] += shares * llrint(whole);
+        sum->rest[i] += shares * llrint((torque - whole) / LAR_TORQUE_REST);
+    }
+}
+/* The pose now, or `ahead` parts of a step later. `time_step`: of a whole step. */
+void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                       double time_step, lar_tool_pose *pose);
 /* Where a tool's segments are in a pose. */
 void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
                     lar_segment segment[2]);

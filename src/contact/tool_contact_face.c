@@ -51,10 +51,25 @@ static double not_thrown(double rate) {
     return away <= 0 ? 1 : fmax(0, 1 - away / (THROWN - LEAVES));
 }
 
+/* For who looks. `deep`: how deep the point counts as. */
+__attribute__((noinline, cold)) static void note_point(const lar_tool_contact_patch *patch,
+                                                       int32_t s, const double weight[4],
+                                                       const double normal[3], double force,
+                                                       double deep) {
+    lar_touch touch = {.depth = deep, .kind = LAR_TOUCH_PRESSED, .jaw = s, .face = patch->face->of};
+    lar_face_mean((const double(*)[3])patch->x, weight, touch.place);
+    for (int i = 0; i < 3; i++) {
+        touch.normal[i] = normal[i];
+        touch.force[i] = -force * normal[i];
+    }
+    memcpy(touch.weight, weight, sizeof touch.weight);
+    lar_touch_note(patch->touches, &touch);
+}
+
 /* A point of the face is pushed along the normal of segment s. */
-static void push_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
-                       double along, const double weight[4], const double normal[3], double mass,
-                       double depth) {
+static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
+                         double along, const double weight[4], const double normal[3], double mass,
+                         double depth) {
     const lar_segment *now = &patch->body->now[s], *next = &patch->body->next[s];
     double v[3], rate = 0;
     lar_face_mean((const double(*)[3])patch->v, weight, v);
@@ -71,6 +86,7 @@ static void push_point(lar_tool_contact_patch *patch, const lar_contact_law *law
         patch->jaw[s] -= force * outwards;
     }
     patch->touching++;
+    return force;
 }
 
 /* A point of the grid against the tool's segments. */
@@ -91,7 +107,8 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
         if (share == 0) continue;
         patch->depth = fmax(patch->depth, share * depth);
         patch->covered += fmin(1, depth / (WALL * patch->radius));
-        push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
+        double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
+        if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
     }
 }
 
@@ -119,9 +136,10 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
     double share = facing(patch, at.normal);
     if (share == 0) return WALL * patch->radius - depth;
     patch->depth = fmax(patch->depth, share * depth);
-    push_point(patch, law, s, at.along, at.weight, at.normal,
-               free_share * share * wall_mass(patch->face, mass, at.weight),
-               depth - WALL * patch->radius);
+    double force = push_point(patch, law, s, at.along, at.weight, at.normal,
+                              free_share * share * wall_mass(patch->face, mass, at.weight),
+                              depth - WALL * patch->radius);
+    if (patch->touches) note_point(patch, s, at.weight, at.normal, force, share * depth);
     return WALL * patch->radius - depth;
 }
 

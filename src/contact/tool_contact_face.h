@@ -13,6 +13,7 @@
 #define LAR_CONTACT_TOOL_CONTACT_FACE_H
 
 #include "contact/tool_contact.h"
+#include "contact/touch_list.h"
 
 typedef struct lar_tool_contact_patch { /* one face before one tool */
     const lar_tool_contact_face *face;
@@ -27,6 +28,7 @@ typedef struct lar_tool_contact_patch { /* one face before one tool */
     double squeeze; /* of the jaws, as a force at their ends [N] */
     double jaw[2];  /* on each jaw, outwards [N] */
     int32_t touching;
+    lar_touch_list *touches; /* of who looks; NULL in steps */
 } lar_tool_contact_patch;
 
 /* The mass behind each of n x n points [kg]: with weights w_a of all points their sum over a node's

@@ -17,9 +17,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "model/forces.h"
 #include "model/settings.h"
 
-enum { LAR_SPARES_MAX = 4, LAR_TOOLS_MAX = 16 + LAR_SPARES_MAX, LAR_GRASPS_MAX = 256 };
+enum { LAR_GRASPS_MAX = 256 };
 
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
@@ -47,12 +48,12 @@ typedef struct lar_tool_felt {
 } lar_tool_felt;
 
 /* Forces on tools are summed in shares of a step, so that a part of a divided one counts for what
- * it is: as many as parts, at most. */
-enum { LAR_STEP_SHARES = 32 };
+ * it is. Every number of parts divides them. */
+enum { LAR_STEP_SHARES = 96 };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
-    int32_t parts;   /* of a step, a power of two */
+    int32_t parts;   /* of a step: 1, 2, 3, 4, 6, 8, 12, ... (lar_more_parts) */
     int32_t before;  /* as many until `since` */
     uint64_t since;  /* step */
     double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
@@ -63,10 +64,20 @@ typedef struct lar_step_division {
     int32_t due;      /* to be decided before the next step, wherever an interval begins */
 } lar_step_division;
 
+/* The next larger number of parts that there is: powers of two, and three halves of them. */
+static inline int32_t lar_more_parts(int32_t parts) {
+    return (parts & (parts - 1)) != 0 ? parts / 3 * 4 : parts == 1 ? 2 : parts / 2 * 3;
+}
+
+/* How fast elements have been lately, as `need` counts, beside what stiffer materials make them. */
+static inline double lar_division_need(const lar_step_division *division) {
+    return division->lately / ((double)division->base * division->base);
+}
+
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
  * for it. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
-    return division->lately > 0.7 * division->base * division->base;
+    return lar_division_need(division) > 0.7;
 }
 
 /* The hand of a tool, and how far the tool is from following it. */
@@ -91,6 +102,7 @@ typedef struct lar_tools {
     int32_t count, grasp_count;
     lar_step_division division;
     lar_settings settings;
+    lar_forces forces;
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
     lar_grasp grasps[LAR_GRASPS_MAX];

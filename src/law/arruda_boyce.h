@@ -86,7 +86,7 @@ static const char lar_arruda_boyce_name[] = "arruda-boyce",
                   lar_arruda_boyce_title[] = "Arruda-Boyce";
 static const lar_law_parameter lar_arruda_boyce_parameter[] = {
     {"mu", LAR_VALUE_MODULUS}, {"N", LAR_VALUE_NUMBER}, {"bulk_modulus", LAR_VALUE_MODULUS}};
-enum { lar_arruda_boyce_history = 0, lar_arruda_boyce_fibres = 0 };
+enum { lar_arruda_boyce_history = 0, lar_arruda_boyce_fibres = 0, lar_arruda_boyce_uncoupled = 1 };
 
 static const lar_law_parameter lar_arruda_boyce_febio_parameter[] = {
     {"mu", LAR_VALUE_CONSTANT}, {"N", LAR_VALUE_NUMBER}, {"k", LAR_VALUE_MODULUS}};

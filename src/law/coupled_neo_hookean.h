@@ -39,7 +39,11 @@ static const char lar_coupled_neo_hookean_name[] = "coupled-neo-hookean",
 static const lar_law_parameter lar_coupled_neo_hookean_parameter[] = {
     {"mu", LAR_VALUE_MODULUS}, {"lambda", LAR_VALUE_CONSTANT}};
 static const lar_law_dialect lar_coupled_neo_hookean_abaqus = LAR_LAW_NO_DIALECT;
-enum { lar_coupled_neo_hookean_history = 0, lar_coupled_neo_hookean_fibres = 0 };
+enum {
+    lar_coupled_neo_hookean_history = 0,
+    lar_coupled_neo_hookean_fibres = 0,
+    lar_coupled_neo_hookean_uncoupled = 0
+};
 
 static const lar_law_parameter lar_coupled_neo_hookean_young[] = {{"E", LAR_VALUE_MODULUS},
                                                                   {"v", LAR_VALUE_RATIO}};

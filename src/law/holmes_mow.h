@@ -84,7 +84,7 @@ LAR_INLINE unsigned lar_holmes_mow_stiffened(lar_lane J, lar_lane I1, lar_lane a
 static const char lar_holmes_mow_name[] = "holmes-mow", lar_holmes_mow_title[] = "Holmes-Mow";
 static const lar_law_parameter lar_holmes_mow_parameter[] = {
     {"mu", LAR_VALUE_MODULUS}, {"lambda", LAR_VALUE_CONSTANT}, {"beta", LAR_VALUE_NUMBER}};
-enum { lar_holmes_mow_history = 0, lar_holmes_mow_fibres = 0 };
+enum { lar_holmes_mow_history = 0, lar_holmes_mow_fibres = 0, lar_holmes_mow_uncoupled = 0 };
 static const lar_law_dialect lar_holmes_mow_abaqus = LAR_LAW_NO_DIALECT;
 
 static const lar_law_parameter lar_holmes_mow_young[] = {

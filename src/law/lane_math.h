@@ -33,7 +33,7 @@ LAR_INLINE lar_lane lar_lane_rcbrt(lar_lane J) {
  * J = 2^k m with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(s), s = (m - 1)/(m + 1), |s| < 0.1716;
  * the odd series up to s^21 leaves less than 1e-17. The quotient is IEEE division, the same
  * everywhere. */
-LAR_INLINE lar_lane lar_lane_log(lar_lane J) {
+LAR_LONG lar_lane lar_lane_log(lar_lane J) {
     const int64_t half_bits = 0x3fe6a09e00000000LL; /* upper half of sqrt(1/2) */
     lar_ilane bits = lar_lane_bits(J);
     lar_ilane above = bits - half_bits;
@@ -55,7 +55,7 @@ LAR_INLINE lar_lane lar_lane_log(lar_lane J) {
  * operation. (e^r - 1 - r) / r^2 is a polynomial through ten Chebyshev nodes, which leaves less
  * than 4e-17 of r. Beyond +-708, where 2^k would not be normal, x counts as +-708: 3e307 and
  * 3e-308. */
-LAR_INLINE lar_lane lar_lane_exp_parts(lar_lane x, lar_lane *power) {
+LAR_LONG lar_lane lar_lane_exp_parts(lar_lane x, lar_lane *power) {
     static const double term[] = {
         0x1.af38a9b0ec855p-26, 0x1.289185613a3d6p-22, 0x1.71de0dae63bb3p-19, 0x1.a019b90d2ae7ap-16,
         0x1.a01a01a7c41d5p-13, 0x1.6c16c1788bd90p-10, 0x1.11111111109b3p-7,  0x1.5555555553d63p-5,

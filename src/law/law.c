@@ -14,6 +14,7 @@
                        .abaqus = &lar_##law##_abaqus,                                              \
                        .history = lar_##law##_history,                                             \
                        .fibres = lar_##law##_fibres,                                               \
+                       .uncoupled = lar_##law##_uncoupled,                                         \
                        .shear = lar_##law##_shear,                                                 \
                        .bulk = lar_##law##_bulk,                                                   \
                        .from_moduli = lar_##law##_from_moduli,                                     \

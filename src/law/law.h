@@ -106,8 +106,9 @@ typedef struct lar_law_row {
     int count;                          /* of its parameters */
     const lar_law_parameter *parameter; /* [count] keys of scenes */
     const lar_law_dialect *febio, *abaqus;
-    int history; /* numbers that an element remembers */
-    bool fibres; /* whether it asks for directions */
+    int history;    /* numbers that an element remembers */
+    bool fibres;    /* whether it asks for directions */
+    bool uncoupled; /* w = w'(F J^(-1/3)) + U(J): it has an isochoric part */
     /* Shear and bulk modulus at rest [Pa], and the parameters that have them: those which moduli do
      * not determine are 0. */
     double (*shear)(const double *p);

@@ -73,7 +73,11 @@ static const char lar_mooney_rivlin_name[] = "mooney-rivlin",
                   lar_mooney_rivlin_title[] = "Mooney-Rivlin";
 static const lar_law_parameter lar_mooney_rivlin_parameter[] = {
     {"c1", LAR_VALUE_CONSTANT}, {"c2", LAR_VALUE_CONSTANT}, {"bulk_modulus", LAR_VALUE_MODULUS}};
-enum { lar_mooney_rivlin_history = 0, lar_mooney_rivlin_fibres = 0 };
+enum {
+    lar_mooney_rivlin_history = 0,
+    lar_mooney_rivlin_fibres = 0,
+    lar_mooney_rivlin_uncoupled = 1
+};
 
 static const lar_law_parameter lar_mooney_rivlin_febio_parameter[] = {
     {"c1", LAR_VALUE_CONSTANT}, {"c2", LAR_VALUE_OPTIONAL}, {"k", LAR_VALUE_MODULUS}};

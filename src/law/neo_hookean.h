@@ -42,7 +42,7 @@ static const char lar_neo_hookean_name[] = "neo-hookean", lar_neo_hookean_title[
 static const lar_law_parameter lar_neo_hookean_parameter[] = {{"shear_modulus", LAR_VALUE_MODULUS},
                                                               {"bulk_modulus", LAR_VALUE_MODULUS}};
 static const lar_law_dialect lar_neo_hookean_febio = LAR_LAW_NO_DIALECT;
-enum { lar_neo_hookean_history = 0, lar_neo_hookean_fibres = 0 };
+enum { lar_neo_hookean_history = 0, lar_neo_hookean_fibres = 0, lar_neo_hookean_uncoupled = 1 };
 
 /* Abaqus: U = C10 (I1' - 3) + (J - 1)^2 / D1. */
 static const lar_law_parameter lar_neo_hookean_constant[] = {{"C10", LAR_VALUE_CONSTANT},

@@ -30,7 +30,7 @@ LAR_INLINE lar_lane lar_ogden_power(const lar_lane *p, int term) {
 }
 
 /* b_a less their mean. */
-LAR_INLINE void lar_ogden_pull(const lar_lane h[3], const lar_lane *p, lar_lane b[3]) {
+LAR_LONG void lar_ogden_pull(const lar_lane h[3], const lar_lane *p, lar_lane b[3]) {
 #pragma GCC unroll 3
     for (int a = 0; a < 3; a++) b[a] = lar_lane_set(0);
 #pragma GCC unroll 3
@@ -139,7 +139,7 @@ static const lar_law_parameter lar_ogden_parameter[] = {
     {"c2", LAR_VALUE_OPTIONAL},         {"m2", LAR_VALUE_POWER},
     {"c3", LAR_VALUE_OPTIONAL},         {"m3", LAR_VALUE_POWER},
     {"bulk_modulus", LAR_VALUE_MODULUS}};
-enum { lar_ogden_history = 0, lar_ogden_fibres = 0 };
+enum { lar_ogden_history = 0, lar_ogden_fibres = 0, lar_ogden_uncoupled = 1 };
 
 static const lar_law_parameter lar_ogden_febio_parameter[] = {
     {"c1", LAR_VALUE_CONSTANT}, {"c2", LAR_VALUE_OPTIONAL}, {"c3", LAR_VALUE_OPTIONAL},

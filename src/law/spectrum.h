@@ -82,7 +82,7 @@ LAR_INLINE lar_lane lar_lane_deviator(const lar_lane F[9], lar_lane I1, lar_lane
     return p;
 }
 
-LAR_INLINE void lar_lane_spectrum_of(const lar_lane F[9], lar_lane I1, lar_lane_spectrum *s) {
+LAR_LONG void lar_lane_spectrum_of(const lar_lane F[9], lar_lane I1, lar_lane_spectrum *s) {
     static const int diagonal[6] = {1, 0, 0, 1, 0, 1};
     const lar_lane half = lar_lane_set(0.5);
     lar_lane A[6], A2[6], plane[6];
@@ -118,7 +118,7 @@ LAR_INLINE void lar_lane_spectrum_of(const lar_lane F[9], lar_lane I1, lar_lane_
 }
 
 /* f(C) from its values at the three. */
-LAR_INLINE void lar_lane_spectral(const lar_lane_spectrum *s, const lar_lane f[3], lar_lane S[6]) {
+LAR_LONG void lar_lane_spectral(const lar_lane_spectrum *s, const lar_lane f[3], lar_lane S[6]) {
     static const int diagonal[6] = {1, 0, 0, 1, 0, 1};
     lar_lane mean = lar_lane_set(0.5) * (f[1] + f[2]), slope = (f[1] - f[2]) / s->gap;
     lar_lane beyond = f[0] - mean;
@@ -147,7 +147,7 @@ LAR_INLINE void lar_lane_three(lar_lane p, lar_lane q2, lar_lane determinant, la
 }
 
 /* Squares of the stretches from the invariants; none is below 1e-9 of their mean. */
-LAR_INLINE void lar_lane_stretch_squares(lar_lane I1, lar_lane I2, lar_lane J, lar_lane c[3]) {
+LAR_LONG void lar_lane_stretch_squares(lar_lane I1, lar_lane I2, lar_lane J, lar_lane c[3]) {
     lar_lane p = I1 * lar_lane_set(1.0 / 3), least = lar_lane_set(1e-9) * p;
     lar_lane determinant = lar_lane_fma(J, J, p * lar_lane_fma(lar_lane_set(2) * p, p, -I2));
     lar_lane_three(p, lar_lane_fnma(I2, lar_lane_set(1.0 / 3), p * p), determinant, c);

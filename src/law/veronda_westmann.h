@@ -65,7 +65,11 @@ static const char lar_veronda_westmann_name[] = "veronda-westmann",
                   lar_veronda_westmann_title[] = "Veronda-Westmann";
 static const lar_law_parameter lar_veronda_westmann_parameter[] = {
     {"c1", LAR_VALUE_MODULUS}, {"c2", LAR_VALUE_NUMBER}, {"bulk_modulus", LAR_VALUE_MODULUS}};
-enum { lar_veronda_westmann_history = 0, lar_veronda_westmann_fibres = 0 };
+enum {
+    lar_veronda_westmann_history = 0,
+    lar_veronda_westmann_fibres = 0,
+    lar_veronda_westmann_uncoupled = 1
+};
 static const lar_law_dialect lar_veronda_westmann_abaqus = LAR_LAW_NO_DIALECT;
 
 static const lar_law_parameter lar_veronda_westmann_febio_parameter[] = {

@@ -61,7 +61,7 @@ static const lar_law_parameter lar_yeoh_parameter[] = {{"c1", LAR_VALUE_MODULUS}
                                                        {"c2", LAR_VALUE_CONSTANT},
                                                        {"c3", LAR_VALUE_CONSTANT},
                                                        {"bulk_modulus", LAR_VALUE_MODULUS}};
-enum { lar_yeoh_history = 0, lar_yeoh_fibres = 0 };
+enum { lar_yeoh_history = 0, lar_yeoh_fibres = 0, lar_yeoh_uncoupled = 1 };
 
 static const lar_law_parameter lar_yeoh_febio_parameter[] = {
     {"c1", LAR_VALUE_CONSTANT}, {"c2", LAR_VALUE_OPTIONAL}, {"c3", LAR_VALUE_OPTIONAL},

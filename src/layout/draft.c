@@ -4,11 +4,16 @@
 #include <string.h>
 
 int lar_kind_index(lar_kind kind) {
-    return (int)kind.law * 4 + (kind.shape == LAR_SHAPE_BOX ? 1 + kind.turn : 0);
+    int more = kind.viscous * LAR_FIBRE_KINDS + kind.fibrous;
+    return ((int)kind.law * LAR_VISCOUS_KINDS * LAR_FIBRE_KINDS + more) * 4 +
+           (kind.shape == LAR_SHAPE_BOX ? 1 + kind.turn : 0);
 }
 
-static lar_law law_of(const lar_draft *draft, lar_gid e) {
-    return lar_model_material_of(draft->model, e)->law;
+static lar_kind law_of(const lar_draft *draft, lar_gid e) {
+    const lar_material *material = lar_model_material_of(draft->model, e);
+    return (lar_kind){.law = material->law,
+                      .viscous = lar_viscosity_kind(&material->viscosity),
+                      .fibrous = lar_fibre_kind(&material->fibre)};
 }
 
 /* The turn of a box whose edges follow the axes to the bit, -1 for any other element. */
@@ -30,11 +35,12 @@ static int box_turn(const lar_mesh *mesh, const lar_gid corner[8]) {
 
 lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const int32_t (*corner)[8],
                         int count) {
-    lar_kind common = {law_of(draft, element[0]), LAR_SHAPE_BOX, 0};
+    const lar_kind general = law_of(draft, element[0]);
+    lar_kind common = general;
+    common.shape = LAR_SHAPE_BOX;
     for (int k = 0; k < count; k++) {
         int turn = box_turn(&draft->model->mesh, corner[k]);
-        if (turn < 0 || (k > 0 && turn != common.turn))
-            return (lar_kind){common.law, LAR_SHAPE_GENERAL, 0};
+        if (turn < 0 || (k > 0 && turn != common.turn)) return general;
         common.turn = turn;
     }
     return common;
@@ -42,7 +48,7 @@ lar_kind lar_draft_kind(const lar_draft *draft, const lar_gid *element, const in
 
 bool lar_draft_joins(const lar_draft *draft, lar_gid e, lar_gid other) {
     const lar_part *part = draft->part;
-    if (law_of(draft, e) != law_of(draft, other)) return false;
+    if (lar_kind_index(law_of(draft, e)) != lar_kind_index(law_of(draft, other))) return false;
     return !part || part->thread[e] == part->thread[other];
 }
 
@@ -78,8 +84,13 @@ lar_lanes *lar_draft_block(lar_draft *draft, lar_kind kind, lar_block_rows rows)
     lar_layout *layout = draft->layout;
     if (!LAR_GROW(layout->block, draft->block_room, layout->block_count)) return NULL;
     lar_lanes *block = &layout->block[layout->block_count++];
-    *block = (lar_lanes){
-        .law = kind.law, .shape = kind.shape, .turn = kind.turn, .rows = rows, .batch = INT32_MAX};
+    *block = (lar_lanes){.law = kind.law,
+                         .shape = kind.shape,
+                         .turn = kind.turn,
+                         .rows = rows,
+                         .viscous = kind.viscous,
+                         .fibrous = kind.fibrous,
+                         .batch = INT32_MAX};
     for (int i = 0; i < LAR_BLOCK; i++) block->element[i] = -1;
     return block;
 }

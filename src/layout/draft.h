@@ -31,9 +31,12 @@ typedef struct lar_kind {
     lar_law law;
     lar_block_shape shape;
     int turn;
+    int viscous; /* lar_viscosity_kind */
+    int fibrous; /* lar_fibre_kind */
 } lar_kind;
 
-enum { LAR_KINDS = LAR_LAW_COUNT * 4 }; /* general, boxes in 3 turns */
+/* General, and boxes in 3 turns. */
+enum { LAR_KINDS = LAR_LAW_COUNT * LAR_VISCOUS_KINDS * LAR_FIBRE_KINDS * 4 };
 
 /* A number for a kind, 0..LAR_KINDS-1. */
 int lar_kind_index(lar_kind kind);

@@ -39,7 +39,7 @@ static uint64_t pool_key(int32_t thread, lar_kind kind, int32_t batch) {
 }
 
 static lar_kind kind_of(const lar_lanes *block) {
-    return (lar_kind){block->law, block->shape, block->turn};
+    return (lar_kind){block->law, block->shape, block->turn, block->viscous, block->fibrous};
 }
 
 /* ---- rows of four ------------------------------------------------------------------------------
@@ -87,7 +87,7 @@ static bool pair_rows_of_four(lar_draft *draft) {
 static lar_kind loose_kind(const lar_draft *draft, lar_gid e, bool general) {
     const int32_t(*corner)[8] = (const int32_t(*)[8])draft->layout->corner + e;
     lar_kind kind = lar_draft_kind(draft, &e, corner, 1);
-    return general ? (lar_kind){kind.law, LAR_SHAPE_GENERAL, 0} : kind;
+    return general ? (lar_kind){kind.law, LAR_SHAPE_GENERAL, 0, kind.viscous, kind.fibrous} : kind;
 }
 
 /* What no row took: elements of one thread and kind, eight by eight. */

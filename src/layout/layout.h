@@ -33,6 +33,8 @@ typedef struct lar_lanes {
     lar_block_shape shape;
     lar_block_rows rows;
     int turn;                   /* of boxes (mechanics/hex8_block.h) */
+    int viscous;                /* lar_viscosity_kind; 0: elastic */
+    int fibrous;                /* lar_fibre_kind; 0: no fibres */
     int32_t thread, batch;      /* who recovers it, and with which batch; 0 in a whole layout */
     lar_gid element[LAR_BLOCK]; /* by lane; -1: none */
 } lar_lanes;
@@ -41,7 +43,8 @@ typedef struct lar_layout {
     lar_gid (*corner)[8]; /* [elements of the model] nodes, turned along the row */
     bool corner_lent;     /* `corner` belongs to the whole layout (part_layout.h) */
     int32_t block_count;
-    lar_lanes *block;    /* sorted by thread and batch; then equal law, shape, turn and rows */
+    lar_lanes *block;    /* sorted by thread and batch; then equal law, viscosity, fibres,
+                            shape, turn, rows */
     int32_t node_count;  /* local nodes, spare ones among them, without the padding at the end */
     int32_t node_padded; /* even, with at least one spare node at the end */
     lar_gid *global;     /* [node_padded] node of the model, -1: spare */

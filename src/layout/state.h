@@ -5,6 +5,9 @@
  *                    displacement contact    velocity
  *                                  level
  *
+ *     history   what viscous elements remember (law/viscosity.h), eight lanes of each value, in the
+ *               order of the domain's blocks; none where nothing is viscous
+ *
  * The arrays drive allocation, freeing and copies, the rows everything that takes a node's state
  * elsewhere or looks at it: checkpoint, hash, division among processors, comparison. What is in
  * neither does not exist. Nodes are in the domain's local order,
@@ -21,12 +24,17 @@
 #include "base/hash.h"
 #include "base/memory.h"
 
-/* X(type, name, values per node, kept): `kept` arrays carry the state from one step to the next;
- * the others are empty between steps. */
+/* X(type, name, values per node, values of the history, kept): `kept` arrays carry the state from
+ * one step to the next; the others are empty between steps. */
 #define LAR_STATE_ARRAYS(X)                                                                        \
-    X(double, u, 4, 1)      /* displacements at the present time [m] */                            \
-    X(double, v, 4, 1)      /* velocities half a step before it [m/s] */                           \
-    X(int64_t, force, 4, 0) /* internal minus external forces [force units] */
+    X(double, u, 4, 0, 1)       /* displacements at the present time [m] */                        \
+    X(double, v, 4, 0, 1)       /* velocities half a step before it [m/s] */                       \
+    X(int64_t, force, 4, 0, 0)  /* internal minus external forces [force units] */                 \
+    X(double, history, 0, 1, 1) /* as it was at the forces before [J/m^3, 1, Pa] */
+
+/* How many values an array has. */
+#define LAR_STATE_SIZE(state, of_node, of_history)                                                 \
+    ((size_t)(state)->node_count * (of_node) + (state)->history_count * (of_history))
 
 /* X(array, first, count, before, always): the values first .. first + count - 1 of a node's four in
  * a kept array. `before`: values of a node that stand before them in a checkpoint, which has one
@@ -55,15 +63,18 @@ typedef struct lar_state {
     double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
     bool close;      /* they are looked at in this step: lar_division_is_close */
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
+    double past;     /* since the forces before [s], as the step was entered; no state */
     lar_strained *strained; /* the list, lent; no state */
     int32_t node_count;
-#define LAR_STATE_MEMBER(type, name, values, kept) type *name;
+    size_t history_count; /* values; 0: nothing is viscous */
+#define LAR_STATE_MEMBER(type, name, of_node, of_history, kept) type *name;
     LAR_STATE_ARRAYS(LAR_STATE_MEMBER)
 #undef LAR_STATE_MEMBER
 } lar_state;
 
-/* All zero, for `node_count` (even) nodes. */
-lar_status lar_state_create(lar_state *state, int32_t node_count, lar_error *error);
+/* All zero, for `node_count` (even) nodes and a history of so many values. */
+lar_status lar_state_create(lar_state *state, int32_t node_count, size_t history_count,
+                            lar_error *error);
 void lar_state_destroy(lar_state *state); /* idempotent */
 
 /* ---- one node, in the order of the rows ------------------------------------------------------ */

@@ -10,10 +10,12 @@
  * that it moves. With lead = dt the force follows the immersion that the point will have a step
  * later, so a point that is about to leave is not pushed any more; that, not a rule of its own, is
  * what keeps the spring from giving back more than it took. Derivation and proof of the bounds:
- * docs/theory.md, contact. No friction: wet tissue slides.
+ * docs/theory.md, contact. Friction is no spring (lar_friction_part).
  */
 #ifndef LAR_MECHANICS_CONTACT_H
 #define LAR_MECHANICS_CONTACT_H
+
+#include <math.h>
 
 typedef struct lar_contact_law {
     double stiffness; /* k per mass moved [1/s^2] */
@@ -36,6 +38,21 @@ static inline double lar_contact_force(const lar_contact_law *law, double mass, 
                                        double rate) {
     double ahead = depth + law->lead * rate;
     return depth > 0 && ahead > 0 ? law->stiffness * mass * ahead : 0;
+}
+
+/* Coulomb's law within one step: the part of the velocity along the surface, which a node would
+ * have half a step later, that friction takes when it may take `max` of it. All of it is stick
+ * (Carpenter, Taylor and Katona 1991: the force that the step needs, cut off at the cone).
+ * `square`: of that velocity; `both`: its product with that half a step earlier, against what the
+ * node rubs on. Where the forces have turned the node round within the step friction takes no more
+ * than what keeps the mean of both velocities from turning too: beyond that it would give energy
+ * (docs/theory.md, friction). Of a node that sticks `both` is rounding, and does not count. */
+static const double LAR_FRICTION_NONE = 1e-12;
+static inline double lar_friction_part(double max, double square, double both) {
+    double part = max * max < square ? max / sqrt(square) : 1;
+    if (!(both < -LAR_FRICTION_NONE * square)) return part;
+    double left = 1 + both / square;
+    return left < part ? left > 0 ? left : 0 : part;
 }
 
 /* The mass that a force between two points moves. */

@@ -100,6 +100,7 @@ static void bending_stiffness(const double corner[8][3], double stiffness[4]) {
 void lar_hex8_prepare(const double corner[8][3], const lar_material *material, lar_hex8 *element) {
     double X[7][3], bending[4];
     to_modes(corner, X);
+    memset(element->fibre, 0, sizeof element->fibre);
     element->volume = volume_gradient(X, element->gradient);
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
         for (int i = 0; i < 3; i++) element->gradient[m][i] /= element->volume;
@@ -162,7 +163,7 @@ double lar_hex8_force(const lar_hex8 *element, const lar_material *material, con
     hourglass_displacement(element, U, H, q);
     memcpy(F, H, sizeof F);
     for (int i = 0; i < 3; i++) F[i][i] += 1;
-    double J = lar_law_stress(material, F, P);
+    double J = lar_material_stress(material, element->fibre, F, P);
     modal_forces(element, P, q, G);
     from_modes(G, force);
     return J;
@@ -181,7 +182,7 @@ double lar_hex8_energy(const lar_hex8 *element, const lar_material *material, co
                 *hourglass += 0.5 * element->stiffness[m] * q[m][i] * q[m][i];
     }
     for (int i = 0; i < 3; i++) F[i][i] += 1;
-    return element->volume * lar_law_energy(material, F);
+    return element->volume * lar_material_energy(material, element->fibre, F);
 }
 
 /* The stiffness at rest in modes, A = Z (x) 1 + V b^T D b: D is Hooke's law, b takes the modes to
@@ -307,9 +308,29 @@ static bool exceeds_all(const rest_stiffness *rest, double lambda) {
     return r[0] > 3 * w && r[1] > 2 * w * r[0] && r[2] > w * r[1];
 }
 
+/* The same of fibres where tension begins, and of what is active: V times the slope times the sum
+ * over the modes of |D B_m|^2, D = a (x) a, or its deviator where only that is seen. */
+static double fibre_stiffness(const lar_hex8 *element, const lar_material *material) {
+    const lar_fibre *fibre = &material->fibre;
+    const double *a = element->fibre, third = fibre->isochoric ? 1.0 / 3 : 0;
+    double modulus = lar_viscosity_instant(&material->viscosity) * lar_fibre_modulus(fibre);
+    double pull = fmax(fibre->along - fibre->across, 0), sum = 0;
+    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) {
+        const double *B = element->gradient[m];
+        double along = a[0] * B[0] + a[1] * B[1] + a[2] * B[2], square = 0, all = 0;
+        for (int i = 0; i < 3; i++) {
+            double D = a[i] * along - third * B[i];
+            square += D * D;
+            all += B[i] * B[i];
+        }
+        sum += modulus * square + pull * along * along + fmax(fibre->across, 0) * all;
+    }
+    return element->volume * sum;
+}
+
 double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material) {
     rest_stiffness rest =
-        at_rest(element, lar_material_shear(material), lar_material_bulk(material));
+        at_rest(element, lar_material_instant_shear(material), lar_material_instant_bulk(material));
     double residual, below = rayleigh(&rest, &residual);
     double above = below + fmin(residual, 1e-3 * below), growth = 1e-3;
     /* Proven at once as a rule; else up in growing strides and back by bisection. What is not a
@@ -323,6 +344,7 @@ double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material)
         double middle = sqrt(above * below);
         *(exceeds_all(&rest, middle) ? &above : &below) = middle;
     }
+    if (lar_fibre_here(&material->fibre)) above += fibre_stiffness(element, material);
     /* nodal forces sum_m h_m G_m over the lumped mass rho V/8 are modes 64 G_m / (rho V) */
     return sqrt(64 * above / (material->density * element->volume));
 }

@@ -50,10 +50,10 @@ enum { LAR_HEX8_GRADIENTS = 6, LAR_HEX8_HOURGLASS = 4 };
 static const struct {
     int left, right;
     double factor;
-} LAR_HEX8_VOLUME_TERM[LAR_HEX8_GRADIENTS][2] __attribute__((unused)) = {
-    {{1, 2, 1}, {5, 4, 1. / 3}},       {{2, 0, 1}, {3, 5, 1. / 3}},
-    {{0, 1, 1}, {4, 3, 1. / 3}},       {{2, 4, 1. / 3}, {5, 1, 1. / 3}},
-    {{3, 2, 1. / 3}, {0, 5, 1. / 3}},  {{1, 3, 1. / 3}, {4, 0, 1. / 3}}};
+} LAR_HEX8_VOLUME_TERM[LAR_HEX8_GRADIENTS][2]
+    __attribute__((unused)) = {{{1, 2, 1}, {5, 4, 1. / 3}},      {{2, 0, 1}, {3, 5, 1. / 3}},
+                               {{0, 1, 1}, {4, 3, 1. / 3}},      {{2, 4, 1. / 3}, {5, 1, 1. / 3}},
+                               {{3, 2, 1. / 3}, {0, 5, 1. / 3}}, {{1, 3, 1. / 3}, {4, 0, 1. / 3}}};
 
 /* One element, ready to be recovered. */
 typedef struct lar_hex8 {
@@ -61,9 +61,11 @@ typedef struct lar_hex8 {
     double shape[LAR_HEX8_HOURGLASS][3];    /* X_m, m = 3..6 [m] */
     double stiffness[LAR_HEX8_HOURGLASS];   /* c_m, m = 3..6 [N/m] */
     double volume;                          /* [m^3] */
+    double fibre[3];                        /* unit vector along its fibres; 0: it has none */
 } lar_hex8;
 
-/* Prepares an element from its reference corners [8][3] and its material. */
+/* Prepares an element from its reference corners [8][3] and its material; without fibres, which
+ * the caller puts in. */
 void lar_hex8_prepare(const double corner[8][3], const lar_material *material, lar_hex8 *element);
 
 /* Internal forces dW/du [8][3] in newtons for displacements u [8][3]; returns det F. Plain C, the
@@ -81,7 +83,8 @@ void lar_hex8_gradient(const lar_hex8 *element, const double u[8][3], double F[3
 /* Highest angular frequency [rad/s] of the element alone at rest with its mass lumped in eight
  * equal parts. No mode of any assembly of elements is faster (Flanagan and Belytschko 1984), so
  * 2 / max over elements is a safe bound of the central difference step. Never too low and at most
- * 0.05 % too high, for every material with positive moduli (auxetic ones among them). */
+ * 0.05 % too high, for every material with positive moduli (auxetic ones among them). What fibres
+ * add at rest, fully active, is counted as if the fastest mode were theirs: too high by so much. */
 double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material);
 
 #endif

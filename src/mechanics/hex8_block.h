@@ -18,9 +18,9 @@
  *
  * And one makes models that are larger than caches cheaper, again with the same bits:
  *
- *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours share:
- *              96 bytes per element and 32 per node are read instead of 328, and the rest is made
- *              anew in every step, a few blocks at a time (docs/performance.md, "Lean blocks").
+ *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours
+ * share: 96 bytes per element and 32 per node are read instead of 328, and the rest is made anew in
+ * every step, a few blocks at a time (docs/performance.md, "Lean blocks").
  *
  * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
  * modal forces are rounded, once each, and the transform back to the nodes is integer arithmetic:
@@ -88,6 +88,23 @@ typedef struct lar_block_more {
     double modulus[LAR_MORE_PARAMETERS][LAR_BLOCK];
 } __attribute__((aligned(64))) lar_block_more;
 
+/* What a block's materials say of their viscosity (law/viscosity.h), beside it as well. */
+typedef struct lar_viscous_block {
+    double rest[LAR_BLOCK], share[LAR_VISCOUS_TERMS][LAR_BLOCK];
+    double rate[LAR_VISCOUS_TERMS][LAR_BLOCK]; /* 1 / t_i [1/s] */
+    double unit[LAR_BLOCK];    /* volume, scale and factor of stiffness: by which P is more than
+                                  what is remembered; 0 without an element */
+    double inverse[LAR_BLOCK]; /* of that; 0 without an element */
+} __attribute__((aligned(64))) lar_viscous_block;
+
+/* Fibres (law/fibre.h), beside the block as well: parameters in pascal and active stresses times
+ * volume and scale. All 0 without an element. */
+typedef struct lar_fibre_block {
+    double direction[3][LAR_BLOCK], parameter[LAR_FIBRE_PARAMETERS][LAR_BLOCK];
+    double along[LAR_BLOCK], across[LAR_BLOCK];
+    double limit[LAR_BLOCK]; /* of lar_fibre_stiffness, from where on an element is listed */
+} __attribute__((aligned(64))) lar_fibre_block;
+
 /* Where parameter k of a lane stands; `more` is of that block, NULL for laws that fit. */
 static inline double *lar_block_parameter(lar_block_head *head, lar_block_more *more, int k,
                                           int lane) {
@@ -110,7 +127,22 @@ typedef struct lar_block_run {
     const void *blocks;         /* lar_hex8_block, lar_box_block or lar_lean_block [count] */
     const lar_block_more *more; /* [count], NULL when the law has no more parameters */
     const double *rest;         /* [nodes][4] at rest [m]: the blocks are lean. Else NULL */
+    int viscous; /* lar_viscosity_kind; 0: elastic, and what follows does not count */
+    int terms;
+    bool isochoric;
+    double softer; /* part of the stiffening of shear at which elements are listed, for isochoric
+                      terms make shear stiffer beside the bulk modulus */
+    const lar_viscous_block *relaxing; /* [count] */
+    int fibrous;                       /* lar_fibre_kind; 0: no fibres */
+    const lar_fibre_block *fibres;     /* [count] where there are any */
 } lar_block_run;
+
+/* A step of the viscous elements of a run. */
+typedef struct lar_viscous_step {
+    double *history; /* [count] of lar_history_values(terms) values of eight lanes */
+    double length;   /* [s] since the forces before; 0: what is strained was so at once */
+    bool keep;       /* it counts; false: somebody only looks, and the history stays as it is */
+} lar_viscous_step;
 
 /* From one block of a run to the next. */
 static inline size_t lar_run_stride(const lar_block_run *run) {
@@ -124,8 +156,15 @@ typedef struct lar_hex8_limits {
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 
-/* What a monitor says of an element's strain: det F, |F|^2 and |cof F|^2, 1, 3 and 3 at rest. */
-enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
+/* What a monitor says of an element's strain: det F, |F|^2, |cof F|^2 and along fibres |F a|^2: 1,
+ * 3, 3 and 1 at rest, the last one 0 where there are none. */
+enum {
+    LAR_STRAIN_VOLUME,
+    LAR_STRAIN_LENGTH,
+    LAR_STRAIN_AREA,
+    LAR_STRAIN_FIBRE,
+    LAR_STRAIN_NUMBERS
+};
 
 /* Elements that are strained so much that they must be looked at more closely (hex8_guard.h):
  * squeezed, or bent by their hourglass modes, by about a fifth. */
@@ -143,6 +182,11 @@ typedef struct lar_hex8_monitor {
  * hourglass forces are compared with their limit, and strained elements are listed. */
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
                                     const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
+
+/* The same of a run that has fibres, or is viscous: else `step` is NULL. */
+typedef int64_t (*lar_hex8_recover_more)(const lar_block_run *run, const lar_viscous_step *step,
+                                         const double *u, int64_t *force,
+                                         const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
 
 /* Makes block `block` of a lean run whole. */
 typedef void (*lar_hex8_expand)(const lar_block_run *run, int32_t block, lar_hex8_block *whole);
@@ -178,6 +222,7 @@ typedef struct lar_kernels {
     const char *name; /* as in LARIAT_ISA */
     bool (*available)(void);
     lar_hex8_recover recover;
+    lar_hex8_recover_more recover_more;
     lar_hex8_expand expand;
     lar_hex8_corners corners;
     lar_node_update update;

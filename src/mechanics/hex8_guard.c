@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "law/fibre_stress.h"
 #include "mechanics/hexahedron.h"
 #include "model/mesh/mesh.h"
 
@@ -110,7 +111,7 @@ static double wave_modulus(const lar_material *material) {
 }
 
 void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
-                          const lar_material *material, double lead, double force[8][3],
+                          const lar_material *material, lar_guard_lead lead, double force[8][3],
                           lar_guard *guard) {
     double modulus = KAPPA * wave_modulus(material) / 8;
     *guard = (lar_guard){.min = INFINITY};
@@ -125,9 +126,10 @@ void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const
         guard->energy += weight * energy;
         guard->stiffness += weight * curvature * c.square;
         if (!force) continue;
-        double damped = fmin(slope + lead * curvature * rate, 0);
+        double damped =
+            fmin(slope + (rate > 0 ? lead.opening : lead.closing) * curvature * rate, 0);
+        guard->slope[a] = weight * slope;
         guard->damper[a] = weight * (damped - slope);
-        guard->taken -= guard->damper[a] * rate;
         for (int k = 0; k < 4; k++)
             for (int i = 0; i < 3; i++)
                 force[node_of(a, k)][i] +=
@@ -151,7 +153,7 @@ double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], con
 
 void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
                     lar_guard *guard) {
-    lar_hex8_guard_force(rest, now, NULL, material, 0, NULL, guard);
+    lar_hex8_guard_force(rest, now, NULL, material, (lar_guard_lead){0}, NULL, guard);
 }
 
 /* Signs of the seven modes at node a (hex8.h). */
@@ -203,6 +205,18 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
     return 1 / worst;
 }
 
+/* What fibres have become stiffer than where tension begins [Pa]. */
+static double fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]) {
+    double p[LAR_FIBRE_PARAMETERS], J = strain[LAR_STRAIN_VOLUME];
+    double length = strain[LAR_STRAIN_FIBRE];
+    int kind = lar_fibre_kind(fibre);
+    double square = lar_fibre_square(kind, length, J);
+    memcpy(p, fibre->parameter, sizeof p);
+    lar_fibre_answer now = lar_fibre_tension(fibre->law, square, p);
+    double stiff = lar_fibre_stiffness(kind, &now, square, length, J, strain[LAR_STRAIN_AREA]);
+    return fmax(stiff - lar_fibre_stiffest(fibre), 0);
+}
+
 double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
     double J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA] / 3.0;
     if (!(J > 0)) return INFINITY;
@@ -211,5 +225,14 @@ double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRA
     double stretch = sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
     double volume = fmax(now.slope, 0) * area + fabs(now.pressure) * stretch;
     double shear = now.shear * fmax(1, area / (J * J)) + now.further;
-    return (volume + shear) / wave_modulus(material);
+    double whole =
+        lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
+    double growth = (lar_viscosity_volume_instant(&material->viscosity) * volume +
+                     lar_viscosity_instant(&material->viscosity) * shear) /
+                    whole;
+    if (material->fibre.law == LAR_FIBRE_NONE) return growth;
+    /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
+    double fibres =
+        lar_viscosity_instant(&material->viscosity) * fibre_growth(&material->fibre, strain);
+    return fmax(growth, 1) + fibres / whole;
 }

@@ -16,7 +16,9 @@
  * their volume has the same bits with and without it.
  *
  * A corner that is pressed together is damped as well, by the barrier's stiffness times a lead in
- * time as in contact (mechanics/contact.h): without that corners rattle. The barrier never pulls.
+ * time as in contact (mechanics/contact.h): without that corners rattle. One that opens may have
+ * another lead, for a barrier that was met too late has more to give back than it took. The barrier
+ * never pulls.
  *
  * kappa is a part of the modulus of the pressure wave, so that a barrier at work is not faster than
  * the element itself by more than its 1/x^3; divided steps (contact/tool_body.h) take that.
@@ -32,22 +34,27 @@
 typedef struct lar_guard {
     double min;       /* the least j of the corners */
     double energy;    /* [J] */
-    double taken;     /* power of the damping, at most 0 [W] */
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
-    double damper[8]; /* of each corner: along dj/dx, of what damps [J] */
+    double slope[8];  /* dw/dj of each corner [J] */
+    double damper[8]; /* the same of what damps [J] */
 } lar_guard;
 
 /* Looks at an element with corners `rest` and `now` [m]. */
 void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
                     lar_guard *guard);
 
+/* How many seconds times the barrier's stiffness damp a corner. */
+typedef struct lar_guard_lead {
+    double closing, opening; /* [s] */
+} lar_guard_lead;
+
 /* The same, and adds the barrier's forces dw/dx [N] to `force`, for corners with the velocities `v`
- * [m/s] and a damping of `lead` seconds times the barrier's stiffness. */
+ * [m/s]. */
 void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
-                          const lar_material *material, double lead, double force[8][3],
+                          const lar_material *material, lar_guard_lead lead, double force[8][3],
                           lar_guard *guard);
 
-/* The power [W] of dampers as lar_hex8_guard_force has found them, at other velocities. */
+/* The power [W] that such dampers take at these velocities. */
 double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], const double v[8][3],
                             const double damper[8]);
 

@@ -5,6 +5,8 @@
  *
  *     strain   gather nodes, transform, deformation gradient, hourglass forces    by shape, rows
  *     stress   the material law                                                   by law
+ *   ( fibres   what they add (hex8_fibre.h)                                       by fibre law )
+ *   ( relax    what a viscous material remembers (hex8_viscous.h)                 by viscosity )
  *     force    modal forces, rounding, transform back, scatter to nodes           by shape, rows
  *
  * The order of the statements follows the life of the values: 21 modal displacements and 9
@@ -14,75 +16,18 @@
 
 #include "base/simd.h"
 #include "law/lanes.h"
-
-#define UNROLL3 _Pragma("GCC unroll 3")
-#define UNROLL4 _Pragma("GCC unroll 4")
-#define UNROLL6 _Pragma("GCC unroll 6")
-#define UNROLL8 _Pragma("GCC unroll 8")
-#define UNROLL9 _Pragma("GCC unroll 9")
+#include "mechanics/hex8_gather.h"
+#include "mechanics/node_update.h"
+#ifndef LAR_KERNEL_ELASTIC
+#include "mechanics/hex8_fibre.h"
+#include "mechanics/hex8_viscous.h"
+#endif
 
 /* What waits between the phases. */
 typedef struct lane_record {
     lar_lane F[9];                      /* deformation gradient, then V times the stress P */
     lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
 } lane_record;
-
-/* The local nodes at xi = -1 and xi = +1 of the four edges along xi: (eta, zeta) = --, +-, -+,
- * ++. */
-static const int left_node[4] = {0, 3, 4, 7}, right_node[4] = {1, 2, 5, 6};
-
-LAR_INLINE void gather_pair(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                            const double *u, lar_lane left[3], lar_lane right[3]) {
-    const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
-    if (rows == LAR_ROWS_NONE) {
-        lar_lane_gather(u, a, left);
-        lar_lane_gather(u, b, right);
-    } else {
-        lar_lane_gather_row(u, a, b, rows == LAR_ROWS_FOUR, left, right);
-    }
-}
-
-LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                            const double *u, lar_lane sum[3], lar_lane difference[3]) {
-    lar_lane left[3], right[3];
-    gather_pair(head, lane, rows, edge, u, left, right);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        sum[i] = right[i] + left[i];
-        difference[i] = right[i] - left[i];
-    }
-}
-
-/* Sums and differences along xi and eta of the four nodes with one sign of zeta:
- * index 0: ++, 1: +-, 2: -+, 3: -- (xi first). */
-LAR_INLINE void gather_layer(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                             const double *u, lar_lane layer[4][3]) {
-    lar_lane s0[3], d0[3], s1[3], d1[3];
-    gather_edge(head, lane, rows, edge, u, s0, d0);
-    gather_edge(head, lane, rows, edge + 1, u, s1, d1);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        layer[0][i] = s1[i] + s0[i];
-        layer[1][i] = s1[i] - s0[i];
-        layer[2][i] = d1[i] + d0[i];
-        layer[3][i] = d1[i] - d0[i];
-    }
-}
-
-/* Modal displacements: xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
-LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_rows rows,
-                             const double *u, lar_lane U[7][3]) {
-    lar_lane lower[4][3], upper[4][3];
-    gather_layer(head, lane, rows, 0, u, lower);
-    gather_layer(head, lane, rows, 2, u, upper);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        U[0][i] = upper[2][i] + lower[2][i];
-        U[1][i] = upper[1][i] + lower[1][i];
-        U[2][i] = upper[0][i] - lower[0][i];
-        U[3][i] = upper[1][i] - lower[1][i];
-        U[4][i] = upper[2][i] - lower[2][i];
-        U[5][i] = upper[3][i] + lower[3][i];
-        U[6][i] = upper[3][i] - lower[3][i];
-    }
-}
 
 /* ---- lean blocks --------------------------------------------------------------------------- */
 
@@ -109,9 +54,9 @@ LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_row
     UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int i = 0; i < 3; i++) {
         lar_lane term[2];
         for (int t = 0; t < 2; t++)
-            term[t] = volume_term(LAR_HEX8_VOLUME_TERM[m][t].factor,
-                                  X[LAR_HEX8_VOLUME_TERM[m][t].left],
-                                  X[LAR_HEX8_VOLUME_TERM[m][t].right], i);
+            term[t] =
+                volume_term(LAR_HEX8_VOLUME_TERM[m][t].factor, X[LAR_HEX8_VOLUME_TERM[m][t].left],
+                            X[LAR_HEX8_VOLUME_TERM[m][t].right], i);
         lar_lane_store(&whole->gradient[m][i][lane],
                        quotient(term[0] + term[1], volume, reciprocal));
     }
@@ -216,8 +161,8 @@ LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
  * corners' `limit` (may be NULL) *strained gets those to be looked at more closely. */
 LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_record *record,
                                  const lar_block_more *more, const lar_hex8_limits *limits,
-                                 lane_law law, lane_stiffened stiffened, const double *limit,
-                                 lane_strain *strain, unsigned *strained) {
+                                 lane_law law, lane_stiffened stiffened, double share,
+                                 const double *limit, lane_strain *strain, unsigned *strained) {
     lar_lane P[9], p[LAR_LAW_PARAMETERS];
     UNROLL3 for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) p[k] =
         lar_lane_load(&head->modulus[k][lane]);
@@ -227,8 +172,8 @@ LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_reco
     lar_lane J = lar_lane_cofactor(record->F, P), I1 = lar_lane_square_sum(record->F);
     if (limit) {
         *strain = (lane_strain){{J, I1, lar_lane_square_sum(P)}};
-        *strained = strained_lanes(strain) | stiffened(J, I1, strain->number[LAR_STRAIN_AREA], p,
-                                                       lar_lane_set(STRAINED_SHEAR));
+        *strained = strained_lanes(strain) |
+                    stiffened(J, I1, strain->number[LAR_STRAIN_AREA], p, lar_lane_set(share));
     }
     lar_lane stress = law(record->F, P, J, I1, p);
     UNROLL9 for (int k = 0; k < 9; k++) record->F[k] = P[k];
@@ -341,7 +286,8 @@ typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const d
                              lane_record *record);
 typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more, size_t count,
                                  size_t size, lane_record *record, const lar_hex8_limits *limits,
-                                 const double *limit, lane_strain *strain, unsigned *strained);
+                                 double share, const double *limit, lane_strain *strain,
+                                 unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
                             int64_t *force);
 
@@ -372,16 +318,16 @@ static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
 
 /* Returns a bit per element of the chunk that is beyond the limits. */
 #define DEFINE_LAW(identifier)                                                                     \
-    static unsigned stress_##identifier(const char *blocks, const lar_block_more *more,            \
-                                        size_t count, size_t size, lane_record *record,            \
-                                        const lar_hex8_limits *limits, const double *limit,        \
-                                        lane_strain *strain, unsigned *strained) {                 \
+    static unsigned stress_##identifier(                                                           \
+        const char *blocks, const lar_block_more *more, size_t count, size_t size,                 \
+        lane_record *record, const lar_hex8_limits *limits, double share, const double *limit,     \
+        lane_strain *strain, unsigned *strained) {                                                 \
         unsigned beyond = 0, part = 0;                                                             \
         int shift = 0;                                                                             \
         FOR_PARTS(blocks, count, size) {                                                           \
             beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
                                    more ? more + shift / LAR_BLOCK : NULL, limits,                 \
-                                   lar_##identifier##_stress, lar_##identifier##_stiffened,        \
+                                   lar_##identifier##_stress, lar_##identifier##_stiffened, share, \
                                    limit ? limit + shift : NULL, strain, &part)                    \
                       << shift;                                                                    \
             if (limit) *strained |= part << shift;                                                 \
@@ -417,8 +363,75 @@ static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned straine
     }
 }
 
-static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
-                       const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
+#ifdef LAR_KERNEL_ELASTIC
+typedef struct lar_viscous_step lar_viscous_step;
+enum { SOFTER = 1 };
+#define softer_of(run)                                                      ((void)(run), SOFTER)
+#define relax(run, step, b, count, limits, gradient, record)                0U
+#define stretch(run, b, count, limits, limit, gradient, record, strain, of) 0U
+#define contract(run, b, count, limits, gradient, record)                   0U
+#else
+#define softer_of(run) (run)->softer
+
+/* Phase 2 goes on, for viscous materials: `gradient` is what the record held before the law. */
+static unsigned relax(const lar_block_run *run, const lar_viscous_step *step, int32_t b,
+                      size_t count, const lar_hex8_limits *limits, lar_lane gradient[][9],
+                      lane_record *record) {
+    size_t size = (size_t)lar_history_values(run->terms) * LAR_BLOCK, part = 0;
+    unsigned beyond = 0;
+    for (size_t i = (size_t)b; i < (size_t)b + count; i++)
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++)
+            beyond |= viscous_lanes(&run->relaxing[i], lane, run->terms, run->isochoric, step,
+                                    step->history + i * size, gradient[part], limits->stress_square,
+                                    record[part].F)
+                      << part * LAR_LANES;
+    return beyond;
+}
+
+/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. */
+static unsigned stretch(const lar_block_run *run, int32_t b, size_t count,
+                        const lar_hex8_limits *limits, bool watches, lar_lane gradient[][9],
+                        lane_record *record, lane_strain *strain, unsigned *strained) {
+    unsigned beyond = 0;
+    size_t part = 0;
+    if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
+    for (size_t i = (size_t)b; i < (size_t)b + count; i++)
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
+            lar_lane length;
+            unsigned stiffer = 0;
+            beyond |= fibre_lanes(&run->fibres[i], lane, run->fibrous, gradient[part],
+                                  limits->stress_square, record[part].F, &length,
+                                  watches ? &stiffer : NULL)
+                      << part * LAR_LANES;
+            if (!watches) continue;
+            strain[part].number[LAR_STRAIN_FIBRE] = length;
+            *strained |= stiffer << part * LAR_LANES;
+        }
+    return beyond;
+}
+
+/* What is active, behind all that relaxes. */
+static unsigned contract(const lar_block_run *run, int32_t b, size_t count,
+                         const lar_hex8_limits *limits, lar_lane gradient[][9],
+                         lane_record *record) {
+    unsigned beyond = 0;
+    size_t part = 0;
+    for (size_t i = (size_t)b; i < (size_t)b + count; i++)
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++)
+            beyond |= active_lanes(&run->fibres[i], lane, gradient[part], limits->stress_square,
+                                   record[part].F)
+                      << part * LAR_LANES;
+    return beyond;
+}
+#endif
+
+/* `fibrous` is a constant 0 and `step` NULL for what is elastic alone, and then none of this is
+ * there. */
+LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar_viscous_step *step,
+                                const double *u, int64_t *force, const lar_hex8_limits *limits,
+                                lar_hex8_monitor *monitor) {
+    lar_lane gradient[CHUNK * PARTS][9];
+    double share = step ? STRAINED_SHEAR * softer_of(run) : STRAINED_SHEAR;
     lane_record record[CHUNK * PARTS];
     lane_strain strains[CHUNK * PARTS];
     strain_phase strain = strain_table[run->shape][run->rows];
@@ -439,8 +452,14 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
         unsigned strained = 0;
         const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
         const lar_block_more *more = run->more ? run->more + b : NULL;
+        for (size_t i = 0; (step || fibrous) && i < count * PARTS; i++)
+            memcpy(gradient[i], record[i].F, sizeof gradient[i]);
         unsigned beyond =
-            stress(blocks, more, count, size, record, limits, limit, strains, &strained);
+            stress(blocks, more, count, size, record, limits, share, limit, strains, &strained);
+        if (fibrous)
+            beyond |= stretch(run, b, count, limits, limit, gradient, record, strains, &strained);
+        if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
+        if (fibrous) beyond |= contract(run, b, count, limits, gradient, record);
         forces(blocks, count, run->turn, record, force);
         if (__builtin_expect(strained != 0, 0)) list_strained(monitor, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
@@ -450,6 +469,19 @@ static int64_t recover(const lar_block_run *run, const double *u, int64_t *force
     }
     return first;
 }
+
+static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
+                       const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
+    return recover_form(run, 0, NULL, u, force, limits, monitor);
+}
+
+#ifndef LAR_KERNEL_ELASTIC
+static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *step, const double *u,
+                            int64_t *force, const lar_hex8_limits *limits,
+                            lar_hex8_monitor *monitor) {
+    return recover_form(run, run->fibrous, step, u, force, limits, monitor);
+}
+#endif
 
 /* ---- corners ------------------------------------------------------------------------------- */
 
@@ -504,55 +536,6 @@ static unsigned corners(const lar_block_run *run, int32_t b, const double *rest,
     return below[0] | below[1] << LAR_BLOCK;
 }
 
-/* ---- nodes --------------------------------------------------------------------------------- */
-
-/* Nodes are runs of four values (the last always 0), so every value is treated alike. */
-LAR_INLINE bool update_values(const lar_leapfrog *leapfrog, int64_t first, int64_t end, double *u,
-                              double *v, int64_t *force, const double *push, bool divided,
-                              const double *mass, double *damped, double *fastest) {
-    const lar_lane keep = lar_lane_set(leapfrog->keep), dt = lar_lane_set(leapfrog->dt);
-    const lar_lane speed = lar_lane_set(leapfrog->speed), factor = lar_lane_set(leapfrog->push);
-    lar_lane sum = lar_lane_set(0), max = lar_lane_set(0);
-    unsigned beyond = 0;
-    for (int64_t k = 4 * first; k < 4 * end; k += LAR_LANES) {
-        lar_lane f = lar_ilane_to_lane(lar_ilane_load(force + k));
-        lar_lane before = lar_lane_load(v + k);
-        lar_lane after = lar_lane_fma(keep, before, lar_lane_repeat4(leapfrog->drift, k));
-        lar_lane pushed = lar_lane_per_node(push, k);
-        after = lar_lane_fnma(f, divided ? factor * pushed : pushed, after);
-        lar_lane_store(v + k, after);
-        lar_lane_store(u + k, lar_lane_fma(dt, after, lar_lane_load(u + k)));
-        lar_ilane_store(force + k, (lar_ilane){0});
-        lar_lane size = lar_lane_abs(after);
-        beyond |= lar_lane_not_greater(speed, size);
-        max = lar_lane_max(max, size);
-        if (mass) {
-            lar_lane twice = before + after;
-            sum = lar_lane_fma(lar_lane_per_node(mass, k) * twice, twice, sum);
-        }
-    }
-    double values[LAR_LANES] __attribute__((aligned(64)));
-    if (mass) {
-        lar_lane_store(values, sum);
-        for (int i = 0; i < LAR_LANES; i++) *damped += values[i];
-    }
-    lar_lane_store(values, max);
-    for (int i = 0; i < LAR_LANES; i++)
-        if (values[i] > *fastest) *fastest = values[i];
-    return beyond == 0;
-}
-
-static bool update(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u, double *v,
-                   int64_t *force, const double *push, const double *mass, double *damped,
-                   double *fastest) {
-    /* Four loops: what is not wanted costs nothing. */
-#define VALUES(divided, mass)                                                                      \
-    update_values(leapfrog, first, end, u, v, force, push, divided, mass, damped, fastest)
-    if (leapfrog->push != 1) return mass ? VALUES(true, mass) : VALUES(true, NULL);
-    return mass ? VALUES(false, mass) : VALUES(false, NULL);
-#undef VALUES
-}
-
 #if LAR_SIMD == LAR_SIMD_AVX512
 #define LAR_KERNELS_NAME   lar_kernels_avx512
 #define LAR_KERNELS_TEXT   "avx512"
@@ -584,6 +567,9 @@ const lar_kernels LAR_KERNELS_NAME = {
     .name = LAR_KERNELS_TEXT,
     .available = available,
     .recover = recover,
+#ifndef LAR_KERNEL_ELASTIC
+    .recover_more = recover_more,
+#endif
     .expand = expand,
     .corners = corners,
     .update = update,

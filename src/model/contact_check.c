@@ -112,9 +112,23 @@ static bool plane_problem(const lar_model *model, const lar_contact *contact,
     return true;
 }
 
+/* Rubber on dry glass has 3; more is a mistake in units. */
+static const double FRICTION_MAX = 5;
+
+const char *lar_friction_problem(double friction) {
+    return friction >= 0 && friction <= FRICTION_MAX ? NULL : "the friction must be from 0 to 5";
+}
+
 bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
                          char problem[LAR_PROBLEM_SIZE]) {
     if (lar_face_list_problem(model, contact->face, contact->face_count, problem)) return true;
+    const char *wrong = lar_friction_problem(contact->friction);
+    if (!wrong && contact->friction > 0 && contact->kind != LAR_CONTACT_PLANE)
+        wrong = "there is friction on planes and tools only; contact of bodies has none";
+    if (wrong) {
+        snprintf(problem, LAR_PROBLEM_SIZE, "%s", wrong);
+        return true;
+    }
     if (contact->kind == LAR_CONTACT_SELF) return false;
     if (contact->kind == LAR_CONTACT_BETWEEN) return between_problem(model, contact, problem);
     return plane_problem(model, contact, problem);
@@ -156,7 +170,7 @@ const char *lar_tool_size_problem(const lar_tool *tool) {
         return "its opening must be between 0 and 1";
     if (!lar_pose_is_normal(&tool->rest))
         return "its orientation must be a quaternion of length one";
-    return NULL;
+    return lar_friction_problem(tool->friction);
 }
 
 bool lar_tool_problem(const lar_model *model, const lar_tool *tool,

@@ -35,4 +35,7 @@ double lar_overlap_rounding(const lar_mesh *mesh);
  */
 double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face);
 
+/* What is wrong with Coulomb's coefficient of a plane or a tool; NULL: nothing. */
+const char *lar_friction_problem(double friction);
+
 #endif

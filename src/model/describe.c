@@ -1,7 +1,43 @@
 /* What a model tells about its parts through the public header. */
 #include <string.h>
 
-#include "model/model.h"
+#include "model/settings.h"
+
+int32_t lar_model_node_count(const lar_model *model) {
+    return model ? model->mesh.node_count : 0;
+}
+
+int32_t lar_model_element_count(const lar_model *model) {
+    return model ? model->mesh.element_count : 0;
+}
+
+int32_t lar_model_material_count(const lar_model *model) {
+    return model ? model->material_count : 0;
+}
+
+const char *lar_model_source(const lar_model *model) {
+    if (!model) return "";
+    return model->source && *model->source ? model->source : "model";
+}
+
+int lar_model_view(const lar_model *model, double from[3]) {
+    static const double none[3];
+    const double *view = model ? model->view : none;
+    if (from) memcpy(from, view, sizeof none);
+    return view[0] != 0 || view[1] != 0 || view[2] != 0;
+}
+
+int lar_model_gravity(const lar_model *model, double time, double gravity[3]) {
+    double g[3] = {0};
+    if (model) lar_gravity_at(model, NULL, time, g);
+    if (gravity) memcpy(gravity, g, sizeof g);
+    return model && lar_gravity_varies(model, NULL);
+}
+
+int64_t lar_model_node_id(const lar_model *model, int32_t node) {
+    bool known = model && node >= 0 && node < model->mesh.node_count;
+    return known ? model->mesh.node_id[node] : -1;
+}
 
 int64_t lar_model_element_id(const lar_model *model, int32_t element) {
     bool known = model && element >= 0 && element < model->mesh.element_count;
@@ -29,7 +65,11 @@ lar_status lar_model_material(const lar_model *model, int32_t index, lar_materia
                                 .law = lar_law_name[material->law],
                                 .density = material->density,
                                 .shear_modulus = lar_material_shear(material),
-                                .bulk_modulus = lar_material_bulk(material)};
+                                .bulk_modulus = lar_material_bulk(material),
+                                .viscous_terms = material->viscosity.terms,
+                                .instant_shear_modulus = lar_material_instant_shear(material),
+                                .fibres = lar_fibre_law_name[material->fibre.law],
+                                .fibre_modulus = lar_fibre_modulus(&material->fibre)};
     for (int32_t e = 0; e < model->mesh.element_count; e++)
         info->elements += model->element_material[e] == index;
     return LAR_OK;
@@ -110,7 +150,8 @@ lar_status lar_model_contact(const lar_model *model, int32_t index, lar_model_co
     const lar_contact *contact = &model->contact[index];
     *info = (lar_model_contact_info){.kind = kind[contact->kind],
                                      .faces = contact->face_count,
-                                     .against = contact->against_count};
+                                     .against = contact->against_count,
+                                     .friction = contact->friction};
     memcpy(info->through, contact->through, sizeof info->through);
     memcpy(info->normal, contact->normal, sizeof info->normal);
     return LAR_OK;

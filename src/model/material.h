@@ -3,18 +3,29 @@
 #define LAR_MODEL_MATERIAL_H
 
 #include "base/error.h"
+#include "law/fibre.h"
 #include "law/law.h"
+#include "law/viscosity.h"
 
 typedef struct lar_material {
     char *name; /* for messages; may be NULL */
     lar_law law;
     double density;                       /* kg/m^3 */
-    double parameter[LAR_LAW_PARAMETERS]; /* pascal or numbers, as the law's row has them; unused ones 0 */
+    double parameter[LAR_LAW_PARAMETERS]; /* pascal or numbers, as the law's row has them; unused
+                                             ones 0 */
+    lar_viscosity viscosity;
+    lar_fibre fibre;
 } lar_material;
 
-/* Small-strain moduli of the material at rest [Pa]. */
+/* What scenes call the laws of fibres; "" for none. */
+extern const char *const lar_fibre_law_name[LAR_FIBRE_LAWS];
+
+/* Small-strain moduli of the material at rest [Pa], of a viscous one in the end. */
 double lar_material_shear(const lar_material *material);
 double lar_material_bulk(const lar_material *material);
+/* The same when it is strained at once. */
+double lar_material_instant_shear(const lar_material *material);
+double lar_material_instant_bulk(const lar_material *material);
 
 /* Refuses: density not positive and finite, shear or bulk modulus not positive, Poisson ratio
  * 0.5 or more, not finite. `where` begins the message (file:line:column). */

@@ -144,6 +144,38 @@ static lar_status check_materials(const lar_model *model, lar_error *error) {
     return LAR_OK;
 }
 
+/* To length one, by operations that have the same bits everywhere; what has been brought there
+ * keeps its bits. False where there is no direction. */
+static bool make_unit(double a[3]) {
+    static const double ROUNDED = 1e-15;
+    double most = fmax(fmax(fabs(a[0]), fabs(a[1])), fabs(a[2]));
+    if (!(most > 0) || !finite3(a)) return false;
+    if (fabs(a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - 1) < ROUNDED) return true;
+    for (int i = 0; i < 3; i++) a[i] /= most;
+    double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    for (int i = 0; i < 3; i++) a[i] /= length;
+    return true;
+}
+
+/* A material with fibres needs directions in all of its elements. */
+static lar_status check_fibres(lar_model *model, lar_error *error) {
+    lar_mesh *mesh = &model->mesh;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        const lar_fibre *fibre = &lar_model_material_of(model, e)->fibre;
+        if (!lar_fibre_directed(fibre)) continue;
+        double *a = mesh->fibre ? mesh->fibre[e] : NULL;
+        if (a && make_unit(a)) continue;
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s:%d: element %lld has fibres and %s; give it a direction, in the mesh "
+                        "as a cell array \"fibre\" of three components, or by a rule",
+                        lar_model_source(model), fibre->line, (long long)mesh->element_id[e],
+                        !a           ? "nothing says along what"
+                        : finite3(a) ? "their direction is 0, 0, 0"
+                                     : "their direction is not finite");
+    }
+    return LAR_OK;
+}
+
 static lar_status check_curves(const lar_model *model, lar_error *error) {
     for (int i = 0; i < model->curve_count; i++) {
         const lar_curve *curve = &model->curve[i];
@@ -361,6 +393,7 @@ lar_status lar_model_check(lar_model *model, lar_error *error) {
                         "%s: the model has no elements; give it a mesh of hexahedra",
                         lar_model_source(model));
     lar_status status = check_materials(model, error);
+    if (!status) status = check_fibres(model, error);
     if (!status) status = check_numbers(model, error);
     if (!status) status = check_curves(model, error);
     if (!status) status = check_supports(model, error);

@@ -65,6 +65,7 @@ typedef struct lar_contact {
     int32_t face_count, against_count;
     int32_t *face, *against;
     double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
+    double friction;              /* of a plane: Coulomb's coefficient */
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
@@ -76,6 +77,7 @@ typedef struct lar_tool {
     lar_tool_shape shape;
     double radius, length; /* [m] */
     double spread;         /* [rad] between open jaws */
+    double friction;       /* Coulomb's coefficient */
     lar_tool_pose rest;
 } lar_tool;
 
@@ -86,7 +88,8 @@ static inline lar_tool_info lar_tool_inspect(const lar_tool *tool) {
                            .radius = tool->radius,
                            .length = tool->length,
                            .spread = tool->spread,
-                           .rest = tool->rest};
+                           .rest = tool->rest,
+                           .friction = tool->friction};
 }
 
 /* One line of probes.csv: the mean displacement of some nodes, or the sum of the reactions of
@@ -158,9 +161,24 @@ void *lar_model_append(void **array, int *count, size_t size);
 #define LAR_MODEL_APPEND(model, name)                                                              \
     lar_model_append((void **)&(model)->name, &(model)->name##_count, sizeof *(model)->name)
 
-/* How messages name the model: its file, or "model". */
-static inline const char *lar_model_source(const lar_model *model) {
-    return model->source && *model->source ? model->source : "model";
+/* The first material that is viscous; NULL: none is. */
+static inline const lar_material *lar_model_viscous(const lar_model *model) {
+    for (int i = 0; i < model->material_count; i++)
+        if (model->material[i].viscosity.terms > 0) return &model->material[i];
+    return NULL;
+}
+
+/* The first material with fibres, or active ones; NULL: there are none. */
+static inline const lar_material *lar_model_fibrous(const lar_model *model) {
+    for (int i = 0; i < model->material_count; i++)
+        if (lar_fibre_here(&model->material[i].fibre)) return &model->material[i];
+    return NULL;
+}
+
+/* The unit vector along the fibres of element e; zero where it has none. */
+static inline const double *lar_model_fibre(const lar_model *model, lar_gid e) {
+    static const double none[3] = {0};
+    return model->mesh.fibre ? model->mesh.fibre[e] : none;
 }
 
 /* The material of element e. */

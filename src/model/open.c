@@ -3,6 +3,7 @@
 #include <strings.h>
 
 #include "model/format/mesh_io.h"
+#include "model/mesh/arrays.h"
 #include "model/scene/scene.h"
 
 /* ---- scenes from files -------------------------------------------------------------------- */
@@ -26,8 +27,6 @@ lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error)
 static lar_status fill_bare(lar_model *model, const char *path, lar_error *error) {
     const double density = 1050.0, shear = 4.0e3, bulk = 4.0e5;
     const char *name = strrchr(path, '/');
-    lar_status status = lar_mesh_read(path, 1.0, &model->mesh, error);
-    if (status) return status;
     model->title = lar_strdup(name ? name + 1 : path);
     model->source = lar_strdup(path);
     model->element_material = lar_calloc((size_t)model->mesh.element_count, sizeof(int32_t));
@@ -40,15 +39,50 @@ static lar_status fill_bare(lar_model *model, const char *path, lar_error *error
     return lar_model_check(model, error);
 }
 
-static lar_status read_bare(const char *path, lar_model **model, lar_error *error) {
+/* `given`: instead of the file. */
+static lar_status make_bare(const char *path, const lar_mesh_arrays *given, lar_model **model,
+                            lar_error *error) {
     lar_model *bare = lar_model_create();
     if (!bare) return lar_fail_memory(error, sizeof *bare, path);
-    lar_status status = fill_bare(bare, path, error);
+    lar_status status = given ? lar_mesh_from_arrays(given, 1, &bare->mesh, error)
+                              : lar_mesh_read(path, 1, &bare->mesh, error);
+    if (!status) status = fill_bare(bare, path, error);
     if (status)
         lar_model_destroy(bare);
     else
         *model = bare;
     return status;
+}
+
+static lar_status read_bare(const char *path, lar_model **model, lar_error *error) {
+    return make_bare(path, NULL, model, error);
+}
+
+/* ---- from memory -------------------------------------------------------------------------- */
+
+/* What messages call it; afterwards it has no file (lar_model_source). */
+static const char NOWHERE[] = "scene";
+
+lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene, lar_model **model,
+                                 lar_error *error) {
+    lar_model *made = NULL;
+    if (!mesh || !model)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_model_from_arrays needs a mesh and a place for the model; neither may "
+                        "be NULL");
+    /* The parser only reads it; lar_bytes are what others own. */
+    lar_bytes text = {0};
+    if (scene && !(text.data = (unsigned char *)lar_strdup(scene)))
+        return lar_fail_memory(error, strlen(scene) + 1, "the scene");
+    text.size = scene ? strlen(scene) : 0;
+    lar_status status = scene ? lar_scene_parse_given(NOWHERE, &text, mesh, &made, error)
+                              : make_bare(NOWHERE, mesh, &made, error);
+    lar_bytes_free(&text);
+    if (status) return status;
+    free(made->source);
+    made->source = NULL;
+    *model = made;
+    return LAR_OK;
 }
 
 /* Mesh programs write .inp without anything else, and name materials that stand nowhere. */

@@ -22,7 +22,7 @@ int lar_settings_good(const lar_settings *settings, double time_step) {
                g[0] * g[0] + g[1] * g[1] + g[2] * g[2] <= LAR_GRAVITY_MAX * LAR_GRAVITY_MAX &&
                lar_damping_fits(settings->damping, time_step);
     for (int i = 0; i < LAR_FACTORS_MAX; i++)
-        good =
-            good && settings->factor[i] >= LAR_FACTOR_MIN && settings->factor[i] <= LAR_FACTOR_MAX;
+        good = good && settings->factor[i] >= LAR_STIFFNESS_MIN &&
+               settings->factor[i] <= LAR_STIFFNESS_MAX;
     return good;
 }

@@ -18,7 +18,6 @@
 /* The last factor is that of all further materials, too. */
 enum { LAR_FACTORS_MAX = 64 };
 
-static const double LAR_FACTOR_MIN = 0.1, LAR_FACTOR_MAX = 4;
 static const double LAR_GRAVITY_MAX = 1000; /* [m/s^2] */
 
 typedef struct lar_settings {

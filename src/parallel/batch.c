@@ -17,14 +17,21 @@ static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_
     for (int i = 0; i < 3; i++) sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)part[i]);
 }
 
+/* Sums of a worker: forces, and with friction of tools what these press (contact/tool_friction.h).
+ * They travel in the same packets, one layer behind the other. */
+static inline int64_t *sums_of(const lar_worker *worker, int32_t layer) {
+    return layer == 0 ? worker->state.force : worker->interactions.tool_contact.press;
+}
+
 /* What all threads of the processor together have at some values, one vector after the other. */
-static void collect(const lar_processor *p, const int32_t *value, int32_t count,
+static void collect(const lar_processor *p, int32_t layer, const int32_t *value, int32_t count,
                     int64_t *restrict vector) {
-    const int64_t *force = p->worker[0].state.force;
+    const int64_t *force = sums_of(&p->worker[0], layer);
     for (int32_t i = 0; i < count; i++) memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
-    for (int32_t t = 1; t < p->thread_count; t++)
-        for (int32_t i = 0; i < count; i++)
-            add_vector(p, vector + 3 * i, p->worker[t].state.force + value[i]);
+    for (int32_t t = 1; t < p->thread_count; t++) {
+        force = sums_of(&p->worker[t], layer);
+        for (int32_t i = 0; i < count; i++) add_vector(p, vector + 3 * i, force + value[i]);
+    }
 }
 
 /* Adds vectors, one after the other, at some values. */
@@ -46,9 +53,12 @@ static void pack_reduction(const lar_worker *worker, int32_t b) {
     for (int32_t to = 0; to < p->thread_count; to++) {
         const lar_reduction_buffer *reduction = &worker->reduction[to];
         if (reduction->batch != b) continue;
-        for (int32_t i = 0; i < reduction->count; i++)
-            memcpy(reduction->vector + 3 * i, worker->state.force + reduction->value[i],
-                   LAR_VECTOR_BYTES);
+        for (int32_t layer = 0; layer < p->layers; layer++) {
+            const int64_t *force = sums_of(worker, layer);
+            int64_t *vector = reduction->vector + 3 * (size_t)layer * (size_t)reduction->count;
+            for (int32_t i = 0; i < reduction->count; i++)
+                memcpy(vector + 3 * i, force + reduction->value[i], LAR_VECTOR_BYTES);
+        }
     }
 }
 
@@ -57,20 +67,24 @@ static void clear_reduction(const lar_worker *worker) {
     const lar_processor *p = worker->processor;
     for (int32_t to = 0; to < p->thread_count; to++) {
         const lar_reduction_buffer *reduction = &worker->reduction[to];
-        for (int32_t i = 0; i < reduction->count; i++)
-            memset(worker->state.force + reduction->value[i], 0, LAR_VECTOR_BYTES);
+        for (int32_t layer = 0; layer < p->layers; layer++) {
+            int64_t *force = sums_of(worker, layer);
+            for (int32_t i = 0; i < reduction->count; i++)
+                memset(force + reduction->value[i], 0, LAR_VECTOR_BYTES);
+        }
     }
 }
 
 /* Takes the sums of the other threads over into the one that moves the nodes. */
-static void join_sums(lar_worker *worker) {
+static void join_layer(lar_worker *worker, int32_t layer) {
     const lar_processor *p = worker->processor;
-    int64_t *force = worker->state.force;
+    int64_t *force = sums_of(worker, layer);
     for (int32_t t = 0; t < p->thread_count; t++) {
         if (t == worker->thread) continue;
         const lar_reduction_buffer *reduction = &p->worker[t].reduction[worker->thread];
-        spread(p, reduction->value, reduction->count, reduction->vector, force);
-        int64_t *other = p->worker[t].state.force;
+        spread(p, reduction->value, reduction->count,
+               reduction->vector + 3 * (size_t)layer * (size_t)reduction->count, force);
+        int64_t *other = sums_of(&p->worker[t], layer);
         for (int32_t i = 0; i < worker->shared_count; i++) {
             int32_t value = worker->shared_node[i];
             add_vector(p, force + value, other + value);
@@ -79,7 +93,26 @@ static void join_sums(lar_worker *worker) {
     }
 }
 
+static void join_sums(lar_worker *worker) {
+    for (int32_t layer = 0; layer < worker->processor->layers; layer++) join_layer(worker, layer);
+}
+
 /* ---- packets ------------------------------------------------------------------------------- */
+
+/* Returns where the next layer is. */
+static const int64_t *receive_layer(lar_worker *worker, int32_t layer,
+                                    const lar_packet_plan *packet, const int64_t *vector) {
+    lar_processor *p = worker->processor;
+    const int32_t *value = p->value + packet->first;
+    int64_t *force = sums_of(worker, layer);
+    spread(p, value, packet->added, vector, force);
+    for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
+        for (int32_t t = 0; t < p->thread_count; t++)
+            memset(sums_of(&p->worker[t], layer) + value[i], 0, LAR_VECTOR_BYTES);
+        memcpy(force + value[i], vector + 3 * i, LAR_VECTOR_BYTES);
+    }
+    return vector + 3 * (packet->added + packet->whole);
+}
 
 static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uint64_t round,
                           lar_error *error) {
@@ -93,14 +126,8 @@ static lar_status receive(lar_worker *worker, const lar_packet_plan *packet, uin
     if (stop) lar_processor_ask_stop(p, stop);
     const int64_t *vector =
         (const int64_t *)(const void *)((const char *)payload + LAR_SIGNAL_BYTES);
-    const int32_t *value = p->value + packet->first;
-    int64_t *force = worker->state.force;
-    spread(p, value, packet->added, vector, force);
-    for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
-        for (int32_t t = 0; t < p->thread_count; t++)
-            memset(p->worker[t].state.force + value[i], 0, LAR_VECTOR_BYTES);
-        memcpy(force + value[i], vector + 3 * i, LAR_VECTOR_BYTES);
-    }
+    for (int32_t layer = 0; layer < p->layers; layer++)
+        vector = receive_layer(worker, layer, packet, vector);
     return LAR_OK;
 }
 
@@ -113,7 +140,9 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
     uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
     memcpy(bytes, &stop, sizeof stop);
     int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
-    collect(p, p->value + packet->first, packet->added + packet->whole, vector);
+    const int32_t count = packet->added + packet->whole;
+    for (int32_t layer = 0; layer < p->layers; layer++)
+        collect(p, layer, p->value + packet->first, count, vector + 3 * layer * count);
     return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, round, error);
 }
 

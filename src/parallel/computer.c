@@ -69,7 +69,8 @@ static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error 
     if (options->comm) comm.backend = options->comm;
     comm.self = p->self;
     comm.count = computer->division.grid.count;
-    comm.receive_bytes = computer->shift[p->self] + (size_t)schedule->receive_bytes +
+    comm.receive_bytes = computer->shift[p->self] +
+                         (size_t)p->layers * (size_t)schedule->receive_bytes +
                          lar_contact_bytes(&computer->contact.map);
     comm.identity = computer->identity;
     comm.team = computer->team;
@@ -464,6 +465,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                 tools->grasp_count <= LAR_GRASPS_MAX && lar_tools_bytes(tools) == bytes &&
                 grasps_fit(computer, tools) &&
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
+                lar_forces_good(&tools->forces, computer->whole->model,
+                                lar_domain_force_max(computer->whole)) &&
                 lar_spares_good(tools->spare, computer->list->spares);
     if (!fits) return refuse_order(error);
     lar_spares_take(tools, computer->list);
@@ -475,6 +478,8 @@ static lar_status execute(lar_computer *computer, const lar_order *order, const 
     const lar_processor *p = &computer->processor[0];
     lar_control *control = computer->control;
     lar_answer answer = {0};
+    if (order->kind == LAR_ORDER_HISTORY)
+        return lar_computer_answer_history(computer, order->argument, error);
     if (order->kind == LAR_ORDER_GATHER)
         return lar_computer_answer_nodes(computer, order->argument, error);
     lar_status status = LAR_OK;

@@ -132,6 +132,7 @@ lar_status lar_contact_execute(lar_computer *computer, const void *payload, size
 lar_status lar_computer_refuse(lar_error *error);
 /* Another process: answers a round of gathering; takes a scattered state. */
 lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar_error *error);
+lar_status lar_computer_answer_history(lar_computer *computer, uint64_t round, lar_error *error);
 lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
                                    size_t bytes, lar_error *error);
 

@@ -18,10 +18,11 @@ typedef struct list_head {
 /* ---- opening --------------------------------------------------------------------------------- */
 
 static void list_elements(const lar_computer *computer, int32_t *elements, size_t *shift) {
+    size_t layers = (size_t)lar_processor_layers(computer->interactions, computer->checking);
     for (int32_t p = 0; p < computer->division.grid.count; p++) {
         const lar_schedule *schedule = &computer->division.schedules.of[p];
         for (int32_t i = 0; i < schedule->element_count; i++) elements[schedule->element[i]] = p;
-        shift[p] = computer->shift[p] + (size_t)schedule->receive_bytes;
+        shift[p] = computer->shift[p] + layers * (size_t)schedule->receive_bytes;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "parallel/computer.h"
+#include "step/viscous_history.h"
 
 /* What travels for a node: the rows of the state's table. */
 typedef double node_values[LAR_NODE_VALUES];
@@ -49,6 +50,7 @@ static void gather_here(const lar_computer *computer) {
             lar_state_read(own, n, value);
             lar_state_write(state, whole->layout.local[node], value);
         }
+        lar_viscous_copy(&p->domain, own, whole, state);
         add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
     }
     for (int32_t i = 0; i < computer->hosted; i++) check_copies(computer, &computer->processor[i]);
@@ -66,33 +68,83 @@ static lar_gid take_answer(const lar_computer *computer, int32_t p, lar_gid node
     return node;
 }
 
-static lar_status gather_others(lar_computer *computer, lar_error *error) {
-    int32_t count = computer->division.grid.count;
+/* What processor p answers in a round, from *from on; *from: where to go on. Whether there may be
+ * more. */
+typedef bool take_part(lar_computer *computer, int32_t p, bool first, const lar_answer *answer,
+                       const void *value, lar_gid *from);
+
+static bool take_nodes(lar_computer *computer, int32_t p, bool first, const lar_answer *answer,
+                       const void *value, lar_gid *from) {
     lar_state *state = computer->state;
+    int64_t nodes = (int64_t)(answer->bytes / sizeof(node_values));
+    *from = take_answer(computer, p, *from, value, nodes);
+    if (first) {
+        state->external += answer->external;
+        state->damped += answer->damped;
+        state->contact += answer->contact;
+    }
+    return nodes == LAR_ANSWER_NODES;
+}
+
+/* Asks all others again and again, until nobody has more. */
+static lar_status gather_rounds(lar_computer *computer, int32_t kind, take_part *take,
+                                lar_error *error) {
+    int32_t count = computer->division.grid.count;
     lar_gid *from = lar_calloc((size_t)count, sizeof *from);
     if (!from) return lar_fail_memory(error, 4 * (size_t)count, "the state");
     lar_status status = LAR_OK;
     bool more = true;
     for (uint64_t round = 0; more && !status; round++) {
-        const lar_order order = {LAR_ORDER_GATHER, round};
+        const lar_order order = {kind, round};
         more = false;
         status = lar_control_order(computer->control, &order, NULL, 0, error);
         for (int32_t p = 1; p < count && !status; p++) {
             const lar_answer *answer;
             const void *value;
             status = lar_control_hear(computer->control, p, &answer, &value, error);
-            if (status) break;
-            int64_t nodes = (int64_t)(answer->bytes / sizeof(node_values));
-            from[p] = take_answer(computer, p, from[p], value, nodes);
-            more = more || nodes == LAR_ANSWER_NODES;
-            if (round > 0) continue;
-            state->external += answer->external;
-            state->damped += answer->damped;
-            state->contact += answer->contact;
+            if (!status && take(computer, p, round == 0, answer, value, &from[p])) more = true;
         }
     }
     free(from);
     return status;
+}
+
+/* ---- what viscous elements of other processes remember --------------------------------------- */
+
+/* The elements from *e on that processor p recovers. */
+static bool take_history(lar_computer *computer, int32_t p, bool first, const lar_answer *answer,
+                         const void *history, lar_gid *e) {
+    const lar_domain *whole = computer->whole;
+    const double *value = history, *end = value + answer->bytes / sizeof *value;
+    (void)first;
+    for (; *e < whole->model->mesh.element_count && value < end; (*e)++) {
+        if (computer->division.recoverer[*e] != p || !lar_viscous_here(whole, *e)) continue;
+        lar_viscous_write(whole, computer->state, *e, value);
+        value += lar_viscous_count(whole->model, *e);
+    }
+    return answer->bytes > 0;
+}
+
+/* One round: so many whole elements as an answer has room for; nothing: there are no more. */
+lar_status lar_computer_answer_history(lar_computer *computer, uint64_t round, lar_error *error) {
+    enum { ELEMENTS = LAR_PART_BYTES / (LAR_HISTORY_MAX * (int)sizeof(double)) };
+    const lar_processor *p = &computer->processor[0];
+    const lar_state *own = &p->worker[0].state;
+    const lar_answer answer = {.step = own->step};
+    double value[ELEMENTS * LAR_HISTORY_MAX];
+    size_t count = 0;
+    uint64_t skip = round * ELEMENTS, taken = 0;
+    for (lar_gid e = 0; e < p->domain.model->mesh.element_count && taken < ELEMENTS; e++) {
+        if (!lar_viscous_here(&p->domain, e)) continue;
+        if (skip > 0) {
+            skip--;
+            continue;
+        }
+        lar_viscous_read(&p->domain, own, e, value + count);
+        count += (size_t)lar_viscous_count(p->domain.model, e);
+        taken++;
+    }
+    return lar_control_answer(computer->control, &answer, value, count * sizeof *value, error);
 }
 
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
@@ -102,7 +154,10 @@ lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     state->step = computer->processor[0].worker[0].state.step;
     state->external = state->damped = state->contact = 0;
     gather_here(computer);
-    lar_status status = computer->control ? gather_others(computer, error) : LAR_OK;
+    lar_status status = LAR_OK;
+    if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);
+    if (!status && computer->control && computer->whole->element_history)
+        status = gather_rounds(computer, LAR_ORDER_HISTORY, take_history, error);
     computer->gathered = !status;
     if (status) computer->broken = true;
     return status;
@@ -136,17 +191,18 @@ static void scatter_here(lar_computer *computer) {
         lar_processor_scatter(&computer->processor[i], computer->whole, computer->state);
 }
 
-/* All nodes to everyone: each keeps what it has. */
+/* All nodes to everyone, and behind them what viscous elements remember: each keeps what it has. */
 static lar_status scatter_others(lar_computer *computer, lar_error *error) {
     const lar_domain *whole = computer->whole;
     size_t nodes = (size_t)whole->model->mesh.node_count;
-    node_values *value = lar_calloc(nodes, sizeof *value);
-    if (!value) return lar_fail_memory(error, nodes * sizeof *value, "the state");
+    size_t bytes = nodes * sizeof(node_values) + lar_viscous_total(whole->model) * sizeof(double);
+    node_values *value = lar_calloc(bytes, 1);
+    if (!value) return lar_fail_memory(error, bytes, "the state");
     for (size_t node = 0; node < nodes; node++)
         lar_state_read(computer->state, whole->layout.local[node], value[node]);
+    lar_viscous_gather(whole, computer->state, (double *)(value + nodes));
     const lar_order order = {LAR_ORDER_SCATTER, computer->state->step};
-    lar_status status =
-        lar_control_order(computer->control, &order, value, nodes * sizeof *value, error);
+    lar_status status = lar_control_order(computer->control, &order, value, bytes, error);
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
         const lar_answer *answer;
         status = lar_control_hear(computer->control, p, &answer, NULL, error);
@@ -158,14 +214,16 @@ static lar_status scatter_others(lar_computer *computer, lar_error *error) {
 lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
                                    size_t bytes, lar_error *error) {
     const node_values *value = payload;
-    lar_gid nodes = computer->whole->model->mesh.node_count;
-    if (bytes != (size_t)nodes * sizeof *value)
+    const lar_model *model = computer->whole->model;
+    lar_gid nodes = model->mesh.node_count;
+    if (bytes != (size_t)nodes * sizeof *value + lar_viscous_total(model) * sizeof(double))
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor 0 sends a state of %zu bytes for %d nodes; start all processors "
                         "again, from the same installation",
                         bytes, (int)nodes);
     for (lar_gid node = 0; node < nodes; node++)
         lar_state_write(computer->state, computer->whole->layout.local[node], value[node]);
+    lar_viscous_scatter(computer->whole, computer->state, (const double *)(value + nodes));
     computer->state->step = step;
     scatter_here(computer);
     return LAR_OK;

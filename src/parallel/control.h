@@ -37,6 +37,7 @@
 typedef enum lar_order_kind {
     LAR_ORDER_ADVANCE = 1,
     LAR_ORDER_GATHER,
+    LAR_ORDER_HISTORY, /* gathers what viscous elements remember */
     LAR_ORDER_SCATTER,
     LAR_ORDER_CONTACT,
     LAR_ORDER_CONTINUE, /* an advance that was interrupted for that */
@@ -44,9 +45,8 @@ typedef enum lar_order_kind {
 } lar_order_kind;
 
 typedef struct lar_order {
-    uint64_t kind; /* lar_order_kind */
-    uint64_t
-        argument; /* advance, continue: the step to stop before; gather: the round, 0, 1, ... */
+    uint64_t kind;     /* lar_order_kind */
+    uint64_t argument; /* advance, continue: the step to stop before; gathering: the round, from 0 */
 } lar_order;
 
 /* Bytes of payload in one packet. */

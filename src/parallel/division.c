@@ -149,6 +149,17 @@ static lar_status find_reporters(lar_division *division, int32_t node_count, lar
     return LAR_OK;
 }
 
+static lar_status find_recoverers(lar_division *division, int32_t element_count, lar_error *error) {
+    division->recoverer = lar_calloc((size_t)element_count, sizeof *division->recoverer);
+    if (!division->recoverer) return lar_fail_memory(error, 4 * (size_t)element_count, "elements");
+    for (int32_t p = 0; p < division->schedules.count; p++) {
+        const lar_schedule *schedule = &division->schedules.of[p];
+        for (int32_t i = 0; i < schedule->element_count; i++)
+            division->recoverer[schedule->element[i]] = p;
+    }
+    return LAR_OK;
+}
+
 static lar_status find_spread(lar_division *division, lar_error *error) {
     size_t pairs = (size_t)division->grid.count * (size_t)division->grid.count;
     division->distance = lar_schedule_distances(&division->schedules);
@@ -179,6 +190,7 @@ lar_status lar_division_create(const lar_model *model, const lar_options *option
         made.grid = made.schedules.of[0].grid;
         status = find_reporters(&made, model->mesh.node_count, error);
     }
+    if (!status) status = find_recoverers(&made, model->mesh.element_count, error);
     if (!status) status = find_spread(&made, error);
     if (status)
         lar_division_destroy(&made);
@@ -190,6 +202,7 @@ lar_status lar_division_create(const lar_model *model, const lar_options *option
 void lar_division_destroy(lar_division *division) {
     lar_schedule_set_clear(&division->schedules);
     free(division->reporter);
+    free(division->recoverer);
     free(division->distance);
     *division = (lar_division){0};
 }

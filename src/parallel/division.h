@@ -12,9 +12,10 @@
 typedef struct lar_division {
     lar_grid grid;
     lar_schedule_set schedules;
-    int32_t *reporter; /* [nodes] the processor that accounts for a node: the first that has it */
-    int32_t *distance; /* [processors * processors] steps that two can be apart (T 6.5.2) */
-    int32_t spread;    /* the greatest of them */
+    int32_t *reporter;  /* [nodes] the processor that accounts for a node: the first that has it */
+    int32_t *recoverer; /* [elements] the processor that recovers an element */
+    int32_t *distance;  /* [processors * processors] steps that two can be apart (T 6.5.2) */
+    int32_t spread;     /* the greatest of them */
 } lar_division;
 
 /* Whether the options ask for a division at all. */

@@ -4,8 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/tool_friction.h"
 #include "parallel/contact_exchange.h"
 #include "parallel/thread_reduction.h"
+#include "step/viscous_history.h"
 
 /* Who does what, by global element and node, while a schedule is compiled. */
 typedef struct assignment {
@@ -143,8 +145,9 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
                     .added = t->vectors.count - t->whole,
                     .whole = t->whole,
                     .first = t->vectors.first,
-                    .offset = p->shift[direction ? t->peer : p->self] + (size_t)t->offset,
-                    .bytes = (size_t)lar_packet_payload(t->vectors.count)};
+                    .offset = p->shift[direction ? t->peer : p->self] +
+                              (size_t)p->layers * (size_t)t->offset,
+                    .bytes = (size_t)lar_packet_payload(p->layers * t->vectors.count)};
             }
         }
     return LAR_OK;
@@ -155,9 +158,14 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
 /* Thread 0 has the processor's state; the others see its u and v and have forces of their own. */
 static lar_status create_state(lar_processor *p, lar_worker *worker, lar_error *error) {
     int32_t nodes = p->domain.layout.node_padded;
-    if (worker->thread == 0) return lar_state_create(&worker->state, nodes, error);
+    if (worker->thread == 0)
+        return lar_state_create(&worker->state, nodes, p->domain.history_count, error);
     const lar_state *first = &p->worker[0].state;
-    worker->state = (lar_state){.node_count = nodes, .u = first->u, .v = first->v};
+    worker->state = (lar_state){.node_count = nodes,
+                                .history_count = first->history_count,
+                                .u = first->u,
+                                .v = first->v,
+                                .history = first->history};
     worker->state.force = lar_calloc_aligned(4 * (size_t)nodes, sizeof *worker->state.force);
     if (worker->state.force) return LAR_OK;
     return lar_fail_memory(error, 32 * (size_t)nodes, "the force sums of a thread");
@@ -229,10 +237,15 @@ enum { RUN_BLOCKS = 128 };
 
 /* ---- the processor ------------------------------------------------------------------------ */
 
+int32_t lar_processor_layers(const lar_interactions *whole, bool checking) {
+    return !checking && whole->tool_contact.press ? 2 : 1;
+}
+
 lar_status lar_processor_create(const lar_processor_setting *setting, const lar_schedule *schedule,
                                 lar_processor *p, lar_error *error) {
     *p = (lar_processor){.self = schedule->processor,
                          .thread_count = schedule->threads,
+                         .layers = lar_processor_layers(setting->interactions, setting->check),
                          .shift = setting->shift,
                          .check = setting->check};
     assignment a = {0};
@@ -289,6 +302,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         lar_state_read(state, whole->layout.local[layout->global[n]], value);
         lar_state_write(own, n, value);
     }
+    lar_viscous_copy(whole, state, &p->domain, own);
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_worker *worker = &p->worker[t];
         worker->state.step = state->step;
@@ -299,6 +313,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->fault = (lar_fault){0};
         lar_interactions_forget(&worker->interactions);
         memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
+        lar_tool_friction_forget(&worker->interactions.tool_contact);
     }
     p->ahead = (int64_t)(state->step - p->worker[0].round);
     if (p->comm) lar_comm_number_steps(p->comm, p->ahead);

@@ -45,7 +45,7 @@ typedef struct lar_reduction_buffer {
     int32_t batch; /* packed at its end: the one that the other waits for; -1: nothing */
     int32_t count;
     int32_t *value;  /* [count] 4 * local node */
-    int64_t *vector; /* [3 count] */
+    int64_t *vector; /* [3 count] for each layer */
 } lar_reduction_buffer;
 
 struct lar_processor;
@@ -56,7 +56,7 @@ typedef struct lar_worker {
     struct lar_processor *processor;
     int32_t thread;
     int32_t batch_first, batch_end;
-    lar_state state; /* u, v: the processor's; force, step and work are its own */
+    lar_state state; /* u, v, history: the processor's; force, step and work are its own */
     uint64_t round;  /* steps gone through since the start. Packets and flags are counted by it, so
                         that they go on when the state is set back (docs/parallel.md) */
     lar_surroundings surroundings; /* compiled for its nodes and faces */
@@ -85,6 +85,7 @@ typedef struct lar_processor {
     lar_packet_plan *packet;
     int32_t *value;          /* 4 * local node, of all packets */
     int32_t *wait;           /* of all batches */
+    int32_t layers;          /* of sums: forces, and what tools press (contact/tool_friction.h) */
     lar_comm *comm;          /* not owned */
     const size_t *shift;     /* [processors] bytes before the schedule's part of each buffer */
     lar_verification *check; /* NULL: real forces. Not owned */
@@ -105,6 +106,9 @@ typedef struct lar_processor_setting {
     uint64_t delays;         /* seed of random delays, 0: none */
     bool low_latency;        /* packets arrive within a fraction of a microsecond */
 } lar_processor_setting;
+
+/* As many layers of sums travel: packets and buffers are so many times as long. */
+int32_t lar_processor_layers(const lar_interactions *whole, bool checking);
 
 /* Compiles a schedule that has been checked against the mesh (read or built). `comm` may be set
  * later. */

@@ -111,7 +111,8 @@ static lar_status create_buffer(const lar_schedule *schedule, const node_use *us
                         "lariat partition",
                         (int)p->self, (int)to, (int)from);
     reduction->value = lar_calloc((size_t)reduction->count, sizeof *reduction->value);
-    reduction->vector = lar_calloc_aligned(3 * (size_t)reduction->count, sizeof *reduction->vector);
+    reduction->vector = lar_calloc_aligned(3 * (size_t)p->layers * (size_t)reduction->count,
+                                           sizeof *reduction->vector);
     if (!reduction->value || !reduction->vector)
         return lar_fail_memory(error, 28 * (size_t)reduction->count, "sums between threads");
     int32_t count = 0;

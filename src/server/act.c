@@ -172,7 +172,7 @@ static void ask_frame(lar_viewer *viewer, const lar_command *command) {
 }
 
 static void ask_slice(lar_server *server, lar_viewer *viewer, const lar_command *command) {
-    const int32_t *size = server->scan.image.size;
+    const int32_t *size = server->scan.info.size;
     char sentence[160];
     if (!lar_scan_is_there(&server->scan)) {
         lar_viewer_note(server, viewer,

@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/model.h"
-
 bool lar_embedded_is_too_large(const lar_model *model) {
     lar_embedded_info info;
     if (!lar_model_embedded(model, &info)) return false;
@@ -22,7 +20,8 @@ static void mark_carriers(const lar_model *model, unsigned char *mark) {
 }
 
 lar_status lar_shown_create(const lar_model *model, lar_shown *shown, lar_error *error) {
-    size_t nodes = (size_t)model->mesh.node_count;
+    int32_t all = lar_model_node_count(model);
+    size_t nodes = (size_t)all;
     lar_surface_info surface;
     lar_model_surface(model, &surface);
     *shown = (lar_shown){.count = surface.nodes,
@@ -41,7 +40,7 @@ lar_status lar_shown_create(const lar_model *model, lar_shown *shown, lar_error 
         shown->node[i] = surface.node[i];
         mark[surface.node[i]] = 0;
     }
-    for (int32_t k = 0; k < model->mesh.node_count; k++)
+    for (int32_t k = 0; k < all; k++)
         if (mark[k]) shown->node[shown->count++] = k;
     free(mark);
     return LAR_OK;
@@ -94,7 +93,7 @@ lar_status lar_embedded_message(const lar_model *model, const lar_shown *shown,
     size_t s = (size_t)(shown->count - shown->surface);
     size_t length = 16 + 20 * s + 68 * (size_t)info.vertices + 12 * (size_t)info.triangles;
     unsigned char *memory = lar_calloc_aligned(LAR_HEADROOM + length, 1);
-    int32_t *index = lar_calloc((size_t)model->mesh.node_count, sizeof *index);
+    int32_t *index = lar_calloc((size_t)lar_model_node_count(model), sizeof *index);
     if (!memory || !index) {
         free(memory);
         free(index);

@@ -3,16 +3,26 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/error.h"
 
 /* An instrument is its mover's for so long after the last move [ns]. */
 static const int64_t OWNED = 1000000000;
 /* What a viewer sends before it knows of a reset is here by then [ns]: status comes every 0.1 s. */
 static const int64_t ON_ITS_WAY = 300000000;
 void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tell, void *context) {
-    *hands = (lar_hands){.session = session, .tell = tell, .context = context};
-    for (int32_t i = 0; i < session->tools; i++) {
+    lar_session_info about;
+    lar_simulation_info simulation;
+    lar_session_inspect(session, &about);
+    lar_simulation_inspect(about.simulation, &simulation);
+    *hands = (lar_hands){.session = session,
+                         .first_spare = simulation.tools,
+                         .tools = simulation.tools + simulation.spares,
+                         .tell = tell,
+                         .context = context};
+    for (int32_t i = 0; i < hands->tools; i++) {
         lar_tool_info info;
-        hands->owner[i].serial = lar_session_look_at_tool(session, i, &info);
+        lar_session_tool_info(session, i, &info, NULL);
+        hands->owner[i].serial = info.serial;
         if (info.shape == LAR_TOOL_HAND) hands->hand[hands->count++] = (lar_hand){.tool = i};
         hands->owner[i].pose = info.rest;
     }
@@ -22,7 +32,7 @@ void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tel
 static void look_where_it_is(lar_hands *hands, const lar_session_status *status, int64_t now) {
     if (status->placed == hands->placed) return;
     hands->placed = status->placed;
-    for (int32_t i = 0; i < hands->session->tools; i++) {
+    for (int32_t i = 0; i < hands->tools; i++) {
         lar_owner *owner = &hands->owner[i];
         if (owner->viewer == 0) continue;
         *owner = (lar_owner){
@@ -32,12 +42,11 @@ static void look_where_it_is(lar_hands *hands, const lar_session_status *status,
 
 /* A tool that was added is nobody's yet. */
 static void look_at_tools(lar_hands *hands) {
-    const lar_session *session = hands->session;
-    for (int32_t i = lar_spares_first(&session->simulation->list); i < session->tools; i++) {
+    for (int32_t i = hands->first_spare; i < hands->tools; i++) {
         lar_tool_info info;
-        int32_t serial = lar_session_look_at_tool(session, i, &info);
-        if (hands->owner[i].serial != serial)
-            hands->owner[i] = (lar_owner){.serial = serial, .pose = info.rest};
+        lar_session_tool_info(hands->session, i, &info, NULL);
+        if (hands->owner[i].serial != info.serial)
+            hands->owner[i] = (lar_owner){.serial = info.serial, .pose = info.rest};
     }
 }
 
@@ -58,7 +67,7 @@ static void put(lar_hands *hands, const lar_hand *hand, double opening) {
 
 /* In the order of what was asked for; where that is too much already, by its newest place. */
 static void let_go(lar_hands *hands, lar_hand *hand) {
-    if (!lar_session_ask_release(hands->session, hand->tool)) put(hands, hand, 1);
+    if (lar_session_ask_release(hands->session, hand->tool, NULL)) put(hands, hand, 1);
     hand->state = LAR_HAND_FREE;
     hand->viewer = 0;
 }
@@ -95,7 +104,8 @@ static void grab(lar_hands *hands, uint64_t viewer, const lar_command *command, 
     memcpy(hand->to, command->point, sizeof hand->to);
     hand->state = LAR_HAND_ASKED;
     hand->ticket = ++hands->tickets;
-    if (lar_session_ask_grasp(hands->session, hand->tool, command->point, hand->ticket)) return;
+    if (!lar_session_ask_grasp(hands->session, hand->tool, command->point, hand->ticket, NULL))
+        return;
     tell(hands, hand, "refused");
     let_go(hands, hand);
 }
@@ -114,8 +124,10 @@ void lar_hands_execute(lar_hands *hands, uint64_t viewer, const lar_command *com
 
 /* The session has answered: it has hold of something, or is open again. */
 static void take_answer(lar_hands *hands, lar_hand *hand) {
-    lar_grasp_answer answer = lar_session_grasp_answer(hands->session, hand->tool);
-    if (answer.ticket != hand->ticket) return;
+    lar_grasp_answer answer;
+    if (lar_session_grasp_answer(hands->session, hand->tool, &answer, NULL) ||
+        answer.ticket != hand->ticket)
+        return;
     tell(hands, hand, answer.held > 0 ? "holding" : "missed");
     if (answer.held > 0) {
         hand->state = LAR_HAND_HOLDING;
@@ -157,7 +169,8 @@ bool lar_hands_busy(const lar_hands *hands) {
 const char *lar_hands_by(const lar_hands *hands, int32_t tool, uint64_t viewer, int64_t now) {
     const lar_owner *owner = &hands->owner[tool];
     uint64_t who = owner->viewer && now - owner->moved < OWNED ? owner->viewer : 0;
-    if (__atomic_load_n(&hands->session->tool[tool].device, __ATOMIC_RELAXED)) return "device";
+    lar_device_status device;
+    if (!lar_session_device(hands->session, tool, &device, NULL) && device.name) return "device";
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].tool == tool && hands->hand[i].state != LAR_HAND_FREE)
             who = hands->hand[i].viewer;
@@ -168,7 +181,7 @@ static lar_status check_owner(const lar_hands *hands, uint64_t viewer, int32_t t
                               lar_error *error) {
     const char *by = lar_hands_by(hands, tool, viewer, now);
     lar_tool_info info;
-    lar_session_look_at_tool(hands->session, tool, &info);
+    lar_session_tool_info(hands->session, tool, &info, NULL);
     if (strcmp(by, "device") == 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s is moved by a device", info.name);
     if (strcmp(by, "other") == 0)
@@ -187,7 +200,7 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_command *
                           int64_t now, lar_error *error) {
     lar_owner *owner = &hands->owner[command->tool];
     lar_tool_info info;
-    lar_session_look_at_tool(hands->session, command->tool, &info);
+    lar_session_tool_info(hands->session, command->tool, &info, NULL);
     if (info.shape == LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is a hand; take hold of the surface with grab", info.name);
@@ -215,12 +228,12 @@ void lar_hands_leave(lar_hands *hands, uint64_t viewer) {
     for (int32_t i = 0; i < hands->count; i++)
         if (hands->hand[i].state != LAR_HAND_FREE && hands->hand[i].viewer == viewer)
             let_go(hands, &hands->hand[i]);
-    for (int32_t tool = 0; tool < hands->session->tools; tool++) {
+    for (int32_t tool = 0; tool < hands->tools; tool++) {
         lar_owner *owner = &hands->owner[tool];
         if (owner->viewer != viewer) continue;
         owner->viewer = 0;
         lar_tool_info info;
-        lar_session_look_at_tool(hands->session, tool, &info);
+        lar_session_tool_info(hands->session, tool, &info, NULL);
         if (info.shape != LAR_TOOL_GRASPER) continue;
         owner->pose.opening = 1;
         lar_session_tool_move(hands->session, tool, &owner->pose, NULL);

@@ -11,7 +11,6 @@
 #define LAR_SERVER_HANDS_H
 
 #include "server/message.h"
-#include "session/session.h"
 
 typedef enum lar_hand_state { LAR_HAND_FREE = 0, LAR_HAND_ASKED, LAR_HAND_HOLDING } lar_hand_state;
 
@@ -41,6 +40,7 @@ typedef void lar_hand_news(void *context, uint64_t viewer, int32_t number, int32
 
 typedef struct lar_hands {
     lar_session *session;
+    int32_t first_spare, tools; /* the tools that may be added, and all */
     lar_hand_news *tell;
     void *context;
     int32_t count;    /* of hands */

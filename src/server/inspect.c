@@ -51,7 +51,7 @@ static void write_node(const lar_server *server, const lar_job_end *end, lar_jso
     int32_t node = end->job.question.node;
     lar_json_open(json, "node", '{');
     lar_json_integer(json, "index", node);
-    lar_json_integer(json, "number", server->model->mesh.node_id[node]);
+    lar_json_integer(json, "number", lar_model_node_id(server->model, node));
     lar_json_vector(json, "rest", end->reading.rest, 3);
     lar_json_vector(json, "displacement", end->reading.displacement, 3);
     write_values(json, end->reading.of_node);

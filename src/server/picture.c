@@ -89,7 +89,7 @@ static lar_status make_surface(const lar_model *model, const float *processor, l
 
 lar_status lar_surface_messages(const lar_simulation *simulation, const lar_model *model,
                                 lar_blob *surface, lar_blob *embedded, lar_error *error) {
-    size_t nodes = (size_t)model->mesh.node_count;
+    size_t nodes = (size_t)lar_model_node_count(model);
     float *processor = lar_calloc(nodes, sizeof *processor);
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
     lar_shown shown = {0};
@@ -121,7 +121,7 @@ void lar_position_hash(const uint32_t *word, size_t count, uint32_t hash[2]) {
 
 static size_t frame_bytes(const lar_painter *painter, bool values) {
     return LAR_FRAME_HEADER + (size_t)painter->shown.count * (values ? 16 : 12) +
-           (size_t)painter->session->tools * LAR_TOOL_WORDS * 4;
+           (size_t)painter->tools * LAR_TOOL_WORDS * 4;
 }
 
 lar_status lar_picture_create(const lar_painter *painter, lar_picture *picture, lar_error *error) {
@@ -143,8 +143,13 @@ void lar_picture_destroy(lar_picture *picture) {
 
 lar_status lar_painter_create(lar_session *session, const lar_model *model, lar_painter *painter,
                               lar_error *error) {
-    *painter = (lar_painter){
-        .session = session, .rest = lar_model_positions(model), .nodes = model->mesh.node_count};
+    lar_session_info info;
+    lar_session_inspect(session, &info);
+    *painter = (lar_painter){.session = session,
+                             .simulation = info.simulation,
+                             .tools = lar_simulation_tool_count(info.simulation),
+                             .rest = lar_model_positions(model),
+                             .nodes = lar_model_node_count(model)};
     painter->value = lar_calloc((size_t)painter->nodes, sizeof *painter->value);
     if (!painter->value)
         return lar_fail_memory(error, (size_t)painter->nodes * sizeof *painter->value,
@@ -192,7 +197,7 @@ static void write_values(const lar_painter *painter, float *out, double range[2]
 
 static void write_tools(const lar_painter *painter, unsigned char *at) {
     uint32_t *word = (uint32_t *)(void *)at;
-    for (int32_t tool = 0; tool < painter->session->tools; tool++, word += LAR_TOOL_WORDS) {
+    for (int32_t tool = 0; tool < painter->tools; tool++, word += LAR_TOOL_WORDS) {
         lar_tool_pose pose = {.orientation = {1, 0, 0, 0}};
         lar_tool_force force = {0};
         lar_session_tool_force(painter->session, tool, &pose, &force, NULL);
@@ -232,7 +237,7 @@ static lar_status write_frame(lar_painter *painter, int field, const float *posi
     lar_status status = LAR_OK;
     if (here != position) memcpy(here, position, n * 3 * sizeof *here);
     if (field > 0) {
-        status = lar_simulation_field(painter->session->simulation, lar_field_names[field].field,
+        status = lar_simulation_field(painter->simulation, lar_field_names[field].field,
                                       (const double(*)[3])snapshot->u, painter->value, error);
         if (status) return status;
         write_values(painter, here + 3 * n, range);
@@ -248,7 +253,7 @@ static lar_status write_frame(lar_painter *painter, int field, const float *posi
                        .values = field > 0 ? (uint32_t)n : 0,
                        .min = range[0],
                        .max = range[1],
-                       .tools = (uint32_t)painter->session->tools};
+                       .tools = (uint32_t)painter->tools};
     memcpy(out, &head, sizeof head);
     frame->length = frame_bytes(painter, field > 0);
     return LAR_OK;

@@ -10,7 +10,6 @@
 
 #include "server/message.h"
 #include "server/embedded.h"
-#include "session/session.h"
 
 enum {
     LAR_FRAME_HEADER = 72,
@@ -31,6 +30,8 @@ typedef struct lar_picture {
 /* What makes pictures, with its scratch memory. */
 typedef struct lar_painter {
     lar_session *session;
+    const lar_simulation *simulation; /* the session's */
+    int32_t tools;
     lar_shown shown;
     const double (*rest)[3]; /* [nodes of the model] */
     int32_t nodes;           /* of the model */

@@ -32,9 +32,8 @@ typedef struct lar_reading {
     double kinetic, strain, hourglass;  /* of all nodes and elements [J] */
 } lar_reading;
 
-/* Reads from a snapshot of the session that simulates `model`. */
-lar_status lar_reading_take(const lar_simulation *simulation, const lar_model *model,
-                            const lar_question *question, const lar_snapshot *snapshot,
-                            lar_reading *reading, lar_error *error);
+/* Reads from a snapshot of the session on this simulation. */
+lar_status lar_reading_take(const lar_simulation *simulation, const lar_question *question,
+                            const lar_snapshot *snapshot, lar_reading *reading, lar_error *error);
 
 #endif

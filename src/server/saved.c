@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 
 #include "base/file/folder.h"
-#include "contact/spares.h"
 #include "server/state.h"
 
 void lar_saved_add(lar_saved_list *list, const char *name) {
@@ -52,20 +51,22 @@ static bool good_name(const char *name) {
     return length > 0 && length <= LAR_NAME_MAX && name[0] != '.';
 }
 
-/* Whether it belongs to what is simulated here. */
+/* Whether it belongs to what is simulated here; files may have other spares. */
 static bool fits(const lar_server *server, const char *path, bool recording) {
-    const lar_simulation *simulation = server->session->simulation;
-    const lar_mesh *mesh = &server->model->mesh;
-    int32_t tools = lar_spares_first(&simulation->list); /* files may have others besides */
-    lar_recording_info r;
+    const lar_simulation_info *here = &server->simulated;
     lar_checkpoint_info c;
+    lar_recording_info r;
+    if (recording && lar_recording_inspect(path, &r, NULL)) return false;
+    if (!recording && lar_checkpoint_inspect(path, &c, NULL)) return false;
     if (recording)
-        return !lar_recording_inspect(path, &r, NULL) && r.nodes == mesh->node_count &&
-               r.elements == mesh->element_count && r.tools == tools &&
-               r.time_step == server->session->time_step && r.element == simulation->domain.kind;
-    return !lar_checkpoint_inspect(path, &c, NULL) && c.nodes == mesh->node_count &&
-           c.elements == mesh->element_count && c.tools == tools &&
-           c.time_step == server->session->time_step && c.element == simulation->domain.kind;
+        c = (lar_checkpoint_info){.element = r.element,
+                                  .nodes = r.nodes,
+                                  .elements = r.elements,
+                                  .tools = r.tools,
+                                  .time_step = r.time_step};
+    return c.nodes == lar_model_node_count(server->model) &&
+           c.elements == lar_model_element_count(server->model) && c.tools == here->tools &&
+           c.time_step == here->time_step && c.element == here->element;
 }
 
 static bool look_at(const lar_server *server, const char *name, found_file *found) {

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 typedef struct slice_head {
     uint32_t kind, axis, index, count, width, height, zero[2];
     float corner[3], across[3], down[3]; /* of the first pixel's centre; from one to the next [m] */
@@ -19,7 +21,7 @@ static int second_axis(int axis) {
     return axis == 2 ? 1 : 2;
 }
 
-static size_t slice_bytes(const lar_image *image, int axis) {
+static size_t slice_bytes(const lar_image_info *image, int axis) {
     size_t pixels = (size_t)image->size[first_axis(axis)] * (size_t)image->size[second_axis(axis)];
     return LAR_SLICE_HEADER + (2 * pixels + 3) / 4 * 4;
 }
@@ -27,11 +29,12 @@ static size_t slice_bytes(const lar_image *image, int axis) {
 lar_status lar_scan_read(const char *path, lar_scan *scan, lar_error *error) {
     *scan = (lar_scan){0};
     if (!path) return LAR_OK;
-    lar_status status = lar_image_read(path, &scan->image, error);
+    lar_status status = lar_image_open(path, &scan->image, error);
     if (status) return status;
+    lar_image_inspect(scan->image, &scan->info);
     size_t max = 0;
     for (int axis = 0; axis < 3; axis++)
-        if (slice_bytes(&scan->image, axis) > max) max = slice_bytes(&scan->image, axis);
+        if (slice_bytes(&scan->info, axis) > max) max = slice_bytes(&scan->info, axis);
     scan->slice.memory = lar_calloc_aligned(LAR_HEADROOM + max, 1);
     if (scan->slice.memory) return LAR_OK;
     lar_scan_clear(scan);
@@ -39,12 +42,12 @@ lar_status lar_scan_read(const char *path, lar_scan *scan, lar_error *error) {
 }
 
 void lar_scan_clear(lar_scan *scan) {
-    lar_image_clear(&scan->image);
+    lar_image_destroy(scan->image);
     free(scan->slice.memory);
     *scan = (lar_scan){0};
 }
 
-static void copy_labels(const lar_image *image, int axis, int32_t index, uint16_t *out) {
+static void copy_labels(const lar_image_info *image, int axis, int32_t index, uint16_t *out) {
     const int u = first_axis(axis), v = second_axis(axis);
     const size_t step[3] = {1, (size_t)image->size[0],
                             (size_t)image->size[0] * (size_t)image->size[1]};
@@ -56,7 +59,7 @@ static void copy_labels(const lar_image *image, int axis, int32_t index, uint16_
 }
 
 void lar_scan_slice(lar_scan *scan, int axis, int32_t index) {
-    const lar_image *image = &scan->image;
+    const lar_image_info *image = &scan->info;
     const int u = first_axis(axis), v = second_axis(axis);
     slice_head head = {.kind = 5,
                        .axis = (uint32_t)axis,

@@ -8,14 +8,17 @@
 #ifndef LAR_SERVER_SCAN_H
 #define LAR_SERVER_SCAN_H
 
-#include "meshing/image/image.h"
+#include <stdbool.h>
+
+#include "lariat.h"
 #include "server/blob.h"
 
 enum { LAR_SLICE_HEADER = 72 };
 
 typedef struct lar_scan {
-    lar_image image; /* size[0] is 0: there is none */
-    lar_blob slice;  /* as large as the largest */
+    lar_image *image; /* NULL: there is none */
+    lar_image_info info;
+    lar_blob slice; /* as large as the largest */
 } lar_scan;
 
 /* Reads the image at `path`; NULL: there is none. Cleared by lar_scan_clear. */
@@ -23,7 +26,7 @@ lar_status lar_scan_read(const char *path, lar_scan *scan, lar_error *error);
 void lar_scan_clear(lar_scan *scan); /* idempotent; a zeroed one is fine */
 
 static inline bool lar_scan_is_there(const lar_scan *scan) {
-    return scan->image.size[0] > 0;
+    return scan->image != NULL;
 }
 
 /* Makes scan->slice: across `axis` (0, 1, 2: i, j, k), at `index` along it, which is there. */

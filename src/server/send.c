@@ -43,11 +43,11 @@ static void write_tool(lar_json *json, const lar_tool_info *info) {
     lar_json_number(json, "spread", info->spread);
 }
 
-static void write_tools(lar_json *json, const lar_session *session) {
-    int32_t first = lar_spares_first(&session->simulation->list);
+static void write_tools(lar_json *json, const lar_server *server) {
+    int32_t first = server->simulated.tools;
     lar_json_open(json, "tools", '[');
-    for (int32_t i = 0; i < session->tools; i++) {
-        const lar_tool_info info = i < first ? session->tool[i].info : no_tool;
+    for (int32_t i = 0; i < server->tools; i++) {
+        const lar_tool_info info = i < first ? server->tool[i].info : no_tool;
         lar_json_open(json, NULL, '{');
         write_tool(json, &info);
         lar_json_open(json, "rest", '{');
@@ -58,10 +58,10 @@ static void write_tools(lar_json *json, const lar_session *session) {
     lar_json_close(json);
     lar_json_open(json, "hands", '[');
     for (int32_t i = 0; i < first; i++)
-        if (session->tool[i].info.shape == LAR_TOOL_HAND) lar_json_integer(json, NULL, i);
+        if (server->tool[i].info.shape == LAR_TOOL_HAND) lar_json_integer(json, NULL, i);
     lar_json_close(json);
     lar_json_open(json, "spares", '[');
-    for (int32_t i = first; i < session->tools; i++) lar_json_integer(json, NULL, i);
+    for (int32_t i = first; i < server->tools; i++) lar_json_integer(json, NULL, i);
     lar_json_close(json);
 }
 
@@ -95,14 +95,16 @@ static lar_status write_embedded(lar_json *json, const lar_model *model, lar_err
     return LAR_OK;
 }
 
-static void write_scan(lar_json *json, const lar_image *image) {
+static void write_scan(lar_json *json, const lar_scan *scan) {
     lar_json_open(json, "scan", '{');
-    lar_json_integers(json, "size", image->size, 3);
+    lar_json_integers(json, "size", scan->info.size, 3);
     lar_json_open(json, "labels", '[');
-    for (int32_t i = 0; i < image->name_count; i++) {
+    for (int32_t i = 0; i < scan->info.names; i++) {
+        int32_t label = 0;
+        const char *name = lar_image_name(scan->image, i, &label);
         lar_json_open(json, NULL, '{');
-        lar_json_integer(json, "label", image->name[i].label);
-        lar_json_text(json, "name", image->name[i].name);
+        lar_json_integer(json, "label", label);
+        lar_json_text(json, "name", name);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -112,20 +114,20 @@ static void write_scan(lar_json *json, const lar_image *image) {
 /* What the page may set, and what it goes back to. */
 static void write_body(lar_json *json, const lar_model *model) {
     double gravity[3];
-    lar_gravity_at(model, NULL, 0, gravity);
+    int varies = lar_model_gravity(model, 0, gravity);
     lar_json_open(json, "body", '{');
     lar_json_vector(json, "gravity", gravity, 3);
-    lar_json_boolean(json, "gravity_varies", lar_gravity_varies(model, NULL));
+    lar_json_boolean(json, "gravity_varies", varies);
     lar_json_number(json, "damping", lar_model_damping(model));
-    lar_json_number(json, "stiffness_min", LAR_FACTOR_MIN);
-    lar_json_number(json, "stiffness_max", LAR_FACTOR_MAX);
+    lar_json_number(json, "stiffness_min", LAR_STIFFNESS_MIN);
+    lar_json_number(json, "stiffness_max", LAR_STIFFNESS_MAX);
     lar_json_close(json);
 }
 
 lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
-    const lar_session *session = server->session;
-    const lar_simulation *simulation = session->simulation;
+    const lar_simulation *simulation = server->about.simulation;
     lar_json *json = &server->hello;
+    double view[3];
     lar_model_info info;
     lar_surface_info surface;
     lar_status status = lar_model_inspect(server->model, &info, error);
@@ -146,20 +148,19 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     if (status) return status;
     lar_json_vector(json, "lower", info.lower, 3);
     lar_json_vector(json, "upper", info.upper, 3);
-    const double *view = server->model->view;
-    if (view[0] != 0 || view[1] != 0 || view[2] != 0) lar_json_vector(json, "view", view, 3);
-    lar_json_number(json, "time_step", session->time_step);
-    lar_json_number(json, "tick", (double)session->tick_steps * session->time_step);
+    if (lar_model_view(server->model, view)) lar_json_vector(json, "view", view, 3);
+    lar_json_number(json, "time_step", server->simulated.time_step);
+    lar_json_number(json, "tick", server->about.tick);
     lar_json_text(json, "isa", lar_simulation_isa(simulation));
     lar_json_integer(json, "processors", lar_simulation_processors(simulation));
     lar_json_integer(json, "threads", lar_simulation_threads(simulation));
     write_materials(json, server->model, info.materials);
-    if (lar_scan_is_there(&server->scan)) write_scan(json, &server->scan.image);
-    write_tools(json, session);
+    if (lar_scan_is_there(&server->scan)) write_scan(json, &server->scan);
+    write_tools(json, server);
     write_fields(json);
     lar_json_boolean(json, "saves", server->save_folder != NULL);
-    lar_json_number(json, "hand_force", session->options.hand_force);
-    lar_json_number(json, "tool_speed", session->options.tool_speed);
+    lar_json_number(json, "hand_force", server->about.options.hand_force);
+    lar_json_number(json, "tool_speed", server->about.options.tool_speed);
     write_body(json, server->model);
     return json->failed ? lar_fail_memory(error, json->length, "what viewers are told") : LAR_OK;
 }
@@ -218,9 +219,10 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
 }
 
 /* As it is now. */
-static void write_settings(lar_json *json, const lar_session *session) {
+static void write_settings(const lar_server *server, lar_json *json) {
+    const lar_session *session = server->session;
     double gravity[3];
-    int32_t materials = session->simulation->domain.model->material_count;
+    int32_t materials = lar_model_material_count(server->model);
     lar_session_gravity(session, gravity);
     lar_json_open(json, "body", '{');
     lar_json_vector(json, "gravity", gravity, 3);
@@ -244,7 +246,6 @@ static void write_replay(const lar_server *server, lar_json *json) {
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
     int64_t now = lar_clock_ns();
-    int32_t spares = lar_spares_first(&server->session->simulation->list);
     lar_json_begin(json);
     lar_json_text(json, "kind", "status");
     write_progress(json, &server->status);
@@ -258,13 +259,13 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     for (int i = 0; i < server->recordings.count; i++)
         lar_json_text(json, NULL, server->recordings.name[i]);
     lar_json_close(json);
-    write_settings(json, server->session);
+    write_settings(server, json);
     write_replay(server, json);
     lar_json_open(json, "tools", '[');
-    for (int32_t i = 0; i < server->session->tools; i++) {
+    for (int32_t i = 0; i < server->tools; i++) {
         const lar_tool_force *force = &server->tool[i].force;
         lar_json_open(json, NULL, '{');
-        if (i >= spares) write_tool(json, &server->tool[i].info);
+        if (i >= server->simulated.tools) write_tool(json, &server->tool[i].info);
         write_pose(json, &server->tool[i].pose);
         lar_json_vector(json, "force", force->force, 3);
         lar_json_vector(json, "torque", force->torque, 3);
@@ -369,16 +370,16 @@ _Static_assert(sizeof(forces_head) == 32, "the header of forces has no gaps");
 
 static int send_forces(lar_server *server, lar_viewer *viewer) {
     unsigned char *data = lar_blob_data(&server->forces);
-    const lar_session *session = server->session;
     uint64_t last = viewer->forces_after;
     float(*force)[3] = (float(*)[3])(void *)(data + sizeof(forces_head));
-    int32_t count = lar_session_force_history(session, viewer->forces_tool, viewer->forces_after,
-                                              LAR_HISTORY_TICKS, force, &last);
+    int32_t count =
+        lar_session_force_history(server->session, viewer->forces_tool, viewer->forces_after,
+                                  LAR_HISTORY_TICKS, force, &last);
     forces_head head = {.kind = 3,
                         .tool = (uint32_t)viewer->forces_tool,
                         .count = (uint32_t)count,
                         .last = last,
-                        .tick = (double)session->tick_steps * session->time_step};
+                        .tick = server->about.tick};
     memcpy(data, &head, sizeof head);
     return send_bytes(viewer, data, sizeof head + (size_t)count * sizeof *force, LWS_WRITE_BINARY);
 }

@@ -13,8 +13,8 @@
 
 #include "base/file/folder.h"
 #include "base/pin.h"
+#include "base/socket.h"
 #include "base/thread.h"
-#include "comm/socket.h"
 
 /* How often the thread looks around: while somebody watches, and while a hand is on its way [us].
  */
@@ -37,8 +37,8 @@ static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MAX + 
 
 void lar_server_take_status(lar_server *server) {
     lar_session_status_get(server->session, &server->status);
-    for (int32_t i = 0; i < server->session->tools; i++) {
-        lar_session_look_at_tool(server->session, i, &server->tool[i].info);
+    for (int32_t i = 0; i < server->tools; i++) {
+        lar_session_tool_info(server->session, i, &server->tool[i].info, NULL);
         lar_session_tool_force(server->session, i, &server->tool[i].pose, &server->tool[i].force,
                                NULL);
     }
@@ -310,13 +310,13 @@ static lar_status prepare(lar_server *server, lar_error *error) {
     server->json.headroom = LAR_HEADROOM;
     server->forces.memory = lar_calloc_aligned(bytes, 1);
     if (!server->forces.memory) return lar_fail_memory(error, bytes, "forces for viewers");
-    server->pace = session->options.pace;
+    server->pace = server->about.options.pace;
     lar_server_list_saved(server);
     lar_server_take_status(server);
     lar_hands_create(&server->hands, session, lar_server_tell_hand, server);
     lar_status status = lar_server_make_hello(server, error);
     if (!status)
-        status = lar_surface_messages(session->simulation, server->model, &server->surface,
+        status = lar_surface_messages(server->about.simulation, server->model, &server->surface,
                                       &server->embedded, error);
     if (!status) status = make_context(server, error);
     if (status) return status;
@@ -336,6 +336,9 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     if (!server) return lar_fail_memory(error, sizeof *server, "the viewers' server");
     server->session = session;
     server->model = model;
+    lar_session_inspect(session, &server->about);
+    lar_simulation_inspect(server->about.simulation, &server->simulated);
+    server->tools = server->simulated.tools + server->simulated.spares;
     server->listener = server->spare = -1;
     server->save_max = asked.save_max > 0 ? asked.save_max : SAVE_MAX;
     lar_status status = choose_address(server, &asked, error);

@@ -116,7 +116,7 @@ static void hear(lar_server *server, lar_viewer *viewer) {
     lar_command command;
     char reason[LAR_REASON_BYTES];
     lar_close wrong =
-        lar_command_read(viewer->in, viewer->in_length, server->session->tools, &command, reason);
+        lar_command_read(viewer->in, viewer->in_length, server->tools, &command, reason);
     if (wrong)
         lar_viewer_close(viewer, wrong, reason);
     else

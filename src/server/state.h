@@ -98,7 +98,10 @@ typedef struct lar_viewer {
 struct lar_server {
     lar_session *session;
     const lar_model *model;
-    char host[LAR_HOST_BYTES]; /* as in addresses: "[::1]" */
+    lar_session_info about;        /* of the session */
+    lar_simulation_info simulated; /* of its simulation */
+    int32_t tools;                 /* of it, spares included */
+    char host[LAR_HOST_BYTES];     /* as in addresses: "[::1]" */
     int port;
     bool loopback, any;
     char *token, *watch_token, *save_folder, *url, *watch_url;

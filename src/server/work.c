@@ -13,8 +13,8 @@ static const double SNAPSHOT_SECONDS = 2;
 static void inspect(lar_work *work, lar_job_end *end) {
     lar_snapshot *snapshot = work->painter.snapshot;
     if (!lar_session_snapshot(work->session, snapshot, SNAPSHOT_SECONDS, &end->error))
-        lar_reading_take(work->session->simulation, work->model, &end->job.question, snapshot,
-                         &end->reading, &end->error);
+        lar_reading_take(work->painter.simulation, &end->job.question, snapshot, &end->reading,
+                         &end->error);
 }
 
 /* The command is told which tool that is. */

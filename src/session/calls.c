@@ -115,6 +115,33 @@ lar_status lar_session_load(lar_session *session, const char *path, lar_error *e
     return status;
 }
 
+static lar_status check_saved(const lar_session *session, const lar_saved *saved, const char *call,
+                              lar_error *error) {
+    lar_status status = check_session(session, error);
+    if (status || saved) return status;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs a place of lar_saved_create", call);
+}
+
+lar_status lar_session_save_to(lar_session *session, lar_saved *saved, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = check_saved(session, saved, "lar_session_save_to", error);
+    if (status) return status;
+    return ask_and_wait(
+        session, (lar_request){.kind = LAR_REQUEST_SAVE, .save_to = saved, .answer = &answer},
+        error);
+}
+
+lar_status lar_session_load_from(lar_session *session, const lar_saved *saved, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = check_saved(session, saved, "lar_session_load_from", error);
+    if (status) return status;
+    status = ask_and_wait(
+        session, (lar_request){.kind = LAR_REQUEST_LOAD, .load_from = saved, .answer = &answer},
+        error);
+    lar_player_close(answer.player);
+    return status;
+}
+
 lar_status lar_session_record(lar_session *session, const char *path, lar_error *error) {
     lar_request_answer answer = {0};
     lar_recorder *recorder = NULL;
@@ -165,12 +192,39 @@ lar_status lar_session_set_stiffness(lar_session *session, int32_t material, dou
                NULL, error);
 }
 
+static lar_setting force_of(lar_setting_kind kind, int32_t of, const double force[3]) {
+    lar_setting setting = {.kind = kind, .of = of};
+    if (force) memcpy(setting.value, force, sizeof setting.value);
+    return setting;
+}
+
+lar_status lar_session_set_force(lar_session *session, int32_t node, const double force[3],
+                                 lar_error *error) {
+    if (node < 0 && (node != -1 || force))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no node %ld; -1 without a force removes all forces that were set",
+                        (long)node);
+    return set(session, force_of(LAR_SETTING_FORCE, node, force), NULL, error);
+}
+
+lar_status lar_session_set_force_on(lar_session *session, const char *of, const double force[3],
+                                    lar_error *error) {
+    int32_t index;
+    lar_status status = check_session(session, error);
+    if (!status)
+        status = lar_simulation_force_set(session->simulation->domain.model, of, &index, error);
+    return status ? status
+                  : set(session, force_of(LAR_SETTING_FORCE_ON, index, force), NULL, error);
+}
+
 lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted, int32_t *tool,
                                 lar_error *error) {
     if (!wanted || (unsigned)wanted->shape >= LAR_TOOL_HAND)
         return lar_fail(
             error, LAR_ERROR_ARGUMENT,
             "lar_session_add_tool needs a sphere, a capsule or a grasper, and its size");
+    lar_status status = lar_added_tool_check(wanted, error);
+    if (status) return status;
     return set(session,
                (lar_setting){.kind = LAR_SETTING_ADD_TOOL,
                              .of = (int32_t)wanted->shape,
@@ -209,23 +263,50 @@ lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *er
                         error);
 }
 
-static bool ask_if_free(lar_session *session, lar_request request) {
+lar_status lar_session_tool_touches(lar_session *session, int32_t tool, int32_t max,
+                                    lar_touch *touch, int32_t *count, lar_error *error) {
+    lar_request_answer answer = {0};
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !count)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_tool_touches needs a place for the count");
+    if (!status)
+        status = ask_and_wait(session,
+                              (lar_request){.kind = LAR_REQUEST_TOUCHES,
+                                            .tool = tool,
+                                            .max = max,
+                                            .touch = touch,
+                                            .answer = &answer},
+                              error);
+    if (!status) *count = answer.held;
+    return status;
+}
+
+static lar_status ask_if_free(lar_session *session, lar_request request, lar_error *error) {
+    lar_status status = lar_session_check_tool(session, request.tool, error);
+    if (status) return status;
     pthread_mutex_lock(&session->requests.lock);
     bool full = lar_requests_full(&session->requests);
     if (!full) lar_requests_place(&session->requests, &request);
     pthread_mutex_unlock(&session->requests.lock);
-    return !full;
+    if (!full) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_PEER,
+                    "%d requests wait for the session already: ask again in a moment",
+                    LAR_REQUESTS_MAX);
 }
 
-bool lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
-                           uint64_t ticket) {
+lar_status lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
+                                 uint64_t ticket, lar_error *error) {
     lar_request request = grasp_of(tool, point);
     request.ticket = ticket;
-    return ask_if_free(session, request);
+    if (ticket == 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_session_ask_grasp needs a ticket that is not 0, to know its answer");
+    return ask_if_free(session, request, error);
 }
 
-bool lar_session_ask_release(lar_session *session, int32_t tool) {
-    return ask_if_free(session, (lar_request){.kind = LAR_REQUEST_RELEASE, .tool = tool});
+lar_status lar_session_ask_release(lar_session *session, int32_t tool, lar_error *error) {
+    return ask_if_free(session, (lar_request){.kind = LAR_REQUEST_RELEASE, .tool = tool}, error);
 }
 
 lar_status lar_session_attach(lar_session *session, int32_t tool, const char *device,

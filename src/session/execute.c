@@ -98,7 +98,9 @@ static lar_status reset(lar_session *session, lar_error *error) {
 
 static lar_status load(lar_session *session, const lar_request *request, lar_error *error) {
     lar_status status =
-        lar_simulation_unpack(session->simulation, request->path, request->state, error);
+        request->load_from
+            ? lar_simulation_load_from(session->simulation, request->load_from, error)
+            : lar_simulation_unpack(session->simulation, request->path, request->state, error);
     if (!status) status = lar_session_arrive(session, error);
     return status ? status : lar_session_record_state(session, error);
 }
@@ -113,8 +115,7 @@ static lar_status attach(lar_session *session, const lar_request *request, lar_e
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "tool %ld, '%s', has a device already, and keeps it until the session ends",
                         (long)request->tool, tool->info.name);
-    /* The viewers' server looks who moves a tool. */
-    __atomic_store_n(&tool->device, request->device, __ATOMIC_RELEASE);
+    tool->device = request->device;
     lar_session_take_rate(tool);
     return LAR_OK;
 }
@@ -172,11 +173,11 @@ static lar_status set(lar_session *session, const lar_request *request, lar_erro
     if (session->player)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a recording is being played; leave it to change gravity, damping, "
-                        "stiffness and tools");
+                        "stiffness, tools and forces");
     if (session->status.state == LAR_SESSION_STOPPED)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "the run has broken off; reset it or load a state before gravity, damping, "
-                        "stiffness and tools are changed");
+                        "stiffness, tools and forces are changed");
     lar_setting setting = request->setting;
     lar_status status = check_device(session, &setting, error);
     if (!status && setting.kind == LAR_SETTING_ADD_TOOL) {
@@ -214,8 +215,10 @@ static lar_status change(lar_session *session, const lar_request *request, lar_e
     case LAR_REQUEST_RESET:
         return end_player(session, request, reset(session, error));
     case LAR_REQUEST_SAVE:
-        return lar_simulation_pack(session->simulation, request->path, &request->answer->state,
-                                   error);
+        return request->save_to
+                   ? lar_simulation_save_to(session->simulation, request->save_to, error)
+                   : lar_simulation_pack(session->simulation, request->path,
+                                         &request->answer->state, error);
     case LAR_REQUEST_LOAD:
         return end_player(session, request, load(session, request, error));
     case LAR_REQUEST_RECORD:
@@ -227,6 +230,9 @@ static lar_status change(lar_session *session, const lar_request *request, lar_e
     case LAR_REQUEST_GRASP:
     case LAR_REQUEST_RELEASE:
         return grasp(session, request, &request->answer->held, error);
+    case LAR_REQUEST_TOUCHES:
+        return lar_simulation_tool_touches(session->simulation, request->tool, request->max,
+                                           request->touch, &request->answer->held, error);
     default:
         return attach(session, request, error);
     }
@@ -263,8 +269,8 @@ static void seek(lar_session *session, double seconds) {
 static void grasp_unawaited(lar_session *session, const lar_request *request) {
     lar_grasp_answer answer = {.ticket = request->ticket};
     lar_error error;
-    lar_status status = grasp(session, request, &answer.held, &error);
-    if (status == LAR_ERROR_PEER) lar_session_stop(session, &error);
+    answer.status = grasp(session, request, &answer.held, &error);
+    if (answer.status == LAR_ERROR_PEER) lar_session_stop(session, &error);
     if (request->kind == LAR_REQUEST_GRASP) session->tool[request->tool].grasp = answer;
     lar_session_publish(session, false);
 }

@@ -15,7 +15,7 @@
 
 #include "base/error.h"
 
-enum { LAR_HISTORY_TICKS = 8192, LAR_HISTORY_RING = 2 * LAR_HISTORY_TICKS };
+enum { LAR_HISTORY_RING = 2 * LAR_HISTORY_TICKS };
 
 typedef struct lar_history {
     int32_t tools;

@@ -25,12 +25,13 @@ static uint64_t steps_of(double seconds, double time_step) {
 lar_status lar_recovery_create(const lar_simulation *simulation, double time_step,
                                lar_recovery *recovery, lar_error *error) {
     int32_t nodes = simulation->state.node_count;
+    size_t history = simulation->state.history_count;
     *recovery = (lar_recovery){.every = steps_of(EVERY, time_step),
                                .sound = steps_of(SOUND, time_step),
                                .soon = steps_of(SOON, time_step)};
-    lar_status status = lar_state_create(&recovery->origin.state, nodes, error);
+    lar_status status = lar_state_create(&recovery->origin.state, nodes, history, error);
     for (int i = 0; i < LAR_STATES_KEPT && !status; i++)
-        status = lar_state_create(&recovery->kept[i].state, nodes, error);
+        status = lar_state_create(&recovery->kept[i].state, nodes, history, error);
     return status;
 }
 

@@ -33,6 +33,7 @@ typedef enum lar_request_kind {
     LAR_REQUEST_SET,
     LAR_REQUEST_GRASP,
     LAR_REQUEST_RELEASE,
+    LAR_REQUEST_TOUCHES,
     LAR_REQUEST_END
 } lar_request_kind;
 
@@ -45,23 +46,27 @@ typedef struct lar_request_answer {
     lar_recorder *recorder; /* RECORD: what the engine has let go of; the caller closes it */
     lar_player *player;     /* REPLAY, RESET, LOAD: likewise */
     int32_t tool;           /* SET: that was added */
-    int32_t held;           /* GRASP: points of the surface */
+    int32_t held;           /* GRASP: points of the surface; TOUCHES: how many there are */
 } lar_request_answer;
 
 /* Files are opened, read and written by whoever asks: the engine only gets and gives what is in
  * them. */
 typedef struct lar_request {
     lar_request_kind kind;
-    int32_t tool;               /* ATTACH, GRASP, RELEASE */
+    int32_t tool;               /* ATTACH, GRASP, RELEASE, TOUCHES */
     uint64_t steps;             /* STEP */
     double pace;                /* PACE */
     const char *path;           /* SAVE, LOAD: for messages */
     const lar_bytes *state;     /* LOAD */
+    lar_saved *save_to;         /* SAVE: in memory; NULL: into the answer */
+    const lar_saved *load_from; /* LOAD: likewise; NULL: from `state` */
     lar_recorder *recorder;     /* RECORD; NULL: ends */
     lar_player *player;         /* REPLAY; NULL: ends */
     double seconds;             /* SEEK */
     double point[3];            /* GRASP: of a hand, where `pointed` */
     bool pointed;               /* GRASP */
+    lar_touch *touch;           /* TOUCHES: [max], who waits has it */
+    int32_t max;                /* TOUCHES */
     uint64_t ticket;            /* GRASP without an answer: lar_grasp_answer */
     lar_device *device;         /* ATTACH: the session's when it succeeds */
     lar_setting setting;        /* SET */

@@ -32,12 +32,6 @@
 #include "session/requests.h"
 #include "session/snapshot.h"
 
-/* Of the last grasp that was asked for with a ticket. */
-typedef struct lar_grasp_answer {
-    uint64_t ticket;
-    int32_t held; /* points of the surface; 0: nothing was there, or it was refused */
-} lar_grasp_answer;
-
 /* What the engine tells in every tick. */
 typedef struct lar_session_view {
     lar_session_status status;
@@ -45,7 +39,6 @@ typedef struct lar_session_view {
     double factor[LAR_FACTORS_MAX]; /* of the stiffness of materials */
     struct {
         lar_tool_info info;
-        int32_t serial; /* of a spare: one more for each that was added there */
         lar_tool_pose pose;
         lar_tool_force force;
         lar_tool_load load;
@@ -58,7 +51,6 @@ typedef struct lar_session_view {
 typedef struct lar_session_tool {
     lar_triple_buffer hand; /* lar_tool_pose, from tool_move */
     lar_tool_info info;     /* constant, but for spares: then the engine's, others ask the view */
-    int32_t serial;         /* as in the view */
     lar_device *device;     /* NULL: it listens to tool_move */
     bool led;   /* somebody has moved it since the start, or since the simulation was last
                    put somewhere else */
@@ -106,13 +98,6 @@ struct lar_session {
     bool ended;
 };
 
-/* The same as lar_session_grasp and lar_session_release, from any thread, without waiting: false
- * when too much is asked for already. The answer is found with the ticket, a number other than 0,
- * when it is there. */
-bool lar_session_ask_grasp(lar_session *session, int32_t tool, const double point[3],
-                           uint64_t ticket);
-bool lar_session_ask_release(lar_session *session, int32_t tool);
-lar_grasp_answer lar_session_grasp_answer(const lar_session *session, int32_t tool);
 /* Refuses NULL and tools that are none. */
 lar_status lar_session_check_tool(const lar_session *session, int32_t tool, lar_error *error);
 lar_recording_header lar_session_recording_header(const lar_session *session);
@@ -154,8 +139,6 @@ void lar_session_take_rate(lar_session_tool *tool);
 void lar_session_couple(lar_session *session, int32_t tool);
 /* Spares that have been added or removed since: they are where the simulation has them. */
 void lar_session_look_at_spares(lar_session *session);
-/* From any thread: what a tool is, as of the last tick; returns its serial. */
-int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info);
 
 /* The tools are where the simulation has them, and nobody leads them. */
 void lar_session_take_tools(lar_session *session);

@@ -24,6 +24,11 @@ lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulat
         return add_tool(setting, simulation, error);
     case LAR_SETTING_REMOVE_TOOL:
         return lar_simulation_remove_tool(simulation, setting->of, error);
+    case LAR_SETTING_FORCE:
+        return lar_simulation_set_force(simulation, setting->of,
+                                        setting->of < 0 ? NULL : setting->value, error);
+    case LAR_SETTING_FORCE_ON:
+        return lar_simulation_set_force_at(simulation, setting->of, setting->value, error);
     default:
         return lar_simulation_set_stiffness(simulation, setting->of, setting->value[0], error);
     }

@@ -1,4 +1,4 @@
-/* One change of gravity, damping, stiffness or tools: what is asked of a session, recorded and
+/* One change of gravity, damping, stiffness, tools or forces on nodes: what is asked of a session, recorded and
  * replayed. */
 #ifndef LAR_SESSION_SETTING_H
 #define LAR_SESSION_SETTING_H
@@ -13,6 +13,8 @@ typedef enum lar_setting_kind {
     LAR_SETTING_STIFFNESS,     /* value[0], of material `of`; -1: all */
     LAR_SETTING_ADD_TOOL,      /* of = lar_setting_of_tool: radius, length, spread */
     LAR_SETTING_REMOVE_TOOL,   /* tool `of` */
+    LAR_SETTING_FORCE,         /* value[0..2], zeros: none, on node `of`; -1: all are gone */
+    LAR_SETTING_FORCE_ON,      /* the same on every node of set `of` of the model */
     LAR_SETTING_KINDS
 } lar_setting_kind;
 

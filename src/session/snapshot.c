@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One value: this head, then u and v as the state has them. */
+/* One value: this head, then u, v and history as the state has them. */
 typedef struct frame {
     uint64_t step, hash;
     double time;
@@ -24,13 +24,16 @@ static lar_state state_of(frame *f, const lar_simulation *simulation) {
     double *u = (double *)((unsigned char *)f + head_size());
     return (lar_state){.step = f->step,
                        .node_count = simulation->domain.layout.node_padded,
+                       .history_count = simulation->state.history_count,
                        .u = u,
-                       .v = u + values_of(simulation)};
+                       .v = u + values_of(simulation),
+                       .history = u + 2 * values_of(simulation)};
 }
 
 lar_status lar_snapshots_create(const lar_simulation *simulation, lar_snapshots *snapshots,
                                 lar_error *error) {
-    size_t bytes = head_size() + 2 * values_of(simulation) * sizeof(double);
+    size_t values = 2 * values_of(simulation) + simulation->state.history_count;
+    size_t bytes = head_size() + values * sizeof(double);
     return lar_triple_buffer_create(&snapshots->frames, bytes, "snapshots", error);
 }
 
@@ -59,6 +62,8 @@ bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulat
     lar_state copy = state_of(f, simulation);
     memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
     memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);
+    if (state->history)
+        memcpy(copy.history, state->history, state->history_count * sizeof *copy.history);
     lar_triple_buffer_publish(&snapshots->frames);
     snapshots->answered = asked;
     __atomic_store_n(&snapshots->ready, asked, __ATOMIC_RELEASE);

@@ -38,7 +38,6 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     memcpy(view->factor, session->simulation->tools.settings.factor, sizeof view->factor);
     for (int32_t i = 0; i < session->tools; i++) {
         view->tool[i].info = session->tool[i].info;
-        view->tool[i].serial = session->tool[i].serial;
         view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;
         view->tool[i].load = session->tool[i].load;

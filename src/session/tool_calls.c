@@ -29,20 +29,17 @@ static void end_look(const lar_session *session) {
     lar_triple_buffer_unlock(session->view);
 }
 
-int32_t lar_session_look_at_tool(const lar_session *session, int32_t tool, lar_tool_info *info) {
-    const lar_session_view *view = look_at_view(session);
-    int32_t serial = view->tool[tool].serial;
-    *info = view->tool[tool].info;
+static lar_tool_info look_at_tool(const lar_session *session, int32_t tool) {
+    lar_tool_info info = look_at_view(session)->tool[tool].info;
     end_look(session);
-    return serial;
+    return info;
 }
 
 /* Spares are, once they have been added. */
 static lar_status check_there(const lar_session *session, int32_t tool, lar_error *error) {
-    lar_tool_info info;
-    if (lar_spare_of(&session->simulation->list, tool) < 0) return LAR_OK;
-    lar_session_look_at_tool(session, tool, &info);
-    if (info.shape != LAR_TOOL_NONE) return LAR_OK;
+    if (lar_spare_of(&session->simulation->list, tool) < 0 ||
+        look_at_tool(session, tool).shape != LAR_TOOL_NONE)
+        return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "tool %ld is not there; add one with lar_session_add_tool", (long)tool);
 }
@@ -75,7 +72,7 @@ lar_status lar_session_tool_info(const lar_session *session, int32_t tool, lar_t
     if (!status && !info)
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
                           "lar_session_tool_info needs a place for the answer");
-    if (!status) lar_session_look_at_tool(session, tool, info);
+    if (!status) *info = look_at_tool(session, tool);
     return status;
 }
 
@@ -102,10 +99,16 @@ lar_status lar_session_tool_load(const lar_session *session, int32_t tool, lar_t
     return LAR_OK;
 }
 
-lar_grasp_answer lar_session_grasp_answer(const lar_session *session, int32_t tool) {
-    lar_grasp_answer answer = look_at_view(session)->tool[tool].grasp;
+lar_status lar_session_grasp_answer(const lar_session *session, int32_t tool,
+                                    lar_grasp_answer *answer, lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (!status && !answer)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_session_grasp_answer needs a place for the answer");
+    if (status) return status;
+    *answer = look_at_view(session)->tool[tool].grasp;
     end_look(session);
-    return answer;
+    return LAR_OK;
 }
 
 lar_status lar_session_device(const lar_session *session, int32_t tool, lar_device_status *out,
@@ -118,6 +121,16 @@ lar_status lar_session_device(const lar_session *session, int32_t tool, lar_devi
     *out = look_at_view(session)->tool[tool].device;
     end_look(session);
     return LAR_OK;
+}
+
+void lar_session_inspect(const lar_session *session, lar_session_info *info) {
+    if (!info) return;
+    *info = (lar_session_info){0};
+    if (!session) return;
+    *info = (lar_session_info){.simulation = session->simulation,
+                               .tick_steps = session->tick_steps,
+                               .tick = (double)session->tick_steps * session->time_step,
+                               .options = session->options};
 }
 
 void lar_session_status_get(const lar_session *session, lar_session_status *status) {

@@ -53,9 +53,9 @@ void lar_session_couple(lar_session *session, int32_t tool) {
 }
 
 /* Names and shapes go together. */
-static bool is_another(const lar_session_tool *tool, const lar_tool_info *now, int32_t serial) {
+static bool is_another(const lar_session_tool *tool, const lar_tool_info *now) {
     const lar_tool_info *was = &tool->info;
-    return tool->serial != serial || was->shape != now->shape || was->radius != now->radius ||
+    return was->serial != now->serial || was->shape != now->shape || was->radius != now->radius ||
            was->length != now->length || was->spread != now->spread ||
            memcmp(&was->rest, &now->rest, sizeof was->rest) != 0;
 }
@@ -65,11 +65,8 @@ void lar_session_look_at_spares(lar_session *session) {
     for (int32_t i = lar_spares_first(&simulation->list); i < session->tools; i++) {
         lar_session_tool *tool = &session->tool[i];
         lar_tool_info now;
-        int32_t serial = lar_spare_serial(&simulation->list, &simulation->tools, i);
-        if (lar_simulation_tool(simulation, i, &now, NULL) || !is_another(tool, &now, serial))
-            continue;
+        if (lar_simulation_tool(simulation, i, &now, NULL) || !is_another(tool, &now)) continue;
         tool->info = now;
-        tool->serial = serial;
         tool->load = (lar_tool_load){0};
         lar_session_couple(session, i);
         take_tool(session, i);

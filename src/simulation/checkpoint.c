@@ -1,32 +1,29 @@
 #include "simulation/checkpoint.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "base/file/folder.h"
 #include "base/hash.h"
 #include "base/pose.h"
 #include "contact/spares.h"
 #include "contact/tool_body.h"
 #include "simulation/checkpoint_rows.h"
 #include "step/identity.h"
+#include "step/viscous_history.h"
 
 /* ---- what stands in a file ------------------------------------------------------------------ */
 
-static const char MAGIC[8] = {'L', 'A', 'R', 'I', 'A', 'T', 'C', 'P'};
-/* Version 3 had no settings: neither them nor what they take of a step. A state with tools that
- * were added is version 5, any other one version 4. */
-enum { ADDED_TOOLS = 5, VERSION = 4, BEFORE_SETTINGS = 3, BYTE_ORDER_MARK = 0x01020304 };
+/* Version 3 had no settings: neither them nor what they take of a step. Up to version 5 a step had
+ * 32 shares. A state with added tools has an odd version from 5 on, any other one an even one. One
+ * with forces that were set on nodes has version 8 or 9; others are written as they always were. */
+enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, NEWEST = 9 };
+enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
     char magic[8];
@@ -48,25 +45,39 @@ _Static_assert(sizeof(lar_settings) == 552, "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(LAR_NODE_VALUES == 7, "the format");
+_Static_assert(sizeof(lar_force_entry) == 32 && offsetof(lar_forces, entry) == 8, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
 typedef struct file_shape {
     uint32_t version;
     int32_t tools, grasps;
+    size_t history; /* values that viscous elements remember: as many as the model says */
+    int32_t forces; /* that were set; of versions that have them */
 } file_shape;
 
+static bool has_added(uint32_t version) {
+    return version >= BEFORE_THIRDS && version % 2 == 1;
+}
+
 static size_t settings_bytes(uint32_t version) {
-    size_t spares = version == ADDED_TOOLS ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
+    size_t spares = has_added(version) ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
     return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
                                       : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
 }
 
+/* Their number, and they. */
+static size_t forces_bytes(const file_shape *shape) {
+    if (shape->version < FORCES) return 0;
+    return offsetof(lar_forces, entry) + (size_t)shape->forces * sizeof(lar_force_entry);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
-    return sizeof(file_head) + settings_bytes(shape->version) +
+    return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-           grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) + sizeof(uint64_t);
+           grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
+           shape->history * sizeof(double) + sizeof(uint64_t);
 }
 
 uint64_t lar_checkpoint_sum(const void *data, size_t words) {
@@ -97,6 +108,7 @@ static lar_status check_finite(const char *path, const lar_domain *whole, const 
         lar_state_read(state, whole->layout.local[g], value);
         finite = finite && all_finite(value, LAR_NODE_VALUES);
     }
+    finite = finite && all_finite(state->history, state->history_count);
     if (finite) return LAR_OK;
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "%s: the state has left the range of numbers and is not saved; go back to an "
@@ -113,9 +125,12 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
-    return (file_shape){.version = spares > 0 ? ADDED_TOOLS : VERSION,
+    uint32_t version = tools->forces.count > 0 ? FORCES : VERSION;
+    return (file_shape){.version = version + (spares > 0),
+                        .forces = tools->forces.count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
-                        .grasps = tools->grasp_count};
+                        .grasps = tools->grasp_count,
+                        .history = lar_viscous_total(whole->model)};
 }
 
 /* Returns where the nodes begin. */
@@ -124,7 +139,8 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
     size_t count = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     at = append(at, &tools->division, sizeof tools->division);
     at = append(at, &tools->settings, sizeof tools->settings);
-    if (shape->version == ADDED_TOOLS) at = append(at, tools->spare, sizeof tools->spare);
+    if (has_added(shape->version)) at = append(at, tools->spare, sizeof tools->spare);
+    at = append(at, &tools->forces, forces_bytes(shape));
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
@@ -141,6 +157,9 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
         lar_state_read(state, whole->layout.local[g], value);
         lar_checkpoint_put(rows, (size_t)nodes, (size_t)g, value);
     }
+    double *history = rows + LAR_NODE_VALUES * (size_t)nodes;
+    lar_viscous_gather(whole, state, history);
+    uint64_t hash = lar_checkpoint_hash(state->step, rows, (size_t)nodes);
     file_head head = {.version = shape->version,
                       .byte_order = BYTE_ORDER_MARK,
                       .bytes = bytes,
@@ -148,111 +167,15 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .external = state->external,
                       .damped = state->damped,
                       .contact = state->contact,
-                      .hash = lar_checkpoint_hash(state->step, rows, (size_t)nodes),
+                      .hash = lar_viscous_hash_values(hash, history, shape->history),
                       .tools = shape->tools,
                       .grasps = shape->grasps};
-    memcpy(head.magic, MAGIC, sizeof MAGIC);
+    memcpy(head.magic, LAR_CHECKPOINT_MAGIC, LAR_CHECKPOINT_MAGIC_BYTES);
     lar_model_identify(whole, &head.identity);
     memcpy(data, &head, sizeof head);
     uint64_t sum = lar_checkpoint_sum(data, bytes / 8 - 1);
     memcpy(data + bytes - 8, &sum, sizeof sum);
     return data;
-}
-
-static bool write_all(int file, const unsigned char *data, size_t bytes) {
-    while (bytes > 0) {
-        ssize_t written = write(file, data, bytes);
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        data += written;
-        bytes -= (size_t)written;
-    }
-    return true;
-}
-
-/* A name is safe when its folder is. */
-static void sync_folder(const char *path) {
-    char *folder = lar_path_beside(path, ".");
-    int file = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-    if (file >= 0) {
-        fsync(file);
-        close(file);
-    }
-    free(folder);
-}
-
-/* A file of a name that nobody else has, "PATH.PROCESS-NUMBER.part" in `part` (`size` bytes):
- * several may save to one path at once. Names that are there were left by a process that was
- * killed. */
-static int open_part(const char *path, char *part, size_t size) {
-    static unsigned latest; /* atomic */
-    enum { TRIES = 1000 };
-    int file = -1;
-    errno = EEXIST;
-    for (int i = 0; i < TRIES && file < 0 && errno == EEXIST; i++) {
-        unsigned number = __atomic_add_fetch(&latest, 1, __ATOMIC_RELAXED);
-        snprintf(part, size, "%s.%ld-%u.part", path, (long)getpid(), number);
-        file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-    }
-    return file;
-}
-
-/* Whether a name in the folder of `name` is that of a part of it whose process is gone. Another
- * machine may write to the same folder, and its processes are not known here: a part that has just
- * been written to stays. */
-static bool is_left_over(int folder, const char *name, const char *found) {
-    static const double SURELY = 60; /* [s] */
-    size_t length = strlen(name);
-    long process = 0;
-    unsigned number;
-    char end[8] = "";
-    struct stat about;
-    if (strncmp(found, name, length) != 0 ||
-        sscanf(found + length, ".%ld-%u.%7s", &process, &number, end) != 3 ||
-        strcmp(end, "part") != 0 || process < 1)
-        return false;
-    bool gone = kill((pid_t)process, 0) != 0 && errno == ESRCH;
-    return gone && fstatat(folder, found, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
-           S_ISREG(about.st_mode) && difftime(time(NULL), about.st_mtime) > SURELY;
-}
-
-/* What processes have left that were killed while they saved to this path. */
-static void clean_up(const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    char *above = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
-    DIR *folder = above ? opendir(above) : NULL;
-    for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;)
-        if (is_left_over(dirfd(folder), name, entry->d_name))
-            unlinkat(dirfd(folder), entry->d_name, 0);
-    if (folder) closedir(folder);
-    free(above);
-}
-
-static lar_status write_file(const char *path, const unsigned char *data, size_t bytes,
-                             lar_error *error) {
-    size_t size = strlen(path) + sizeof ".-9223372036854775807-4294967295.part";
-    char *part = lar_calloc(size, 1);
-    if (!part) return lar_fail_memory(error, size, path);
-    int file = open_part(path, part, size);
-    bool good = file >= 0 && write_all(file, data, bytes) && fsync(file) == 0;
-    int cause = errno;
-    if (file >= 0 && close(file) != 0 && good) {
-        good = false;
-        cause = errno;
-    }
-    if (good && rename(part, path) != 0) {
-        good = false;
-        cause = errno;
-    }
-    if (good) sync_folder(path);
-    if (good) clean_up(path);
-    if (file >= 0 && !good) remove(part);
-    free(part);
-    if (good) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause ? cause : EIO));
 }
 
 lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const lar_state *state,
@@ -267,16 +190,6 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
     return LAR_OK;
 }
 
-lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
-    /* The new file takes the place of the old one, which may be a device. */
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
-        return lar_fail(error, LAR_ERROR_IO, "%s: is there and is no file; choose another name",
-                        path);
-    lar_status status = lar_file_spare(path, MAGIC, "not a checkpoint", error);
-    return status ? status : write_file(path, bytes->data, bytes->size, error);
-}
-
 /* ---- reading -------------------------------------------------------------------------------- */
 
 static lar_status refuse(lar_error *error, const char *path, const char *why) {
@@ -288,17 +201,18 @@ static lar_status check_file(const char *path, const lar_bytes *bytes, file_head
                              lar_error *error) {
     *head = (file_head){0};
     memcpy(head, bytes->data, bytes->size < sizeof *head ? bytes->size : sizeof *head);
-    if (bytes->size < sizeof MAGIC || memcmp(head->magic, MAGIC, sizeof MAGIC) != 0)
+    if (bytes->size < LAR_CHECKPOINT_MAGIC_BYTES ||
+        memcmp(head->magic, LAR_CHECKPOINT_MAGIC, LAR_CHECKPOINT_MAGIC_BYTES) != 0)
         return refuse(error, path, "is not a checkpoint of Lariat; name a file that it has saved");
     if (bytes->size >= 16 && head->byte_order == 0x04030201)
         return refuse(error, path,
                       "was saved on a machine with another order of bytes; load it on one like "
                       "that");
-    if (bytes->size >= 16 && (head->version < BEFORE_SETTINGS || head->version > ADDED_TOOLS))
+    if (bytes->size >= 16 && (head->version < BEFORE_SETTINGS || head->version > NEWEST))
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: is a checkpoint of version %lu, this Lariat reads versions %d to %d; "
                         "save it anew with this one",
-                        path, (unsigned long)head->version, BEFORE_SETTINGS, ADDED_TOOLS);
+                        path, (unsigned long)head->version, BEFORE_SETTINGS, NEWEST);
     if (bytes->size < sizeof *head || bytes->size < head->bytes)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: is cut off after %zu bytes; take another checkpoint", path,
@@ -334,8 +248,7 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
 static void look_at_spares(const file_head *head, const lar_bytes *bytes,
                            lar_spare_tool spare[LAR_SPARES_MAX]) {
     size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MAX * sizeof *spare;
-    if (head->version == ADDED_TOOLS && bytes->size >= at + size)
-        memcpy(spare, bytes->data + at, size);
+    if (has_added(head->version) && bytes->size >= at + size) memcpy(spare, bytes->data + at, size);
 }
 
 lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info, lar_error *error) {
@@ -432,8 +345,14 @@ static bool power_of_two(int32_t parts) {
     return parts >= 1 && parts <= LAR_PARTS_MAX && (parts & (parts - 1)) == 0;
 }
 
+static bool good_parts(int32_t parts) {
+    int32_t some = 1;
+    while (some < parts && some < LAR_PARTS_MAX) some = lar_more_parts(some);
+    return some == parts;
+}
+
 static bool good_division(const lar_step_division *d, const file_head *head) {
-    return power_of_two(d->parts) && power_of_two(d->before) && d->since <= head->step &&
+    return good_parts(d->parts) && good_parts(d->before) && d->since <= head->step &&
            d->decided <= head->step && d->hardness >= 1 &&
            d->hardness <= (double)d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
            d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
@@ -460,6 +379,15 @@ static bool good_follower(const lar_tool *tool, const lar_tool_follower *followe
            follower->lagging >= 0 && follower->lagging <= lagging_max && follower->padding == 0;
 }
 
+/* Files of version 5 or before count a step 32 times. */
+static void count_in_shares(lar_tool_follower *follower) {
+    lar_tool_felt *felt = &follower->felt;
+    int64_t *sum[7] = {&felt->force[0],  &felt->force[1],  &felt->force[2], &felt->torque[0],
+                       &felt->torque[1], &felt->torque[2], &felt->squeeze};
+    for (int i = 0; i < 7; i++)
+        if (llabs(*sum[i]) < INT64_MAX / 4) *sum[i] *= LAR_STEP_SHARES / 32;
+}
+
 /* Those that a file does not have rest, and are nothing. */
 static void fill_up(const lar_tool_list *list, lar_tools *tools) {
     static const lar_tool_pose nowhere = {.orientation = {1, 0, 0, 0}, .opening = 1};
@@ -475,9 +403,19 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
     return at + bytes;
 }
 
+/* How many forces there are: they stand behind the settings. -1: the file ends before. */
+static int32_t forces_in(const file_head *head, const lar_bytes *bytes) {
+    int32_t count;
+    size_t at = sizeof *head + settings_bytes(head->version);
+    if (head->version < FORCES) return 0;
+    if (bytes->size < at + sizeof count) return -1;
+    memcpy(&count, bytes->data + at, sizeof count);
+    return count <= LAR_FORCES_MAX ? count : -1;
+}
+
 /* What fill_tools writes; *at moves behind it. */
-static bool take_tools(const file_head *head, const lar_domain *whole, const unsigned char **at,
-                       lar_tools *tools) {
+static bool take_tools(const file_head *head, const file_shape *shape, const lar_domain *whole,
+                       const unsigned char **at, lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     *tools =
         (lar_tools){.count = head->tools, .grasp_count = head->grasps, .division = {.base = 1}};
@@ -487,12 +425,16 @@ static bool take_tools(const file_head *head, const lar_domain *whole, const uns
     *at = extract(*at, &tools->division,
                   settings ? sizeof tools->division : offsetof(lar_step_division, base));
     if (settings) *at = extract(*at, &tools->settings, sizeof tools->settings);
-    if (head->version == ADDED_TOOLS) *at = extract(*at, tools->spare, sizeof tools->spare);
+    if (has_added(head->version)) *at = extract(*at, tools->spare, sizeof tools->spare);
+    *at = extract(*at, &tools->forces, forces_bytes(shape));
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
+    for (size_t i = 0; i < count && head->version <= BEFORE_THIRDS; i++)
+        count_in_shares(&tools->follower[i]);
     *at = extract(*at, tools->grasps, grasps * sizeof tools->grasps[0]);
     bool good = good_division(&tools->division, head) &&
                 lar_settings_good(&tools->settings, whole->time_step) &&
+                lar_forces_good(&tools->forces, whole->model, lar_domain_force_max(whole)) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0);
     for (int32_t i = 0; good && i < tools->count; i++) {
         const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
@@ -515,10 +457,15 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     lar_status status = check_file(path, bytes, &head, error);
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
-    const file_shape shape = {head.version, head.tools, head.grasps};
+    const file_shape shape = {.version = head.version,
+                              .tools = head.tools,
+                              .grasps = head.grasps,
+                              .history = lar_viscous_total(model),
+                              .forces = forces_in(&head, bytes)};
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
-    if (spares < 0 || spares > (head.version == ADDED_TOOLS ? LAR_SPARES_MAX : 0) ||
-        head.grasps < 0 || head.grasps > LAR_GRASPS_MAX || bytes->size != file_bytes(&shape, nodes))
+    if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||
+        head.grasps > LAR_GRASPS_MAX || shape.forces < 0 ||
+        bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,
@@ -531,15 +478,17 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
                             .contact = head.contact};
     if (head.version == BEFORE_SETTINGS) found.damped *= model->damping;
     const unsigned char *at = bytes->data + sizeof head;
-    if (!take_tools(&head, whole, &at, &found.tools))
+    if (!take_tools(&head, &shape, whole, &at, &found.tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
     found.rows = (const double *)(const void *)at;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    if (!finite || !all_finite(found.rows, LAR_NODE_VALUES * nodes) ||
+    found.history = found.rows + LAR_NODE_VALUES * nodes;
+    if (!finite || !all_finite(found.rows, LAR_NODE_VALUES * nodes + shape.history) ||
         !lar_checkpoint_none_negative(found.rows, nodes) || head.step > STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    if (head.hash != lar_checkpoint_hash(head.step, found.rows, nodes))
+    uint64_t hash = lar_checkpoint_hash(head.step, found.rows, nodes);
+    if (head.hash != lar_viscous_hash_values(hash, found.history, shape.history))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
     *checkpoint = found;
     return LAR_OK;
@@ -557,6 +506,7 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
                            value);
         lar_state_write(state, whole->layout.local[g], value);
     }
+    lar_viscous_scatter(whole, state, checkpoint->history);
     state->step = checkpoint->step;
     state->part = 0;
     state->parts = 1;

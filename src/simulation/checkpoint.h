@@ -1,6 +1,6 @@
 /* A state in a file: everything that the next step depends on, and nothing about who computes it.
  *
- *     | head | division, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
+ *     | head | division, forces, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
  *
  * What it has of the nodes, and in which order, stands in the state's table (layout/state.h).
  *
@@ -16,12 +16,17 @@
 #include "layout/state.h"
 #include "contact/tools.h"
 
+/* What a file begins with. */
+#define LAR_CHECKPOINT_MAGIC "LARIATCP"
+enum { LAR_CHECKPOINT_MAGIC_BYTES = 8 };
+
 /* What a file says, found to be right. The arrays stand in the bytes that were parsed. */
 typedef struct lar_checkpoint {
     uint64_t step;
     double external, damped, contact; /* as in lar_state */
     lar_tools tools;
-    const double *rows; /* of the state's table, [nodes of the mesh] each */
+    const double *rows;    /* of the state's table, [nodes of the mesh] each */
+    const double *history; /* of step/viscous_history.h, element after element */
 } lar_checkpoint;
 
 /* State and tools of the whole model as the bytes of a file, which the caller frees. A state that

@@ -28,6 +28,8 @@ lar_status lar_field_plan_create(const lar_domain *whole, lar_field_plan **out, 
         double corner[8][3];
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, lar_model_material_of(whole->model, e), &plan->element[e]);
+        memcpy(plan->element[e].fibre, lar_model_fibre(whole->model, e),
+               sizeof plan->element[e].fibre);
     }
     *out = plan;
     return LAR_OK;
@@ -46,9 +48,11 @@ static double element_value(const lar_field_plan *plan, const lar_domain *whole,
     double cauchy[6], corner[8][3];
     if (plan->element) {
         double F[3][3], P[3][3];
+        const double *fibre = plan->element[e].fibre;
         lar_hex8_gradient(&plan->element[e], u, F);
-        if (field == LAR_FIELD_ENERGY) return lar_law_energy(material, (const double(*)[3])F);
-        double J = lar_law_stress(material, (const double(*)[3])F, P);
+        if (field == LAR_FIELD_ENERGY)
+            return lar_material_energy(material, fibre, (const double(*)[3])F);
+        double J = lar_material_stress(material, fibre, (const double(*)[3])F, P);
         lar_cauchy_stress((const double(*)[3])F, (const double(*)[3])P, J, cauchy);
     } else {
         lar_mesh_corners(&whole->model->mesh, e, corner);
@@ -92,7 +96,7 @@ lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *w
     return LAR_OK;
 }
 
-/* ---- the public call ------------------------------------------------------------------------ */
+/* ---- the public calls ----------------------------------------------------------------------- */
 
 /* The simulation's plan, made when there is none. */
 static lar_status find_plan(const lar_simulation *simulation, lar_field_plan **plan,
@@ -121,19 +125,79 @@ static void tell_processors(const lar_simulation *simulation, size_t nodes, floa
         out[n] = computer ? (float)computer->division.reporter[n] : 0;
 }
 
-lar_status lar_field_of_element(const lar_simulation *simulation, lar_field field, lar_gid e,
-                                const double (*u)[3], double *value, lar_error *error) {
-    lar_field_plan *plan;
+static lar_status refuse_null(const char *call, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s needs a simulation, displacements and a place for the answer; none may be "
+                    "NULL",
+                    call);
+}
+
+/* What elements have a value of their own of. */
+static lar_status check_value(const char *call, lar_field field, const char *what, int32_t index,
+                              int32_t count, lar_error *error) {
+    if (index < 0 || index >= count)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no %s %ld; the model has %ld, counted from 0", what, (long)index,
+                        (long)count);
+    if (field == LAR_FIELD_VON_MISES || field == LAR_FIELD_PRESSURE || field == LAR_FIELD_ENERGY)
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s has no field %d; take one of von Mises stress, pressure and energy", call,
+                    (int)field);
+}
+
+static double value_at(const lar_simulation *simulation, const lar_field_plan *plan,
+                       lar_field field, lar_gid e, const double (*u)[3]) {
     double corner[8][3];
-    lar_status status = find_plan(simulation, &plan, error);
-    if (status) return status;
     corners_of(&simulation->domain.model->mesh, e, u, corner);
-    *value = element_value(plan, &simulation->domain, field, e, (const double(*)[3])corner);
+    return element_value(plan, &simulation->domain, field, e, (const double(*)[3])corner);
+}
+
+lar_status lar_simulation_element_value(const lar_simulation *simulation, lar_field field,
+                                        int32_t element, const double (*u)[3], double *value,
+                                        lar_error *error) {
+    static const char call[] = "lar_simulation_element_value";
+    lar_field_plan *plan;
+    if (!simulation || !u || !value) return refuse_null(call, error);
+    lar_status status = check_value(call, field, "element", element,
+                                    simulation->domain.model->mesh.element_count, error);
+    if (!status) status = find_plan(simulation, &plan, error);
+    if (!status) *value = value_at(simulation, plan, field, element, u);
+    return status;
+}
+
+static bool has_node(const lar_mesh *mesh, lar_gid e, int32_t node) {
+    for (int a = 0; a < 8; a++)
+        if (mesh->element[e][a] == node) return true;
+    return false;
+}
+
+lar_status lar_simulation_node_value(const lar_simulation *simulation, lar_field field,
+                                     int32_t node, const double (*u)[3], double *value,
+                                     lar_error *error) {
+    static const char call[] = "lar_simulation_node_value";
+    node_mean mean = {0};
+    lar_field_plan *plan;
+    if (!simulation || !u || !value) return refuse_null(call, error);
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
+    lar_status status = check_value(call, field, "node", node, mesh->node_count, error);
+    if (!status) status = find_plan(simulation, &plan, error);
+    if (status) return status;
+    for (lar_gid e = 0; e < mesh->element_count; e++) {
+        if (!has_node(mesh, e, node)) continue;
+        double here = value_at(simulation, plan, field, e, u);
+        if (!(fabs(here) <= (double)FLT_MAX)) continue;
+        mean.sum += here;
+        mean.count += 1;
+    }
+    *value = mean.count > 0 ? mean.sum / mean.count : 0;
     return LAR_OK;
 }
 
-lar_status lar_field_stored_energy(const lar_simulation *simulation, const double (*u)[3],
-                                   double *strain, double *hourglass, lar_error *error) {
+lar_status lar_simulation_stored_energy(const lar_simulation *simulation, const double (*u)[3],
+                                        double *strain, double *hourglass, lar_error *error) {
+    if (!simulation || !u || !strain || !hourglass)
+        return refuse_null("lar_simulation_stored_energy", error);
     const lar_model *model = simulation->domain.model;
     lar_field_plan *plan;
     lar_status status = find_plan(simulation, &plan, error);
@@ -156,10 +220,7 @@ lar_status lar_field_stored_energy(const lar_simulation *simulation, const doubl
 
 lar_status lar_simulation_field(const lar_simulation *simulation, lar_field field,
                                 const double (*u)[3], float *out, lar_error *error) {
-    if (!simulation || !u || !out)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_simulation_field needs a simulation, displacements and a place for "
-                        "the values; none may be NULL");
+    if (!simulation || !u || !out) return refuse_null("lar_simulation_field", error);
     const lar_mesh *mesh = &simulation->domain.model->mesh;
     size_t nodes = (size_t)mesh->node_count;
     lar_field_plan *plan;

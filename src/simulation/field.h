@@ -22,13 +22,4 @@ lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *w
                                  lar_field field, const double (*u)[3], float *out,
                                  lar_error *error);
 
-/* A field of stress or energy in element e at u, [nodes][3] in the mesh's order. Not finite where
- * the element is inside out. */
-lar_status lar_field_of_element(const lar_simulation *simulation, lar_field field, lar_gid e,
-                                const double (*u)[3], double *value, lar_error *error);
-
-/* What all elements store at u [J]. */
-lar_status lar_field_stored_energy(const lar_simulation *simulation, const double (*u)[3],
-                                   double *strain, double *hourglass, lar_error *error);
-
 #endif

@@ -44,10 +44,11 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     open_window(rest, rest->since_step);
 }
 
-/* The ratio of what is left to the strain energy; a body that nothing strains or moves has none. */
+/* The ratio of what is left to the strain energy, which what is active makes negative; a body that
+ * nothing strains or moves has none. */
 static double share_of(double energy, double strain) {
     if (energy == 0.0) return 0.0;
-    return strain > 0.0 ? energy / strain : INFINITY;
+    return strain != 0.0 ? energy / fabs(strain) : INFINITY;
 }
 
 /* What damping will still take: R of rest.h. */

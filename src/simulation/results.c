@@ -137,9 +137,12 @@ static double finite_or_zero(double value) {
 static void measure_cells(lar_results *results, const lar_simulation *simulation) {
     double **cell = results->cell;
     if (!cell[CELL_VON_MISES] && !cell[CELL_PRESSURE] && !cell[CELL_ENERGY]) return;
+    lar_state state = simulation->state;
+    state.past =
+        lar_past_step(&simulation->domain, lar_division_of(&simulation->interactions), &state);
     for (lar_gid e = 0; e < simulation->domain.model->mesh.element_count; e++) {
         double cauchy[6];
-        double energy = lar_measure_stress(&simulation->domain, &simulation->state, e, cauchy);
+        double energy = lar_measure_stress(&simulation->domain, &state, e, cauchy);
         if (cell[CELL_VON_MISES]) cell[CELL_VON_MISES][e] = finite_or_zero(lar_von_mises(cauchy));
         if (cell[CELL_PRESSURE]) cell[CELL_PRESSURE][e] = finite_or_zero(lar_mean_pressure(cauchy));
         if (cell[CELL_ENERGY]) cell[CELL_ENERGY][e] = finite_or_zero(energy);

@@ -9,6 +9,7 @@
 #include "base/vector.h"
 #include "contact/tool_body.h"
 #include "simulation/field.h"
+#include "step/viscous_history.h"
 #include "step/measure.h"
 
 lar_options lar_options_default(void) {
@@ -119,8 +120,9 @@ void lar_simulation_settle(lar_simulation *simulation) {
 
 void lar_simulation_set_start(lar_simulation *simulation) {
     lar_state *state = &simulation->state;
-#define LAR_STATE_CLEAR(type, name, values, kept)                                                  \
-    memset(state->name, 0, (size_t)state->node_count *(values) * sizeof(type));
+#define LAR_STATE_CLEAR(type, name, of_node, of_history, kept)                                     \
+    if (state->name)                                                                               \
+        memset(state->name, 0, LAR_STATE_SIZE(state, of_node, of_history) * sizeof(type));
     LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
 #undef LAR_STATE_CLEAR
     state->step = 0;
@@ -140,7 +142,8 @@ void lar_simulation_set_start(lar_simulation *simulation) {
 static lar_status create_state(lar_simulation *simulation, bool search_always, lar_error *error) {
     const lar_domain *domain = &simulation->domain;
     lar_interactions *interactions = &simulation->interactions;
-    lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded, error);
+    lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded,
+                                         domain->history_count, error);
     if (!status) status = lar_strained_create(domain, &simulation->strained, error);
     simulation->state.strained = &simulation->strained;
     if (!status)
@@ -426,6 +429,17 @@ double lar_simulation_time(const lar_simulation *simulation) {
     return (double)lar_simulation_steps(simulation) * lar_simulation_time_step(simulation);
 }
 
+void lar_simulation_inspect(const lar_simulation *simulation, lar_simulation_info *info) {
+    if (!info) return;
+    *info = (lar_simulation_info){0};
+    if (!simulation) return;
+    *info = (lar_simulation_info){.model = simulation->domain.model,
+                                  .element = simulation->domain.kind,
+                                  .tools = lar_spares_first(&simulation->list),
+                                  .spares = simulation->list.spares,
+                                  .time_step = simulation->domain.time_step};
+}
+
 double lar_simulation_time_step(const lar_simulation *simulation) {
     return simulation ? simulation->domain.time_step : 0;
 }
@@ -456,7 +470,7 @@ uint64_t lar_state_hash(const lar_domain *domain, const lar_state *state) {
         lar_state_read(state, domain->layout.local[g], value);
         hash = lar_state_hash_values(hash, value);
     }
-    return hash;
+    return lar_viscous_hash(domain, state, hash);
 }
 
 uint64_t lar_simulation_hash(const lar_simulation *simulation) {
@@ -479,7 +493,8 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
     const lar_layout *layout = &domain->layout;
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;
-    size_t bytes = domain->block_bytes + domain->more_bytes + elements * sizeof *layout->corner +
+    size_t bytes = domain->block_bytes + domain->more_bytes + domain->relaxing_bytes +
+                   elements * sizeof *layout->corner +
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +
                    nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);
@@ -489,7 +504,8 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
              (size_t)conditions->force_count * (sizeof *conditions->force + sizeof *notes->force) +
              (size_t)conditions->pressure_count *
                  (sizeof *conditions->pressure + sizeof *notes->pressure);
-#define LAR_STATE_BYTES(type, name, values, kept) bytes += nodes * (values) * sizeof(type);
+#define LAR_STATE_BYTES(type, name, of_node, of_history, kept)                                     \
+    bytes += LAR_STATE_SIZE(&simulation->state, of_node, of_history) * sizeof(type);
     LAR_STATE_ARRAYS(LAR_STATE_BYTES)
 #undef LAR_STATE_BYTES
     return bytes;

@@ -85,6 +85,14 @@ void lar_simulation_limit_tools(lar_simulation *simulation);
 lar_status lar_simulation_add_tool_at(lar_simulation *simulation, const lar_tool_info *wanted,
                                       int32_t place, lar_error *error);
 int32_t lar_simulation_free_place(const lar_simulation *simulation);
+/* Refuses what such a tool cannot have. */
+lar_status lar_added_tool_check(const lar_tool_info *wanted, lar_error *error);
+
+/* lar_simulation_set_force_on by index of the set, which recordings have, and the index. */
+lar_status lar_simulation_set_force_at(lar_simulation *simulation, int32_t set,
+                                       const double force[3], lar_error *error);
+lar_status lar_simulation_force_set(const lar_model *model, const char *name, int32_t *index,
+                                    lar_error *error);
 
 /* All processors go on from simulation->state and ->tools as they are now; what failed and what
  * was felt is forgotten. */
@@ -100,7 +108,7 @@ size_t lar_simulation_bytes(const lar_simulation *simulation);
  * checkpoint: the same bits follow. `state` comes from lar_state_create for as many nodes as the
  * simulation's; no memory is asked for, but to reach other processes. A run that has broken off is
  * not copied. */
-lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
+lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *state, lar_tools *tools,
                                lar_error *error);
 lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
                                   const lar_tools *tools, lar_error *error);

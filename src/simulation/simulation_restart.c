@@ -1,8 +1,10 @@
 /* Going back to the start, saving and loading, as the public header has them. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "simulation/checkpoint.h"
 #include "simulation/simulation.h"
+#include "step/viscous_history.h"
 
 static lar_status check_whole(const lar_simulation *simulation, lar_error *error) {
     return simulation->computer && simulation->computer->broken ? lar_computer_refuse(error)
@@ -27,13 +29,14 @@ static void copy_state(const lar_state *from, lar_state *to) {
     to->damped = from->damped;
     to->external = from->external;
     to->contact = from->contact;
-#define LAR_STATE_COPY(type, name, values, kept)                                                   \
-    if (kept) memcpy(to->name, from->name, (size_t)from->node_count *(values) * sizeof(type));
+#define LAR_STATE_COPY(type, name, of_node, of_history, kept)                                      \
+    if ((kept) && from->name && to->name)                                                          \
+        memcpy(to->name, from->name, LAR_STATE_SIZE(from, of_node, of_history) * sizeof(type));
     LAR_STATE_ARRAYS(LAR_STATE_COPY)
 #undef LAR_STATE_COPY
 }
 
-lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar_tools *tools,
+lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *state, lar_tools *tools,
                                lar_error *error) {
     if (simulation->fault.kind)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
@@ -47,16 +50,23 @@ lar_status lar_simulation_copy(lar_simulation *simulation, lar_state *state, lar
     return LAR_OK;
 }
 
-lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
-                                  const lar_tools *tools, lar_error *error) {
+/* `history`: of all elements of the model, where the state has none of its own. */
+static lar_status take_state(lar_simulation *simulation, const lar_state *state,
+                             const double *history, const lar_tools *tools, lar_error *error) {
     lar_status status = check_whole(simulation, error);
     if (status) return status;
     copy_state(state, &simulation->state);
+    if (history) lar_viscous_scatter(&simulation->domain, &simulation->state, history);
     memset(simulation->state.force, 0,
            4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
     simulation->tools = *tools;
     lar_interactions_forget(&simulation->interactions);
     return lar_simulation_take_up(simulation, error);
+}
+
+lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
+                                  const lar_tools *tools, lar_error *error) {
+    return take_state(simulation, state, NULL, tools, error);
 }
 
 static lar_status check_path(const char *path, const char *call, lar_error *error) {
@@ -108,4 +118,93 @@ lar_status lar_simulation_load(lar_simulation *simulation, const char *path, lar
     if (!status) status = lar_simulation_unpack(simulation, path, &bytes, error);
     lar_bytes_free(&bytes);
     return status;
+}
+
+/* ---- in memory ------------------------------------------------------------------------------- */
+
+struct lar_saved {
+    lar_simulation_info of;
+    bool full;       /* something has been saved */
+    lar_state state; /* of the nodes, which are the same on every grid */
+    double *history; /* of the elements, in the order of the model; NULL: nothing is viscous */
+    lar_tools tools;
+    /* What tools felt in the last advance, and how many steps that was. */
+    lar_tool_sum felt[LAR_TOOLS_MAX];
+    double depth[LAR_TOOLS_MAX];
+    uint64_t steps;
+};
+
+lar_status lar_saved_create(const lar_simulation *simulation, lar_saved **out, lar_error *error) {
+    if (!simulation || !out)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_saved_create needs a simulation and a place for the saved state");
+    lar_saved *saved = lar_calloc(1, sizeof *saved);
+    if (!saved) return lar_fail_memory(error, sizeof *saved, "a saved state");
+    size_t values = lar_viscous_total(simulation->domain.model);
+    lar_status status = lar_state_create(&saved->state, simulation->state.node_count, 0, error);
+    if (!status && values > 0 && !(saved->history = lar_calloc(values, sizeof *saved->history)))
+        status = lar_fail_memory(error, values * sizeof *saved->history, "a saved state");
+    lar_simulation_inspect(simulation, &saved->of);
+    if (status)
+        lar_saved_destroy(saved);
+    else
+        *out = saved;
+    return status;
+}
+
+void lar_saved_destroy(lar_saved *saved) {
+    if (!saved) return;
+    lar_state_destroy(&saved->state);
+    free(saved->history);
+    free(saved);
+}
+
+static lar_status check_saved(const lar_simulation *simulation, const lar_saved *saved,
+                              const char *call, lar_error *error) {
+    lar_simulation_info of;
+    lar_status status = lar_simulation_check_zero(simulation, call, error);
+    if (status) return status;
+    if (!saved)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s needs a place of lar_saved_create", call);
+    lar_simulation_inspect(simulation, &of);
+    if (of.model == saved->of.model && simulation->state.node_count == saved->state.node_count &&
+        of.element == saved->of.element && of.tools == saved->of.tools &&
+        of.spares == saved->of.spares && of.time_step == saved->of.time_step)
+        return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s: this place is for a simulation of another model, element, time step or "
+                    "number of tools; create one for this simulation",
+                    call);
+}
+
+lar_status lar_simulation_save_to(const lar_simulation *simulation, lar_saved *saved,
+                                  lar_error *error) {
+    lar_status status = check_saved(simulation, saved, "lar_simulation_save_to", error);
+    if (!status) status = lar_simulation_copy(simulation, &saved->state, &saved->tools, error);
+    if (status) return status;
+    const lar_interval *interval =
+        simulation->computer ? &simulation->computer->interval : &simulation->interval;
+    if (saved->history) lar_viscous_gather(&simulation->domain, &simulation->state, saved->history);
+    memcpy(saved->felt, simulation->report.tool, sizeof saved->felt);
+    memcpy(saved->depth, interval->depth, sizeof saved->depth);
+    saved->steps = simulation->report_steps;
+    saved->full = true;
+    return LAR_OK;
+}
+
+lar_status lar_simulation_load_from(lar_simulation *simulation, const lar_saved *saved,
+                                    lar_error *error) {
+    lar_status status = check_saved(simulation, saved, "lar_simulation_load_from", error);
+    if (!status && !saved->full)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "nothing has been saved there; call lar_simulation_save_to before");
+    if (!status)
+        status = take_state(simulation, &saved->state, saved->history, &saved->tools, error);
+    if (status) return status;
+    lar_interval *interval =
+        simulation->computer ? &simulation->computer->interval : &simulation->interval;
+    memcpy(simulation->report.tool, saved->felt, sizeof saved->felt);
+    memcpy(interval->depth, saved->depth, sizeof saved->depth);
+    simulation->report_steps = saved->steps;
+    return LAR_OK;
 }

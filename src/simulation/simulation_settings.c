@@ -1,4 +1,5 @@
-/* Gravity, damping and stiffness while a simulation runs, as the public header has them.
+/* Gravity, damping, stiffness and forces on nodes while a simulation runs, as the public header has
+ * them.
  *
  * A change acts from the present step on. Whoever changes gravity or stiffness does work, which the
  * energy account gets here. With the velocity v- half a step back, and what central differences
@@ -8,10 +9,13 @@
  *     gravity      is a potential, which jumps by -m dg u        external += m dg (dt v-/2 - u)
  *     materials    W jumps by dW, the inner force by df          external += dW - dt df v-/2
  *
- * Damping does no work when it changes. */
+ * Damping does no work when it changes. Nor do forces that are set on nodes: their work is counted
+ * in halves, before and after nodes move, so that the half of a force that begins belongs to its
+ * first step (contact/conditions.h). */
 #include <string.h>
 
 #include "step/guard.h"
+#include "step/viscous_history.h"
 #include "simulation/simulation.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
@@ -109,6 +113,27 @@ typedef struct body_element {
     const lar_hex8 *hex8;
 } body_element;
 
+/* The same of what its viscous terms have taken, and of their forces. */
+static double viscous_account(const lar_simulation *simulation, const body_element *element,
+                              const double u[8][3], const double v[8][3], double half) {
+    const lar_domain *domain = &simulation->domain;
+    double F[3][3], rate[3][3], P[3][3], rest[3][3], history[LAR_HISTORY_MAX], power = 0;
+    if (!lar_viscous_here(domain, element->e)) return 0;
+    const lar_material *material = lar_domain_material(domain, element->e);
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[element->e])];
+    double past =
+        lar_past_step(domain, lar_division_of(&simulation->interactions), &simulation->state);
+    lar_hex8_gradient(element->hex8, u, F);
+    lar_hex8_gradient(element->hex8, v, rate);
+    lar_viscous_read(domain, &simulation->state, element->e, history);
+    const double *fibre = element->hex8->fibre;
+    lar_viscous_stress_at(material, factor, past, fibre, (const double(*)[3])F, history, P);
+    lar_material_stress(material, fibre, (const double(*)[3])F, rest);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) power += (P[i][j] - rest[i][j]) * (rate[i][j] - (i == j));
+    return element->hex8->volume * (factor * history[LAR_HISTORY_WORK] - half * power);
+}
+
 /* Energy of an element less dt f v-/2 with its material as it is [J]: linear in its stiffness. (Of
  * barriers the energy only: their force in half a step is nothing beside it.) The element's nodes
  * are numbered differently in its block, so corners are those of the layout. */
@@ -128,6 +153,8 @@ static double element_account(const lar_simulation *simulation, const body_eleme
         account = lar_hex8_energy(element->hex8, material, (const double(*)[3])u, &hourglass) +
                   lar_guard_energy(domain, state, element->e) + hourglass;
         lar_hex8_force(element->hex8, material, (const double(*)[3])u, force);
+        account += viscous_account(simulation, element, (const double(*)[3])u,
+                                   (const double(*)[3])v, half);
     } else {
         double corner[8][3];
         lar_mesh_corners(&domain->model->mesh, element->e, corner);
@@ -174,11 +201,11 @@ lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t mate
                         "there is no material %ld; the model has %ld, counted from 0, and -1 means "
                         "all",
                         (long)material, (long)count);
-    if (!(factor >= LAR_FACTOR_MIN && factor <= LAR_FACTOR_MAX))
+    if (!(factor >= LAR_STIFFNESS_MIN && factor <= LAR_STIFFNESS_MAX))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a stiffness of %g times the model's; it is %g to %g times, change the "
                         "model's materials for more",
-                        factor, LAR_FACTOR_MIN, LAR_FACTOR_MAX);
+                        factor, LAR_STIFFNESS_MIN, LAR_STIFFNESS_MAX);
     lar_settings wanted = simulation->tools.settings;
     for (int i = 0; i < LAR_FACTORS_MAX; i++)
         if (material < 0 || i == lar_factor_of(material)) wanted.factor[i] = factor;
@@ -197,4 +224,88 @@ double lar_simulation_stiffness(const lar_simulation *simulation, int32_t materi
     int32_t count = simulation ? simulation->domain.model->material_count : 0;
     if (material < 0 || material >= count) return 0;
     return simulation->tools.settings.factor[lar_factor_of(material)];
+}
+
+/* ---- forces on nodes ------------------------------------------------------------------------- */
+
+static lar_status put_force(lar_simulation *simulation, const lar_force_entry *entry,
+                            lar_error *error) {
+    double max = lar_domain_force_max(&simulation->domain);
+    const double *f = entry->force;
+    if (!lar_force_good(entry, simulation->domain.model, max))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a force of (%g, %g, %g) N on a node; this material bears components up "
+                        "to %.3g N, check the unit",
+                        f[0], f[1], f[2], max);
+    if (!lar_forces_put(&simulation->tools.forces, entry))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%d forces are set already; remove one, or give nodes of one force a set",
+                        LAR_FORCES_MAX);
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+static void take_force(lar_force_entry *entry, const double force[3]) {
+    for (int i = 0; i < 3 && force; i++) entry->force[i] = force[i];
+}
+
+lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t node, const double force[3],
+                                    lar_error *error) {
+    lar_status status = lar_simulation_check_change(simulation, "lar_simulation_set_force", error);
+    if (status) return status;
+    int32_t count = simulation->domain.model->mesh.node_count;
+    bool all = node == -1 && !force;
+    if (!all && (node < 0 || node >= count))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no node %ld; the model has %ld, counted from 0, and -1 without a "
+                        "force removes all forces that were set",
+                        (long)node, (long)count);
+    lar_force_entry entry = {.of = node};
+    take_force(&entry, force);
+    if (!all) return put_force(simulation, &entry, error);
+    simulation->tools.forces = (lar_forces){0};
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
+}
+
+lar_status lar_simulation_force_set(const lar_model *model, const char *name, int32_t *index,
+                                    lar_error *error) {
+    const lar_mesh *mesh = &model->mesh;
+    const lar_set *set = name ? lar_mesh_find_set(mesh, name, LAR_SET_NODES) : NULL;
+    if (!set)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the model has no set of nodes '%.100s'; lar_model_set names those that "
+                        "there are",
+                        name ? name : "");
+    *index = (int32_t)(set - mesh->set);
+    return LAR_OK;
+}
+
+lar_status lar_simulation_set_force_at(lar_simulation *simulation, int32_t set,
+                                       const double force[3], lar_error *error) {
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_force_on", error);
+    if (status) return status;
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
+    if (set < 0 || set >= mesh->set_count || mesh->set[set].kind != LAR_SET_NODES)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "set %ld of the model is none of nodes",
+                        (long)set);
+    lar_force_entry entry = {.of = set, .on_set = 1};
+    take_force(&entry, force);
+    return put_force(simulation, &entry, error);
+}
+
+lar_status lar_simulation_set_force_on(lar_simulation *simulation, const char *set,
+                                       const double force[3], lar_error *error) {
+    int32_t index;
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_force_on", error);
+    if (!status) status = lar_simulation_force_set(simulation->domain.model, set, &index, error);
+    return status ? status : lar_simulation_set_force_at(simulation, index, force, error);
+}
+
+void lar_simulation_force(const lar_simulation *simulation, int32_t node, double force[3]) {
+    if (!force) return;
+    for (int i = 0; i < 3; i++) force[i] = 0;
+    if (simulation) lar_forces_at(&simulation->tools.forces, simulation->domain.model, node, force);
 }

@@ -132,9 +132,18 @@ static lar_status check_add(const lar_simulation *simulation, int32_t place, lar
     return check_place(simulation, place, error);
 }
 
+lar_status lar_added_tool_check(const lar_tool_info *wanted, lar_error *error) {
+    if (wanted->friction == 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "a tool that is added has no friction, and %g was asked for; ask for 0, or let "
+                    "the scene have the tool",
+                    wanted->friction);
+}
+
 lar_status lar_simulation_add_tool_at(lar_simulation *simulation, const lar_tool_info *wanted,
                                       int32_t place, lar_error *error) {
     lar_status status = check_add(simulation, place, error);
+    if (!status) status = lar_added_tool_check(wanted, error);
     if (!status) status = lar_simulation_gather(simulation, error);
     if (status) return status;
     lar_tool added = {.shape = wanted->shape,

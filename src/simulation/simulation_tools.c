@@ -6,6 +6,7 @@
 #include "base/pose.h"
 #include "base/vector.h"
 #include "contact/tool_body.h"
+#include "contact/touch_list.h"
 #include "step/grasp.h"
 #include "simulation/simulation.h"
 
@@ -66,6 +67,7 @@ lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index, 
     lar_status status = check_tool(simulation, index, info, error);
     if (status) return status;
     *info = lar_tool_inspect(&simulation->list.tool[index]);
+    info->serial = lar_spare_serial(&simulation->list, &simulation->tools, index);
     return LAR_OK;
 }
 
@@ -240,6 +242,35 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
         force->force[i] = (double)sum->force[i] * unit;
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
     }
+    return LAR_OK;
+}
+
+/* Corners as the model numbers them. */
+static void name_nodes(const lar_domain *domain, lar_touch *touch) {
+    bool rubs = touch->face < 0;
+    int32_t local = touch->node[0];
+    for (int a = 0; a < 4; a++)
+        touch->node[a] = rubs ? -1 : domain->model->surface.corner[touch->face][a];
+    if (rubs) touch->node[0] = domain->layout.global[local];
+}
+
+lar_status lar_simulation_tool_touches(const lar_simulation *simulation, int32_t tool, int32_t max,
+                                       lar_touch *touch, int32_t *count, lar_error *error) {
+    lar_status status = check_tool(simulation, tool, count, error);
+    if (!status)
+        status = lar_simulation_check_zero(simulation, "lar_simulation_tool_touches", error);
+    if (!status && (max < 0 || (max > 0 && !touch)))
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "lar_simulation_tool_touches: there is no room for %ld points; give an "
+                          "array, or 0 to count them",
+                          (long)max);
+    if (!status) status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    lar_touch_list list = {.tool = tool, .max = max, .touch = touch};
+    lar_measure_touches(&simulation->domain, &simulation->scratch->measure, &simulation->state,
+                        &list);
+    for (int32_t i = 0; i < list.count && i < max; i++) name_nodes(&simulation->domain, &touch[i]);
+    *count = list.count;
     return LAR_OK;
 }
 

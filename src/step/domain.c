@@ -8,6 +8,8 @@
 #include "contact/tool_body.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
+#include "step/beside.h"
+#include "step/viscous_history.h"
 
 /* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
 static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
@@ -16,6 +18,7 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
     const lar_material *material = lar_model_material_of(model, e);
     lar_mesh_corners(&model->mesh, e, corner);
     lar_hex8_prepare(corner, material, hex8);
+    memcpy(hex8->fibre, lar_model_fibre(model, e), sizeof hex8->fibre);
     return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
                                     : lar_hex8_full_frequency(corner, material);
 }
@@ -100,9 +103,16 @@ static lar_block_more *more_of(const lar_domain *domain, int32_t r, int32_t b) {
     return domain->run[r].more ? domain->more + domain->run_first[r] + b : NULL;
 }
 
+static lar_beside beside_of(const lar_domain *domain, int32_t r, int32_t b) {
+    int32_t at = domain->run_first[r] + b;
+    return (lar_beside){.relaxing = domain->run[r].viscous ? domain->relaxing + at : NULL,
+                        .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL};
+}
+
 /* What an element's material says in its lane, and *limit of corner_limit. */
 static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
-                          lar_block_more *more, int lane, lar_gid e, double *limit) {
+                          lar_block_more *more, lar_beside beside, int lane, lar_gid e,
+                          double *limit) {
     int32_t material = domain->model->element_material[e];
     double factor = domain->factor[lar_factor_of(material)];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
@@ -112,6 +122,8 @@ static void fill_material(const lar_domain *domain, const lar_lane_base *base, l
         *lar_block_parameter(head, more, k, lane) =
             lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
                                          : made->parameter[k];
+    if (beside.relaxing) lar_fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
+    if (beside.fibres) lar_fill_fibres(domain, base, beside.fibres, lane, made, e);
     *limit = base->limit * factor * factor;
 }
 
@@ -165,7 +177,8 @@ static lar_status choose_blocks(lar_domain *domain, lar_error *error) {
 
 static bool same_run(const lar_lanes *a, const lar_lanes *b) {
     return a->thread == b->thread && a->batch == b->batch && a->law == b->law &&
-           a->shape == b->shape && a->turn == b->turn && a->rows == b->rows;
+           a->shape == b->shape && a->turn == b->turn && a->rows == b->rows &&
+           a->viscous == b->viscous && a->fibrous == b->fibrous;
 }
 
 /* The runs of equal blocks, of at most so many, and the memory they need. */
@@ -187,13 +200,19 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
         if (b == 0 || domain->run[domain->run_count - 1].count == max ||
             !same_run(lanes - 1, lanes)) {
             domain->run_first[domain->run_count] = b;
-            domain->run[domain->run_count++] = (lar_block_run){
-                .law = lanes->law, .shape = lanes->shape, .rows = lanes->rows, .turn = lanes->turn};
+            domain->run[domain->run_count++] = (lar_block_run){.law = lanes->law,
+                                                               .shape = lanes->shape,
+                                                               .rows = lanes->rows,
+                                                               .turn = lanes->turn,
+                                                               .viscous = lanes->viscous,
+                                                               .fibrous = lanes->fibrous};
         }
         domain->run[domain->run_count - 1].count++;
         domain->block_bytes += lar_block_size(lanes->shape);
         if (lar_law_has_more(lanes->law))
             domain->more_bytes = (size_t)layout->block_count * sizeof *domain->more;
+        if (lanes->fibrous)
+            domain->fibre_bytes = (size_t)layout->block_count * sizeof *domain->fibres;
     }
     return LAR_OK;
 }
@@ -201,12 +220,14 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
 static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
     if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
+    if (domain->fibre_bytes) domain->fibres = lar_calloc_aligned(domain->fibre_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
-    if (!domain->blocks || (domain->more_bytes && !domain->more) || !domain->base ||
-        !domain->corner_limit || !domain->rest)
+    if (!domain->blocks || (domain->more_bytes && !domain->more) ||
+        (domain->fibre_bytes && !domain->fibres) || !domain->base || !domain->corner_limit ||
+        !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -243,7 +264,8 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
         if (e >= 0) {
             lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
             fill_lane(domain, run, memory, whole, lane, e, steepest, base);
-            fill_material(domain, base, memory, more_of(domain, r, b), lane, e, limit + lane);
+            fill_material(domain, base, memory, more_of(domain, r, b), beside_of(domain, r, b),
+                          lane, e, limit + lane);
             continue;
         }
         if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
@@ -261,6 +283,8 @@ static bool fill_blocks(lar_domain *domain) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
         if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
+        if (run->viscous) run->relaxing = domain->relaxing + domain->run_first[r];
+        if (run->fibrous) run->fibres = domain->fibres + domain->run_first[r];
         run->streamed = domain->block_bytes > CACHED_BYTES;
         for (int32_t b = 0; b < run->count && same; b++) {
             same = fill_block(domain, r, b, memory, &steepest);
@@ -317,6 +341,8 @@ static lar_material times(const lar_material *material, double factor) {
     lar_material made = *material;
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         if (lar_law_scales(made.law, k)) made.parameter[k] *= factor;
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+        if (lar_fibre_scales(made.fibre.law, k)) made.fibre.parameter[k] *= factor;
     return made;
 }
 
@@ -339,7 +365,8 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MAX]
                 lar_gid e = domain->layout.block[block].element[lane];
                 if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
                     fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
-                                  more_of(domain, r, b), lane, e, limit + lane);
+                                  more_of(domain, r, b), beside_of(domain, r, b), lane, e,
+                                  limit + lane);
             }
             memory += lar_run_stride(&domain->run[r]);
         }
@@ -370,6 +397,8 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     lar_hex8_block made;
     const lar_box_block *box = block;
     *hex8 = (lar_hex8){.volume = base->volume};
+    memcpy(hex8->fibre, lar_model_fibre(domain->model, domain->layout.block[b].element[lane]),
+           sizeof hex8->fibre);
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         hex8->stiffness[m] = general->head.stiffness[m][lane] / domain->scale;
     if (run->shape == LAR_SHAPE_BOX) {
@@ -397,7 +426,11 @@ static void choose_scale(lar_domain *domain) {
         const lar_material *material = lar_model_material_of(model, e);
         lar_mesh_corners(&model->mesh, e, corner);
         double side = cbrt(lar_hexahedron_volume(corner));
-        double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
+        double modulus =
+            lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
+        if (lar_fibre_here(&material->fibre))
+            modulus += lar_fibre_modulus(&material->fibre) + fabs(material->fibre.along) +
+                       fabs(material->fibre.across);
         characteristic = fmax(characteristic, modulus * side * side);
     }
     int exponent;
@@ -453,6 +486,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
                                     lar_layout_style style, lar_domain *domain, lar_error *error) {
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
+    if (!status) status = lar_fibres_check(domain, error);
     if (!status) status = copy_materials(domain, error);
     if (!status) status = choose_step(domain, options, error);
     domain->interval = LAR_INTERVAL_MAX; /* with tools: lar_interval_length */
@@ -463,7 +497,8 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     if (!status) {
         choose_scale(domain);
         prepare_motion(domain);
-        if (domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+        status = lar_viscous_plan(domain, error);
+        if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     }
     if (!status)
         status = lar_conditions_create(model, domain->layout.local, NULL,
@@ -518,6 +553,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
     if (!status) status = list_spares(domain, error);
     if (!status) status = copy_nodes(whole, counted, domain, error);
     if (!status) status = list_runs(domain, run_max, error);
+    if (!status) status = lar_viscous_plan(domain, error);
     if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     domain->limits = whole->limits; /* a run stops for the same reason on any grid */
     if (status) lar_domain_destroy(domain);
@@ -531,6 +567,8 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->run_first);
     free(domain->blocks);
     free(domain->more);
+    free(domain->fibres);
+    lar_viscous_unplan(domain);
     free(domain->material);
     free(domain->base);
     free(domain->corner_limit);

@@ -54,6 +54,14 @@ typedef struct lar_domain {
     size_t block_bytes;
     lar_block_more *more; /* [blocks] of models that have a law with so many parameters, or NULL */
     size_t more_bytes;
+    lar_viscous_block *relaxing; /* [blocks] of models that are viscous somewhere, or NULL */
+    size_t relaxing_bytes;
+    lar_fibre_block *fibres; /* [blocks] of models that have fibres somewhere, or NULL */
+    size_t fibre_bytes;
+    size_t history_count;     /* values of a state's history, lanes without an element among them */
+    size_t *run_history;      /* [run_count] where a viscous run's begin */
+    int64_t *element_history; /* [elements of the model] where an element's begin, one in eight;
+                                 -1: it has none here. NULL where nothing is viscous */
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */
     double *mass;   /* [layout.node_padded] kg; spare nodes 0 */
@@ -96,6 +104,12 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
 /* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
  * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
 double lar_auto_step(const lar_model *model, double stable_step);
+
+/* The largest component of a force that may be set on a node [N]: a few hundred together, and more
+ * from elements, still fit the force sums. */
+static inline double lar_domain_force_max(const lar_domain *domain) {
+    return 0x1p52 / domain->scale;
+}
 
 /* The material of element e as stiff as it is now. */
 static inline const lar_material *lar_domain_material(const lar_domain *domain, lar_gid e) {

@@ -51,7 +51,7 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
 
 /* What is found in a step counts from the next one on, until that is over or, where steps are not
  * divided and nothing is close to it, until the next interval is. */
-enum { SEEN_IN_STEPS = 2 };
+enum { SEEN_IN_STEPS = 3 };
 
 static double steps_ahead(const lar_domain *domain, const lar_state *state) {
     return state->close ? SEEN_IN_STEPS : fmax(SEEN_IN_STEPS, (double)domain->interval + 1);
@@ -136,32 +136,57 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
  * after the next decision about parts of steps, and one that would ask for more parts than there
  * can be never is. Returns which part of it. */
 static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step,
-                     double force[8][3]) {
+                     double mean, double force[8][3]) {
     static const double ROOM = 1; /* of (omega dt / 2)^2 */
-    double takes = 0.25 * step * step * (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
+    double rate = (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
+    double takes = 0.25 * mean * fmax(mean, step) * rate;
     if (!(takes > ROOM)) return 1;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) force[a][i] *= ROOM / takes;
     return ROOM / takes;
 }
 
+/* Half of the work of what an element was damped with: contact takes it. What a barrier lacks that
+ * is softer than its energy says is done to the body from outside. */
+static void add_half_work(const double rest[8][3], const double now[8][3], const double v[8][3],
+                          const lar_damped *damped, lar_state *state) {
+    double damper[8], lack[8];
+    bool lacks = false;
+    for (int a = 0; a < 8; a++) {
+        damper[a] = (double)damped->damper[a];
+        lack[a] = (double)damped->lack[a];
+        lacks = lacks || lack[a] != 0;
+    }
+    state->contact += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, damper);
+    if (lacks)
+        state->external += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, lack);
+}
+
 /* Returns whether barriers are at work. What damps has half of its work done with the velocities
- * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. */
+ * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. What
+ * opens is damped as in a whole step: it gives back no more than it took while the step was not
+ * divided yet. (A damper that never pulls cannot make a corner swing, however much it leads.) */
 static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_state *state) {
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
+    double mean = state->past > 0 ? 0.5 * (state->past + step) : step;
+    const lar_guard_lead lead = {.closing = LEAD * step, .opening = LEAD * domain->time_step};
     lar_guard guard;
     corners_of(domain, state, e, rest, now);
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
-                         lar_domain_material(domain, e), LEAD * step, force, &guard);
+                         lar_domain_material(domain, e), lead, force, &guard);
     if (!(guard.min < LAR_GUARD_START)) return false;
-    double part = soften(domain, e, guard.stiffness, step, force);
+    double part = soften(domain, e, guard.stiffness, step, mean, force);
     add(domain, e, (const double(*)[3])force, state);
     if (!damped) return true;
-    state->contact -= 0.5 * step * part * guard.taken;
-    *damped = (lar_damped){.element = e, .half_step = (float)(0.5 * step)};
-    for (int a = 0; a < 8; a++) damped->damper[a] = (float)(part * guard.damper[a]);
+    *damped = (lar_damped){.element = e, .step = (float)step, .half_mean = (float)(0.5 * mean)};
+    for (int a = 0; a < 8; a++) {
+        damped->damper[a] = (float)(part * guard.damper[a]);
+        damped->lack[a] = (float)((1 - part) * guard.slope[a]);
+    }
+    add_half_work((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v, damped,
+                  state);
     return true;
 }
 
@@ -172,16 +197,13 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     lar_strained *strained = state->strained;
     const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < strained->damped_count[r] && state->listed; i++) {
-        double rest[8][3], then[8][3], v[8][3], damper[8];
+        double rest[8][3], then[8][3], v[8][3];
         corners_of(domain, state, damped[i].element, rest, then);
         lar_domain_corners(domain, state->v, damped[i].element, v);
-        for (int a = 0; a < 8; a++) {
-            damper[a] = (double)damped[i].damper[a];
-            for (int k = 0; k < 3; k++) then[a][k] -= 2 * (double)damped[i].half_step * v[a][k];
-        }
-        state->contact += (double)damped[i].half_step *
-                          lar_hex8_guard_power((const double(*)[3])rest, (const double(*)[3])then,
-                                               (const double(*)[3])v, damper);
+        for (int a = 0; a < 8; a++)
+            for (int k = 0; k < 3; k++) then[a][k] -= (double)damped[i].step * v[a][k];
+        add_half_work((const double(*)[3])rest, (const double(*)[3])then, (const double(*)[3])v,
+                      &damped[i], state);
     }
     strained->damped_count[r] = 0;
 }

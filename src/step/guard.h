@@ -12,11 +12,13 @@
 #include "step/domain.h"
 #include "layout/state.h"
 
-/* What damped an element in the step before. */
+/* What damped an element in the step before, and what its barriers should have pushed with. */
 typedef struct lar_damped {
     lar_gid element;
-    float half_step; /* [s] */
-    float damper[8]; /* [J] */
+    float step;      /* that its nodes then moved [s] */
+    float half_mean; /* of the time that the force acted [s] */
+    float damper[8]; /* of each corner: what takes energy [J] */
+    float lack[8];   /* what a softened barrier lacks [J] */
 } lar_damped;
 
 /* The strained elements of a domain's runs, beside the state: each run has the places of its

@@ -44,9 +44,16 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
             for (size_t i = 0; i < sizeof(lar_block_head) / sizeof *word; i++)
                 hash = lar_hash_word(hash, word[i]);
         }
-    if (domain->rest) hash = hash_doubles(hash, domain->rest, 4 * (size_t)domain->layout.node_padded);
+    if (domain->rest)
+        hash = hash_doubles(hash, domain->rest, 4 * (size_t)domain->layout.node_padded);
     word = (const void *)domain->more;
     for (size_t i = 0; word && i < domain->more_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
+    word = (const void *)domain->fibres;
+    for (size_t i = 0; word && i < domain->fibre_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
+    word = (const void *)domain->relaxing;
+    for (size_t i = 0; word && i < domain->relaxing_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
     return hash;
 }
@@ -66,6 +73,21 @@ static uint64_t hash_mesh(const lar_mesh *mesh) {
     return hash;
 }
 
+/* What is without fibres has the hash that it always had. */
+static uint64_t hash_fibres(uint64_t hash, const lar_model *model) {
+    if (!lar_model_fibrous(model)) return hash;
+    for (int i = 0; i < model->material_count; i++) {
+        const lar_fibre *f = &model->material[i].fibre;
+        hash = lar_hash_word(hash, (uint64_t)lar_fibre_kind(f));
+        hash = hash_doubles(hash, f->parameter, LAR_FIBRE_PARAMETERS);
+        hash = hash_doubles(hash, (const double[]){f->along, f->across}, 2);
+    }
+    for (lar_gid e = 0; e < model->mesh.element_count; e++)
+        if (lar_fibre_directed(&lar_model_material_of(model, e)->fibre))
+            hash = hash_doubles(hash, lar_model_fibre(model, e), 3);
+    return hash;
+}
+
 static uint64_t hash_materials(const lar_model *model) {
     uint64_t hash = lar_hash_word(2, (uint64_t)model->material_count);
     for (int i = 0; i < model->material_count; i++) {
@@ -74,7 +96,14 @@ static uint64_t hash_materials(const lar_model *model) {
         hash = lar_hash_double(hash, m->density);
         int count = lar_law_table[m->law].count; /* at least three: so many all laws once had */
         hash = hash_doubles(hash, m->parameter, count > 3 ? (size_t)count : 3);
+        const lar_viscosity *v = &m->viscosity;
+        if (v->terms == 0) continue; /* what is elastic has the hash that it always had */
+        hash = lar_hash_word(hash, (uint64_t)lar_viscosity_kind(v));
+        hash = lar_hash_double(hash, v->rest);
+        hash = hash_doubles(hash, v->share, (size_t)v->terms);
+        hash = hash_doubles(hash, v->time, (size_t)v->terms);
     }
+    hash = hash_fibres(hash, model);
     return hash_indices(hash, model->element_material, model->mesh.element_count);
 }
 
@@ -125,6 +154,7 @@ static uint64_t hash_contacts(const lar_model *model) {
         hash = hash_indices(hash, c->face, c->face_count);
         hash = hash_indices(hash, c->against, c->against_count);
         hash = hash_doubles(hash_doubles(hash, c->through, 3), c->normal, 3);
+        if (c->friction > 0) hash = lar_hash_double(hash, c->friction);
     }
     return hash;
 }
@@ -140,6 +170,7 @@ static uint64_t hash_tools(const lar_tool_list *list) {
         hash = hash_doubles(hash, t->rest.position, 3);
         hash = hash_doubles(hash, t->rest.orientation, 4);
         hash = lar_hash_double(hash, t->rest.opening);
+        if (t->friction > 0) hash = lar_hash_double(hash, t->friction);
     }
     return hash;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "step/guard.h"
+#include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
 
 static double element_energy(const lar_domain *domain, const lar_state *state, lar_gid e,
@@ -16,8 +17,32 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
         return lar_hex8_full_energy(corner, lar_domain_material(domain, e), u);
     lar_hex8 hex8;
     lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
+    memcpy(hex8.fibre, lar_model_fibre(domain->model, e), sizeof hex8.fibre);
     return lar_hex8_energy(&hex8, lar_domain_material(domain, e), u, hourglass) +
            lar_guard_energy(domain, state, e);
+}
+
+/* What a viscous element remembers, taken on to the time of the state: returns the stress P. */
+static void look_at_history(const lar_domain *domain, const lar_state *state, lar_gid e,
+                            const double F[3][3], double history[LAR_HISTORY_MAX], double P[3][3]) {
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    lar_viscous_read(domain, state, e, history);
+    lar_viscous_stress_at(lar_domain_material(domain, e), factor, state->past,
+                          lar_model_fibre(domain->model, e), F, history, P);
+}
+
+/* What the viscous terms of an element have taken. */
+static double viscous_work(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double corner[8][3], u[8][3], F[3][3], P[3][3], history[LAR_HISTORY_MAX];
+    if (!lar_viscous_here(domain, e)) return 0;
+    lar_hex8 hex8;
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    look_at_history(domain, state, e, F, history, P);
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    return factor * hex8.volume * history[LAR_HISTORY_WORK];
 }
 
 /* ---- scratch ------------------------------------------------------------------------------- */
@@ -54,10 +79,8 @@ typedef struct look {
     double gravity[3]; /* at the time of the state [m/s^2] */
 } look;
 
-/* Loads and internal forces stand in look->state.force. */
-static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
+static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
                        const lar_state *state, look *l) {
-    lar_fault ignored = {0};
     *l = (look){.domain = domain,
                 .interactions = &scratch->interactions,
                 .context = lar_domain_context(domain),
@@ -66,6 +89,13 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
                    l->gravity);
     lar_step_enter(domain, l->interactions, &l->context, &l->state);
+}
+
+/* Loads and internal forces stand in look->state.force. */
+static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
+                       const lar_state *state, look *l) {
+    lar_fault ignored = {0};
+    enter_look(domain, scratch, state, l);
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
 }
 
@@ -209,7 +239,24 @@ void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
         double hourglass;
         energy->strain += element_energy(domain, state, e, &hourglass);
         energy->hourglass += hourglass;
+        energy->viscous += viscous_work(domain, &l.state, e);
     }
+}
+
+void lar_measure_touches(const lar_domain *domain, lar_measure_scratch *scratch,
+                         const lar_state *state, lar_touch_list *list) {
+    lar_tool_contact *contact = &scratch->interactions.tool_contact;
+    look l;
+    contact->touches = list;
+    if (contact->press) { /* friction asks for all other forces */
+        begin_look(domain, scratch, state, &l);
+    } else {
+        enter_look(domain, scratch, state, &l);
+        lar_interactions_forget(&scratch->interactions);
+        lar_tool_contact_apply(contact, &l.context, &l.state);
+    }
+    contact->touches = NULL;
+    end_look(&l);
 }
 
 double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
@@ -231,9 +278,12 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
     lar_hex8 hex8;
     lar_hex8_prepare(corner, material, &hex8);
     lar_hex8_gradient(&hex8, u, F);
-    double J = lar_law_stress(material, F, P);
+    const double *fibre = lar_model_fibre(domain->model, e);
+    double J = lar_material_stress(material, fibre, F, P), history[LAR_HISTORY_MAX];
+    if (lar_viscous_here(domain, e))
+        look_at_history(domain, state, e, (const double(*)[3])F, history, P);
     lar_cauchy_stress(F, P, J, cauchy);
-    return lar_law_energy(material, F);
+    return lar_material_energy(material, fibre, F);
 }
 
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,

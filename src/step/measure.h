@@ -23,11 +23,16 @@ void lar_measure_scratch_destroy(lar_measure_scratch *scratch); /* idempotent */
 void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
                         const lar_state *state, lar_energy *energy);
 
+/* Where the list's tool touches at the time of the state, and with which force the step that
+ * follows begins; corners of faces are not filled in. No memory is asked for. */
+void lar_measure_touches(const lar_domain *domain, lar_measure_scratch *scratch,
+                         const lar_state *state, lar_touch_list *list);
+
 /* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
 double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
 
-/* Mean Cauchy stress of global element e [Pa]: xx yy zz xy yz zx. Returns the strain energy per
- * reference volume [J/m^3]. */
+/* Mean Cauchy stress of global element e [Pa]: xx yy zz xy yz zx, of viscous elements state->past
+ * after the forces before. Returns the strain energy per reference volume [J/m^3]. */
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]);
 

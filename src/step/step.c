@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/tool_friction.h"
 #include "step/guard.h"
+#include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
 
@@ -13,6 +15,18 @@ static void fault_element(lar_fault *fault, const lar_state *state, lar_gid e) {
                          fault->part == state->part && e < fault->element))
         *fault = (lar_fault){
             .kind = LAR_FAULT_ELEMENT, .element = e, .step = state->step, .part = state->part};
+}
+
+/* Forces of run r. `keeps`: the step counts, and what viscous elements remember goes on. */
+static int64_t recover_run(const lar_domain *domain, int32_t r, bool keeps,
+                           lar_hex8_monitor *monitor, lar_state *state) {
+    const lar_block_run *run = &domain->run[r];
+    if (!run->viscous && !run->fibrous)
+        return domain->kernels->recover(run, state->u, state->force, &domain->limits, monitor);
+    lar_viscous_step step = {.length = state->past, .keep = keeps};
+    if (run->viscous) step.history = state->history + domain->run_history[r];
+    return domain->kernels->recover_more(run, run->viscous ? &step : NULL, state->u, state->force,
+                                         &domain->limits, monitor);
 }
 
 /* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
@@ -25,7 +39,12 @@ static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_st
     for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
         one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;
         one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
-        found = domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
+        one.viscous = 0; /* the elastic stress says enough, and what is remembered has gone on */
+        if (one.fibrous) one.fibres = domain->run[r].fibres + b;
+        found = one.fibrous
+                    ? domain->kernels->recover_more(&one, NULL, state->u, state->force,
+                                                    &domain->limits, NULL)
+                    : domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
@@ -50,8 +69,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
         lar_hex8_monitor monitor = {.limit = domain->corner_limit + place,
                                     .lane = state->strained->lane + place,
                                     .strain = state->strained->strain + place};
-        int64_t found = domain->kernels->recover(&domain->run[r], state->u, state->force,
-                                                 &domain->limits, watches ? &monitor : NULL);
+        int64_t found = recover_run(domain, r, true, watches ? &monitor : NULL, state);
         if (watches)
             lar_guard_select_and_apply(domain, r, &monitor, due, state);
         else
@@ -114,6 +132,14 @@ double lar_mean_step(const lar_domain *domain, const lar_step_division *division
     return changes ? 0.5 * (step + domain->time_step / division->before) : step;
 }
 
+double lar_past_step(const lar_domain *domain, const lar_step_division *division,
+                     const lar_state *state) {
+    if (state->part > 0) return domain->time_step / state->parts;
+    if (state->step == 0) return 0;
+    int32_t parts = state->step == division->since ? division->before : division->parts;
+    return domain->time_step / parts;
+}
+
 const lar_settings *lar_settings_of(const lar_interactions *interactions) {
     return interactions->tool_contact.tools ? &interactions->tool_contact.tools->settings : NULL;
 }
@@ -143,9 +169,12 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
                     lar_condition_context *context, lar_state *state) {
     const lar_step_division *division = lar_division_of(interactions);
     if (state->part == 0) state->parts = division->parts;
+    state->past = lar_past_step(domain, division, state);
     context->time_step = domain->time_step / state->parts;
     context->mean_step = lar_mean_step(domain, division, state);
     context->settings = lar_settings_of(interactions);
+    context->forces =
+        interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
     context->hardness = division->hardness;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
@@ -164,6 +193,22 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     }
 }
 
+/* lar_step_leapfrog, with gravity where it follows a curve. */
+static lar_leapfrog leapfrog_at(const lar_domain *domain, const lar_interactions *interactions,
+                                const lar_condition_context *context, double time,
+                                const lar_state *state) {
+    const lar_settings *settings = lar_settings_of(interactions);
+    lar_leapfrog leapfrog = lar_step_leapfrog(domain, interactions, state);
+    if (lar_gravity_varies(domain->model, settings)) {
+        double gravity[3], damping = lar_damping_of(domain->model, settings);
+        double mean = context->mean_step;
+        lar_gravity_at(domain->model, settings, time, gravity);
+        for (int i = 0; i < 3; i++)
+            leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
+    }
+    return leapfrog;
+}
+
 static void move_nodes(const lar_domain *domain, const lar_interactions *interactions,
                        const lar_condition_context *context, double time, lar_state *state,
                        lar_fault *fault) {
@@ -172,17 +217,8 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
                     interactions->surroundings->planes.count > 0 ||
                     interactions->surroundings->faces.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
-    const lar_model *model = domain->model;
-    const lar_settings *settings = lar_settings_of(interactions);
-    lar_leapfrog leapfrog = lar_step_leapfrog(domain, interactions, state);
-    double damping = lar_damping_of(model, settings), damped = 0;
-    double mean = context->mean_step;
-    if (lar_gravity_varies(model, settings)) {
-        double gravity[3];
-        lar_gravity_at(model, settings, time, gravity);
-        for (int i = 0; i < 3; i++)
-            leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
-    }
+    lar_leapfrog leapfrog = leapfrog_at(domain, interactions, context, time, state);
+    double damping = lar_damping_of(domain->model, lar_settings_of(interactions)), damped = 0;
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
@@ -191,7 +227,7 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
         !fault->kind)
         *fault = (lar_fault){
             .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
-    state->damped += damping * damped * (mean / domain->time_step);
+    state->damped += damping * damped * (context->mean_step / domain->time_step);
 }
 
 static void apply_loads(const lar_domain *domain, lar_interactions *interactions,
@@ -227,6 +263,16 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
+/* Friction of tools: all other forces are there. */
+static void add_friction(const lar_domain *domain, lar_interactions *interactions,
+                         const lar_condition_context *context, lar_state *state) {
+    lar_tool_contact *contact = &interactions->tool_contact;
+    if (!contact->press) return;
+    lar_leapfrog leapfrog =
+        leapfrog_at(domain, interactions, context, lar_state_time(domain, state), state);
+    lar_tool_friction_add(contact, context, &leapfrog, domain->push, state);
+}
+
 void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_state *state,
                      lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
@@ -236,11 +282,11 @@ void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_st
     add_body_contact(&scratch->body_contact, &context, state, fault);
     if (domain->kind != LAR_ELEMENT_HEX8) {
         lar_step_recover(domain, 0, domain->run_count, state, fault);
-        return;
+    } else {
+        for (int32_t r = 0; r < domain->run_count; r++) recover_run(domain, r, false, NULL, state);
+        lar_guard_apply_all(domain, state);
     }
-    for (int32_t r = 0; r < domain->run_count; r++)
-        domain->kernels->recover(&domain->run[r], state->u, state->force, &domain->limits, NULL);
-    lar_guard_apply_all(domain, state);
+    add_friction(domain, scratch, &context, state);
 }
 
 void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
@@ -253,6 +299,8 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     const lar_conditions *conditions = &interactions->surroundings->conditions;
     double time = lar_state_time(domain, state);
+    add_friction(domain, interactions, context, state);
+    lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_conditions_observe(conditions, context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
     move_nodes(domain, interactions, context, time, state, fault);

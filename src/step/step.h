@@ -67,6 +67,9 @@ const lar_step_division *lar_division_of(const lar_interactions *interactions);
  * changes they are carried over the mean of two lengths [s]. */
 double lar_mean_step(const lar_domain *domain, const lar_step_division *division,
                      const lar_state *state);
+/* Since the forces before, 0 at the start [s]. */
+double lar_past_step(const lar_domain *domain, const lar_step_division *division,
+                     const lar_state *state);
 /* How nodes move in the step that lies before the state: see lar_step_division. */
 lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
                                const lar_state *state);

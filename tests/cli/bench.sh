@@ -83,7 +83,7 @@ expect 0 "$LARIAT" bench step "$SCRATCH/demo/uterus_live.yaml" --steps 20 --warm
 has_head step
 has_keys title isa state_hash --numbers elements nodes time_step samples warm_up_steps \
     steps_per_sample us_per_step us_per_step_spread.p95 single_steps_us.mean single_steps_us.p50 \
-    single_steps_us.p99 single_steps_us.p999 single_steps_us.max ns_per_element real_time_factor \
+    single_steps_us.p99 single_steps_us.p999 single_steps_us.max saved_us.save saved_us.load saved_us.step_after ns_per_element real_time_factor \
     touching
 hash=$(value_of state_hash)
 [ "$(value_of warm_up_steps)+$(value_of steps_per_sample)" = 5+20 ] || fail "not 20 steps after 5"

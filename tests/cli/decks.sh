@@ -125,14 +125,14 @@ complains "note: elastic.inp:26: material 'SOFT' is linear elastic; Lariat takes
 # What is not read is refused by name and line; in a mesh it does not matter.
 {
     cat static.inp
-    printf '%s\n' '*VISCOELASTIC, TIME=PRONY'
-} >viscous.inp
+    printf '%s\n' '*PLASTIC'
+} >plastic.inp
 for command in run info view; do
     [ $command = view ] && set -- --port 0 --seconds 1 || set --
-    expect 1 timeout 20 "$LARIAT" $command viscous.inp "$@"
-    complains 'viscous.inp:39: \*VISCOELASTIC is not read and would change the answer; remove it, or'
+    expect 1 timeout 20 "$LARIAT" $command plastic.inp "$@"
+    complains 'plastic.inp:39: \*PLASTIC is not read and would change the answer; remove it, or'
 done
-sed 's/dynamic.inp/viscous.inp/' same.yaml >mesh_only.yaml
+sed 's/dynamic.inp/plastic.inp/' same.yaml >mesh_only.yaml
 expect 0 "$LARIAT" run mesh_only.yaml --json
 
 # A mesh alone gets default tissue, as before, also where a mesh program names a material.

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Random hands that once stopped the simulation, a thin wall between a grasper and a pulling hand, and
 # some that once made energy: a spleen of 300 elements that a hand had drawn out sprang back to its
-# barriers within two steps, and 11 mJ came out of them where there were 10.
+# barriers within two steps, and 11 mJ came out of them where there were 10. A liver and a duodenum
+# that were hit at up to 1 m/s had 9 and 2 % too much: barriers soft on the way in, hard on the way out.
 HANDS=$5
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
@@ -18,11 +19,17 @@ says '| no |$'
 
 labels=$SOURCE/../shared/data/labels
 if [ -f "$labels/totalseg_abdomen_pelvis_3mm.nii.gz" ]; then
-    expect 0 "$LARIAT" mesh "$labels/totalseg_abdomen_pelvis_3mm.nii.gz" \
-        --names "$labels/totalseg_total_labels.csv" --label spleen --elements 300 --out spleen
-    expect 0 "$HANDS" spleen/spleen.yaml --name spleen --seed 20016 --sessions 1 --seconds 9.5 \
-        --coupled --rows
-    says '^| spleen | [0-9]* | 20016 | 0 | 2 | [0-9]* | 0 | 0 | 0 |'
-    awk -F'|' '{ exit !($14 < 1) }' out || fail "the energy's error is above one per cent"
+    # ORGAN SEED SECONDS RESETS
+    organ() {
+        expect 0 "$LARIAT" mesh "$labels/totalseg_abdomen_pelvis_3mm.nii.gz" \
+            --names "$labels/totalseg_total_labels.csv" --label "$1" --elements 300 --out "$1"
+        expect 0 "$HANDS" "$1/$1.yaml" --name "$1" --seed "$2" --sessions 1 --seconds "$3" \
+            --coupled --rows
+        says "^| $1 | [0-9]* | $2 | 0 | $4 | [0-9]* | 0 | 0 | 0 |"
+        awk -F'|' '{ exit !($14 < 1) }' out || fail "$1: the energy's error is above one per cent"
+    }
+    organ spleen 20016 9.5 2
+    organ liver 70006 6 1
+    organ duodenum 90014 0.9 0
 fi
 finish "random hands"

@@ -15,7 +15,7 @@ expect 0 "$LARIAT" info "$demo/uterus_live.yaml"
 says '^contact  *[0-9]* faces with each other'
 expect 0 "$LARIAT" info "$demo/uterus_live.yaml" --json
 has_keys contacts.0.kind contacts.0.through contacts.0.normal --numbers contacts.0.faces \
-    contacts.0.against
+    contacts.0.against contacts.0.friction tools.0.friction
 expect 0 "$LARIAT" info "$scene" --json
 has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts tools.0.name tools.0.shape tools.0.at tools.0.towards \
     notices --numbers tools.0.radius tools.0.length \

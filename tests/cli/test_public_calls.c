@@ -34,6 +34,9 @@ static void model_calls(void **unused) {
     lar_tool_info tool;
     REFUSED(lar_model_open(NULL, &model, &error));
     REFUSED(lar_model_open(BEAM, NULL, &error));
+    REFUSED(lar_model_from_arrays(NULL, NULL, &model, &error));
+    REFUSED(
+        lar_model_from_arrays(&(lar_mesh_arrays){.nodes = 8, .elements = 1}, NULL, &model, &error));
     assert_null(model);
     assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
     REFUSED(lar_model_inspect(NULL, &info, &error));
@@ -64,6 +67,38 @@ static void model_calls(void **unused) {
     REFUSED(lar_demo_write(NULL, &error));
     lar_model_destroy(model);
     lar_model_destroy(NULL);
+}
+
+static void models_tell_what_they_are(void **unused) {
+    (void)unused;
+    lar_model *model = NULL;
+    lar_model_info info;
+    double view[3] = {7, 7, 7}, gravity[3];
+    assert_int_equal(lar_model_open(BEAM, &model, &error), LAR_OK);
+    assert_int_equal(lar_model_inspect(model, &info, &error), LAR_OK);
+    assert_int_equal(lar_model_node_count(model), info.nodes);
+    assert_int_equal(lar_model_element_count(model), info.elements);
+    assert_int_equal(lar_model_material_count(model), info.materials);
+    assert_string_equal(lar_model_source(model), BEAM);
+    assert_true(lar_model_node_id(model, 0) >= 0);
+    assert_int_equal(lar_model_node_id(model, -1), -1);
+    assert_int_equal(lar_model_node_id(model, info.nodes), -1);
+    assert_int_equal(lar_model_view(model, view), 0);
+    assert_true(view[0] == 0 && view[1] == 0 && view[2] == 0);
+    assert_int_equal(lar_model_gravity(model, 0, gravity), 0);
+    assert_true(gravity[0] == 0 && gravity[1] == 0 && gravity[2] < -9);
+    lar_model_destroy(model);
+}
+
+static void image_calls(void **unused) {
+    (void)unused;
+    lar_image *image = NULL;
+    REFUSED(lar_image_open(NULL, &image, &error));
+    REFUSED(lar_image_open("", &image, &error));
+    REFUSED(lar_image_open("organ.nrrd", NULL, &error));
+    assert_int_equal(lar_image_open("organ.nrrd", &image, &error), LAR_ERROR_IO);
+    assert_int_equal(lar_image_open(BEAM, &image, &error), LAR_ERROR_UNSUPPORTED);
+    assert_null(image);
 }
 
 static int never(void *context, const char *what, double part) {
@@ -144,6 +179,19 @@ static void simulation_calls(void **unused) {
     REFUSED(lar_simulation_create(model, &options, &simulation, &error));
     assert_null(simulation);
     REFUSED(lar_simulation_advance(NULL, 1, &error));
+    lar_simulation_info made;
+    options = lar_options_default();
+    options.hands = options.spares = 2;
+    options.element = LAR_ELEMENT_HEX8_FULL;
+    assert_int_equal(lar_simulation_create(model, &options, &simulation, &error), LAR_OK);
+    lar_simulation_inspect(simulation, &made);
+    assert_ptr_equal(made.model, model);
+    assert_int_equal(made.element, LAR_ELEMENT_HEX8_FULL);
+    assert_int_equal(made.tools, 2);
+    assert_int_equal(made.spares, 2);
+    assert_true(made.time_step == lar_simulation_time_step(simulation));
+    lar_simulation_destroy(simulation);
+    simulation = NULL;
     REFUSED(lar_results_open(NULL, simulation, &results, &error));
     REFUSED(lar_results_add(NULL, NULL, &error));
     assert_int_equal(lar_results_close(NULL, &error), LAR_OK);
@@ -185,6 +233,24 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_set_damping(NULL, 0, &error));
     REFUSED(lar_simulation_set_stiffness(NULL, -1, 1, &error));
     REFUSED(lar_simulation_set_stiffness(simulation, INT32_MAX, 1, &error));
+    const double pull[3] = {1, 0, 0};
+    lar_touch touch;
+    int32_t count = -1;
+    REFUSED(lar_simulation_set_force(NULL, 0, pull, &error));
+    REFUSED(lar_simulation_set_force(simulation, -1, pull, &error));
+    REFUSED(lar_simulation_set_force(simulation, INT32_MAX, NULL, &error));
+    REFUSED(lar_simulation_set_force_on(NULL, "wall", pull, &error));
+    REFUSED(lar_simulation_set_force_on(simulation, NULL, pull, &error));
+    REFUSED(lar_simulation_set_force_on(simulation, "nothing", NULL, &error));
+    REFUSED(lar_session_set_force(NULL, 0, pull, &error));
+    REFUSED(lar_session_set_force_on(NULL, "wall", pull, &error));
+    REFUSED(lar_simulation_tool_touches(NULL, 0, 1, &touch, &count, &error));
+    REFUSED(lar_simulation_tool_touches(simulation, 99, 1, &touch, &count, &error));
+    REFUSED(lar_simulation_tool_touches(simulation, 0, 1, NULL, &count, &error));
+    REFUSED(lar_simulation_tool_touches(simulation, 0, -1, &touch, &count, &error));
+    REFUSED(lar_simulation_tool_touches(simulation, 0, 1, &touch, NULL, &error));
+    REFUSED(lar_session_tool_touches(NULL, 0, 1, &touch, &count, &error));
+    assert_int_equal(count, -1);
     REFUSED(lar_session_set_gravity(NULL, NULL, &error));
     REFUSED(lar_session_set_damping(NULL, 0, &error));
     REFUSED(lar_session_set_stiffness(NULL, -1, 1, &error));
@@ -219,6 +285,32 @@ static void restart_and_picture_calls(void **unused) {
     REFUSED(lar_simulation_load(simulation, "", &error));
     assert_int_equal(lar_simulation_load(simulation, BEAM, &error), LAR_ERROR_FORMAT);
     assert_int_equal(lar_simulation_reset(simulation, &error), LAR_OK);
+    lar_saved *saved = NULL;
+    REFUSED(lar_saved_create(NULL, &saved, &error));
+    REFUSED(lar_saved_create(simulation, NULL, &error));
+    assert_int_equal(lar_saved_create(simulation, &saved, &error), LAR_OK);
+    REFUSED(lar_simulation_save_to(NULL, saved, &error));
+    REFUSED(lar_simulation_save_to(simulation, NULL, &error));
+    REFUSED(lar_simulation_load_from(simulation, saved, &error)); /* it is empty */
+    assert_int_equal(lar_simulation_save_to(simulation, saved, &error), LAR_OK);
+    REFUSED(lar_simulation_load_from(NULL, saved, &error));
+    REFUSED(lar_simulation_load_from(simulation, NULL, &error));
+    REFUSED(lar_session_save_to(NULL, saved, &error));
+    REFUSED(lar_session_load_from(NULL, saved, &error));
+    for (int i = 0; i < 4; i++) {
+        lar_simulation *other = NULL;
+        lar_options options = lar_options_default();
+        options.hands = i == 0;
+        options.spares = i == 1;
+        if (i == 2) options.element = LAR_ELEMENT_HEX8_FULL;
+        if (i == 3) options.time_step = 0.5 * lar_simulation_time_step(simulation);
+        assert_int_equal(lar_simulation_create(model, &options, &other, &error), LAR_OK);
+        REFUSED(lar_simulation_save_to(other, saved, &error));
+        REFUSED(lar_simulation_load_from(other, saved, &error));
+        lar_simulation_destroy(other);
+    }
+    lar_saved_destroy(saved);
+    lar_saved_destroy(NULL);
     int32_t nodes;
     lar_model_info info;
     assert_int_equal(lar_model_inspect(model, &info, &error), LAR_OK);
@@ -234,6 +326,21 @@ static void restart_and_picture_calls(void **unused) {
     REFUSED(lar_simulation_field(simulation, (lar_field)3, at, out, &error));
     assert_int_equal(lar_simulation_field(simulation, LAR_FIELD_VON_MISES, at, out, &error),
                      LAR_OK);
+    double value = 7;
+    REFUSED(lar_simulation_node_value(NULL, LAR_FIELD_ENERGY, 0, at, &value, &error));
+    REFUSED(lar_simulation_node_value(simulation, LAR_FIELD_ENERGY, 0, NULL, &value, &error));
+    REFUSED(lar_simulation_node_value(simulation, LAR_FIELD_ENERGY, 0, at, NULL, &error));
+    REFUSED(lar_simulation_node_value(simulation, LAR_FIELD_ENERGY, -1, at, &value, &error));
+    REFUSED(lar_simulation_node_value(simulation, LAR_FIELD_ENERGY, nodes, at, &value, &error));
+    REFUSED(lar_simulation_node_value(simulation, LAR_FIELD_PROCESSOR, 0, at, &value, &error));
+    REFUSED(lar_simulation_element_value(NULL, LAR_FIELD_ENERGY, 0, at, &value, &error));
+    REFUSED(lar_simulation_element_value(simulation, LAR_FIELD_ENERGY, 0, at, NULL, &error));
+    REFUSED(lar_simulation_element_value(simulation, LAR_FIELD_ENERGY, info.elements, at, &value,
+                                         &error));
+    REFUSED(lar_simulation_element_value(simulation, LAR_FIELD_VELOCITY, 0, at, &value, &error));
+    REFUSED(lar_simulation_stored_energy(NULL, at, &value, &value, &error));
+    REFUSED(lar_simulation_stored_energy(simulation, at, &value, NULL, &error));
+    assert_true(value == 7);
     free(out);
     free(u);
     lar_simulation_destroy(simulation);
@@ -255,6 +362,28 @@ static void calls_without_a_status_accept_nothing(void **unused) {
     assert_true(lar_model_embedded(NULL, NULL) <= 0);
     lar_model_embedded_move(NULL, NULL, NULL);
     assert_null(lar_model_element_nodes(NULL, 0));
+    assert_int_equal(lar_model_node_count(NULL), 0);
+    assert_int_equal(lar_model_element_count(NULL), 0);
+    assert_int_equal(lar_model_material_count(NULL), 0);
+    assert_string_equal(lar_model_source(NULL), "");
+    assert_int_equal(lar_model_node_id(NULL, 0), -1);
+    double zero[3] = {7, 7, 7};
+    assert_int_equal(lar_model_view(NULL, zero), 0);
+    assert_true(zero[0] == 0 && zero[2] == 0);
+    zero[0] = 7;
+    assert_int_equal(lar_model_gravity(NULL, 0, zero), 0);
+    assert_true(zero[0] == 0);
+    lar_image_info image = {.names = 7};
+    lar_image_inspect(NULL, &image);
+    assert_int_equal(image.names, 0);
+    assert_null(lar_image_name(NULL, 0, NULL));
+    lar_image_destroy(NULL);
+    lar_simulation_info made = {.tools = 7};
+    lar_simulation_inspect(NULL, &made);
+    assert_true(made.tools == 0 && !made.model);
+    lar_session_info session = {.tick = 7};
+    lar_session_inspect(NULL, &session);
+    assert_true(session.tick == 0 && !session.simulation);
     assert_true(lar_model_contact_count(NULL) <= 0);
     assert_true(lar_model_tool_count(NULL) <= 0);
     lar_meshing_destroy(NULL);
@@ -305,6 +434,8 @@ static void calls_without_a_status_accept_nothing(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(model_calls),
+                                       cmocka_unit_test(models_tell_what_they_are),
+                                       cmocka_unit_test(image_calls),
                                        cmocka_unit_test(meshing_calls),
                                        cmocka_unit_test(simulation_calls),
                                        cmocka_unit_test(tool_calls),

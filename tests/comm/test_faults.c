@@ -23,7 +23,7 @@ static int judge(const loss_results *results, const char *backend, int32_t p, co
     snprintf(name, sizeof name, "processor %d", (int)results->victim);
     /* Who calls processor zero waits a second longer than it would. */
     double limit = START_LIMIT + 1 + LOSS_LIMIT + late;
-    /* Who comes when zero has given up and gone finds nobody. */
+    /* Who comes when zero has given up and gone finds nobody, and names zero instead of the victim. */
     bool named = strstr(text, name) || (late > 0.5 && strstr(text, "nobody answers"));
     if (named && own->ended > 0 && own->ended - results->began < limit && killed && own->lost == 0)
         return 0;

@@ -442,8 +442,8 @@ static void rows_hold_all_of_a_node(void **unused) {
     enum { NODES = 2 };
     lar_state from, to;
     double value[LAR_NODE_VALUES];
-    assert_int_equal(lar_state_create(&from, NODES, NULL), LAR_OK);
-    assert_int_equal(lar_state_create(&to, NODES, NULL), LAR_OK);
+    assert_int_equal(lar_state_create(&from, NODES, 0, NULL), LAR_OK);
+    assert_int_equal(lar_state_create(&to, NODES, 0, NULL), LAR_OK);
     for (int i = 0; i < 4 * NODES; i++) {
         from.u[i] = 1 + i;
         from.v[i] = i % 4 < 3 ? 0.5 + i : 0;

@@ -1,6 +1,6 @@
 /* How elements are grouped into blocks and kept changes no bit: rows and boxes against the same
- * turned elements in loose general blocks, and lean blocks against whole ones, 1,000 steps, on every
- * instruction set of this machine. */
+ * turned elements in loose general blocks, and lean blocks against whole ones, 1,000 steps, on
+ * every instruction set of this machine. */
 #include "engine_test.h"
 
 #include "model/demo/demo.h"
@@ -58,7 +58,7 @@ static uint64_t run(const lar_model *model, lar_isa isa, lar_layout_style style,
     lar_error error;
     const lar_domain *domain = &simulation.domain;
     if (lar_domain_create_styled(model, &options, style, &simulation.domain, &error) ||
-        lar_state_create(&simulation.state, domain->layout.node_padded, &error) ||
+        lar_state_create(&simulation.state, domain->layout.node_padded, 0, &error) ||
         lar_strained_create(domain, &simulation.strained, &error) ||
         lar_interactions_create(&domain->surroundings, NULL, false, &simulation.interactions,
                                 &error))
@@ -155,7 +155,8 @@ static void lean_elements_are_whole_ones(void **unused) {
     for (int i = 0; i < 3; i++) {
         lar_simulation *both[] = {whole, lean};
         for (int k = 0; k < 2; k++) {
-            assert_int_equal(lar_simulation_set_stiffness(both[k], -1, 0.5 + 0.25 * i, NULL), LAR_OK);
+            assert_int_equal(lar_simulation_set_stiffness(both[k], -1, 0.5 + 0.25 * i, NULL),
+                             LAR_OK);
             advance(both[k], 50);
         }
         assert_true(lar_simulation_hash(whole) == lar_simulation_hash(lean));

@@ -303,7 +303,7 @@ static void copies_hold_all_of_it(void **unused) {
         lar_state state;
         lar_tools *tools = calloc(1, sizeof *tools);
         lar_error error;
-        assert_int_equal(lar_state_create(&state, simulation->state.node_count, NULL), LAR_OK);
+        assert_int_equal(lar_state_create(&state, simulation->state.node_count, 0, NULL), LAR_OK);
         go(simulation, middle, 10);
         assert_int_equal(lar_simulation_copy(simulation, &state, tools, NULL), LAR_OK);
         go(simulation, middle + 90, 10);

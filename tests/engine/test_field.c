@@ -37,13 +37,40 @@ static void compare_field(const lar_simulation *simulation, lar_field field) {
             sum[mesh->element[e][a]] += expected_of(simulation, field, e);
             count[mesh->element[e][a]]++;
         }
-    for (size_t n = 0; n < nodes; n++)
+    for (size_t n = 0; n < nodes; n++) {
+        double alone;
         if (out[n] != (float)(sum[n] / count[n]) || out[n] == 0)
             fail_msg("field %d, node %zu: %.9g instead of %.9g", (int)field, n, (double)out[n],
                      sum[n] / count[n]);
+        assert_int_equal(lar_simulation_node_value(simulation, field, (int32_t)n,
+                                                   (const double(*)[3])u, &alone, &error),
+                         LAR_OK);
+        assert_true(alone == sum[n] / count[n]);
+    }
+    for (lar_gid e = 0; e < mesh->element_count; e++) {
+        double alone;
+        assert_int_equal(lar_simulation_element_value(simulation, field, e, (const double(*)[3])u,
+                                                      &alone, &error),
+                         LAR_OK);
+        assert_true(alone == expected_of(simulation, field, e));
+    }
     free(count);
     free(out);
     free(sum);
+    free(u);
+}
+
+/* All that the body stores at these displacements, as it says itself. */
+static void compare_stored(const lar_simulation *simulation) {
+    double(*u)[3] = displacements(simulation), strain, hourglass;
+    lar_energy energy;
+    lar_error error;
+    assert_int_equal(lar_simulation_stored_energy(simulation, (const double(*)[3])u, &strain,
+                                                  &hourglass, &error),
+                     LAR_OK);
+    lar_simulation_energy(simulation, &energy);
+    assert_true(energy.strain > 0 && fabs(strain - energy.strain) <= 1e-9 * energy.strain);
+    assert_true(fabs(hourglass - energy.hourglass) <= 1e-9 * energy.hourglass);
     free(u);
 }
 
@@ -59,6 +86,7 @@ static void stresses_are_those_of_results(void **unused) {
         compare_field(simulation, LAR_FIELD_VON_MISES);
         compare_field(simulation, LAR_FIELD_PRESSURE);
         compare_field(simulation, LAR_FIELD_ENERGY);
+        compare_stored(simulation);
         lar_simulation_destroy(simulation);
     }
     lar_model_destroy(model);
@@ -115,6 +143,11 @@ static void broken_bodies(void **unused) {
         LAR_OK);
     for (int32_t n = 0; n < model->mesh.node_count; n++) assert_true(isfinite(out[n]));
     assert_true(out[corner] == 0);
+    double value = 7;
+    assert_int_equal(lar_simulation_node_value(simulation, LAR_FIELD_VON_MISES, corner,
+                                               (const double(*)[3])u, &value, &error),
+                     LAR_OK);
+    assert_true(value == 0);
     u[middle][2] = NAN;
     assert_int_equal(
         lar_simulation_field(simulation, LAR_FIELD_VON_MISES, (const double(*)[3])u, out, &error),

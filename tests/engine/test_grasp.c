@@ -198,8 +198,8 @@ static release let_go(double way, double seconds) {
 
 static void opening_lets_go_without_a_jump(void **unused) {
     (void)unused;
-    static const double ways[2] = {0.002, 0.004}, opens[2] = {0.01, 0.1};
-    for (int w = 0; w < 2; w++) {
+    static const double ways[4] = {0.002, 0.0022, 0.003, 0.004}, opens[2] = {0.01, 0.1};
+    for (int w = 0; w < 4; w++) {
         release free = let_go(ways[w], 0);
         for (int o = 0; o < 2; o++) {
             release r = let_go(ways[w], opens[o]);

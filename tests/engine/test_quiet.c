@@ -122,6 +122,19 @@ static void tools_allocate_and_lock_nothing(void **unused) {
     assert_int_equal(status, LAR_OK);
     assert_int_equal(counted, 0);
     assert_true(simulation->report.tool[0].touching > 0 && simulation->report.tool[1].held > 0);
+    /* Nor does going back to a state in memory. */
+    lar_saved *saved = NULL;
+    assert_int_equal(lar_saved_create(simulation, &saved, &error), LAR_OK);
+    before = calls;
+    status = lar_simulation_save_to(simulation, saved, &error);
+    for (int i = 0; i < 3 && !status; i++) {
+        status = lar_simulation_advance(simulation, 5, &error);
+        if (!status) status = lar_simulation_load_from(simulation, saved, &error);
+    }
+    counted = calls - before;
+    assert_int_equal(status, LAR_OK);
+    assert_int_equal(counted, 0);
+    lar_saved_destroy(saved);
     assert_true(info.searches > 2 && info.touching > 0);
     finish(simulation, model);
 }

@@ -465,10 +465,44 @@ static void settings_that_change_nothing_change_no_bit(void **unused) {
 
 /* ---- files of before ------------------------------------------------------------------------ */
 
-/* A checkpoint as version 3 had it: without settings, and with damping's sum without damping. */
-static void a_checkpoint_of_before_is_taken_up(void **unused) {
-    (void)unused;
-    enum { HEAD = 144, OLD = 48, NEW = 56 + sizeof(lar_settings), AT_DAMPED = 112 };
+enum { HEAD = 144, TOOLS = 136, DAMPED = 112, DIVISION = 56, MOTION = 152, FOLLOWER = 240 };
+
+static void cut(lar_bytes *bytes, size_t at, size_t count) {
+    memmove(bytes->data + at, bytes->data + at + count, bytes->size - at - count);
+    bytes->size -= count;
+}
+
+/* A checkpoint as version 4 had it: a step had 32 shares where it has 96; or as version 3: without
+ * settings, and with damping's sum without damping. */
+static void make_older(lar_bytes *bytes, uint32_t version, double damping) {
+    int32_t tools;
+    memcpy(&tools, bytes->data + TOOLS, sizeof tools);
+    size_t first = HEAD + DIVISION + sizeof(lar_settings) + MOTION * (size_t)tools;
+    for (int32_t t = 0; t < tools; t++) {
+        size_t at = first + FOLLOWER * (size_t)t;
+        for (size_t i = 0; i < 7; i++) {
+            int64_t sum;
+            memcpy(&sum, bytes->data + at + MOTION + 8 * i, 8);
+            assert_int_equal(sum % 3, 0);
+            sum /= 3;
+            memcpy(bytes->data + at + MOTION + 8 * i, &sum, 8);
+        }
+    }
+    if (version == 3) {
+        double damped;
+        memcpy(&damped, bytes->data + DAMPED, 8);
+        damped /= damping;
+        memcpy(bytes->data + DAMPED, &damped, 8);
+        cut(bytes, HEAD + DIVISION - 8, 8 + sizeof(lar_settings));
+    }
+    uint64_t size = bytes->size;
+    memcpy(bytes->data + 8, &version, 4);
+    memcpy(bytes->data + 16, &size, 8);
+    uint64_t sum = lar_checkpoint_sum(bytes->data, size / 8 - 1);
+    memcpy(bytes->data + size - 8, &sum, 8);
+}
+
+static void a_checkpoint_of_before_is_taken_up(uint32_t version) {
     lar_model *model = everything_model(&larger);
     lar_simulation *simulation = start(model);
     advance(simulation, 33);
@@ -478,20 +512,7 @@ static void a_checkpoint_of_before_is_taken_up(void **unused) {
     assert_int_equal(lar_simulation_pack(simulation, "memory", &bytes, NULL), LAR_OK);
     advance(simulation, 30);
     uint64_t wanted = lar_simulation_hash(simulation);
-
-    uint64_t size = bytes.size - (NEW - OLD), sum;
-    uint32_t version = 3;
-    double damped;
-    memcpy(&damped, bytes.data + AT_DAMPED, 8);
-    damped /= model->damping;
-    memcpy(bytes.data + AT_DAMPED, &damped, 8);
-    memcpy(bytes.data + 8, &version, 4);
-    memcpy(bytes.data + 16, &size, 8);
-    memmove(bytes.data + HEAD + OLD, bytes.data + HEAD + NEW, bytes.size - HEAD - NEW);
-    bytes.size = size;
-    sum = lar_checkpoint_sum(bytes.data, size / 8 - 1);
-    memcpy(bytes.data + size - 8, &sum, 8);
-
+    make_older(&bytes, version, model->damping);
     lar_error error;
     set_stiffness(simulation, -1, 2);
     if (lar_simulation_unpack(simulation, "memory", &bytes, &error)) fail_msg("%s", error.message);
@@ -505,6 +526,12 @@ static void a_checkpoint_of_before_is_taken_up(void **unused) {
                      LAR_ERROR_UNSUPPORTED);
     lar_bytes_free(&bytes);
     finish(simulation, model);
+}
+
+static void checkpoints_of_before_are_taken_up(void **unused) {
+    (void)unused;
+    a_checkpoint_of_before_is_taken_up(3);
+    a_checkpoint_of_before_is_taken_up(4);
 }
 
 int main(void) {
@@ -524,7 +551,7 @@ int main(void) {
         cmocka_unit_test(a_loaded_run_goes_on_with_its_settings),
         cmocka_unit_test(a_reset_goes_back_to_the_model),
         cmocka_unit_test(settings_that_change_nothing_change_no_bit),
-        cmocka_unit_test(a_checkpoint_of_before_is_taken_up),
+        cmocka_unit_test(checkpoints_of_before_are_taken_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -384,7 +384,7 @@ static void checkpoints_need_the_room(void **unused) {
     run(simulation, 0, 5);
     assert_int_equal(lar_simulation_pack(simulation, "memory", &bytes, NULL), LAR_OK);
     memcpy(&version, bytes.data + 8, 4);
-    assert_int_equal(version, 5);
+    assert_int_equal(version, 7);
     uint64_t hash = lar_simulation_hash(simulation);
     lar_simulation_destroy(simulation);
     for (int spares = 0; spares < 2; spares++) {
@@ -509,6 +509,9 @@ static void what_makes_no_sense_is_refused(void **unused) {
     assert_int_equal(lar_simulation_remove_tool(simulation, -1, &error), LAR_ERROR_ARGUMENT);
     assert_memory_equal(&before, &simulation->tools, sizeof before);
     const lar_tool_info ball = {.shape = LAR_TOOL_SPHERE, .radius = 0.008};
+    const lar_tool_info rough = {.shape = LAR_TOOL_SPHERE, .radius = 0.008, .friction = 0.2};
+    assert_int_equal(lar_simulation_add_tool(simulation, &rough, NULL, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "has no friction"));
     add(simulation, LAR_TOOL_SPHERE, 0.008, 0);
     assert_int_equal(lar_simulation_add_tool(simulation, &ball, NULL, &error), LAR_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "no place is left"));

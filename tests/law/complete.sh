@@ -28,7 +28,7 @@ if ! compile || ! compile_kernel; then
     exit 1
 fi
 for law in $laws; do
-    members="name title parameter febio abaqus history fibres shear bulk from_moduli energy stress
+    members="name title parameter febio abaqus history fibres uncoupled shear bulk from_moduli energy stress
         stiffened tangent strained"
     for member in $members; do
         sed -i "s/\\blar_${law}_$member\\b\\([[ =(]\\)/taken_away_${law}_$member\\1/" \

@@ -4,10 +4,10 @@
 #   check.sh ROOT          checks ROOT/src
 #   check.sh --self-test   plants one violation of each kind in a scratch tree and expects it found
 #
-# Rules: a file includes only from its own folder or from a folder of a lower layer; the command
-# includes only lariat.h, study and its own; files do not include each other in a circle; vector
-# intrinsics stay in simd.h and the kernels; no library file ends the process or prints. And what
-# docs/architecture.md calls a file of a room is there.
+# Rules: a file includes only from its own folder or from a folder of a lower layer; the viewers'
+# server includes only lariat.h, base and its own, the command study besides; files do not include
+# each other in a circle; vector intrinsics stay in simd.h and the kernels; no library file ends the
+# process or prints. And what docs/architecture.md calls a file of a room is there.
 set -eu
 
 check_tree() {
@@ -40,7 +40,7 @@ self_test() {
 
     fresh() {
         rm -rf "$scratch/tree"
-        for folder in base model mechanics divide comm simulation session study cli; do
+        for folder in base model mechanics divide comm simulation session server study cli; do
             mkdir -p "$scratch/tree/src/$folder"
             printf '#include "lariat.h"\n' >"$scratch/tree/src/$folder/a.h"
         done
@@ -74,6 +74,9 @@ self_test() {
     expect comm/a.h '#include "simulation/a.h"' 'comm may not include simulation'
     expect simulation/a.h '#include "session/a.h"' 'simulation may not include session'
     expect session/a.h '#include "study/a.h"' 'session may not include study'
+    expect server/a.h '#include "session/a.h"' 'server may not include session'
+    expect server/a.h '#include "model/a.h"' 'server may not include model'
+    expect study/a.h '#include "server/a.h"' 'study may not include server'
     expect cli/a.h '#include "simulation/a.h"' 'cli may not include simulation'
     expect cli/a.h '#include "model/a.h"' 'cli may not include model'
     expect model/a.h '#include "../simulation/a.h"' 'write the path from src'

@@ -20,11 +20,14 @@ self_test() {
 a.dir/session/y.c.o:0 T lar_public
 a.dir/session/y.c.o: U lar_low
 a.dir/session/y.c.o:0 T lar_inside
+a.dir/server/v.c.o: U lar_low
+a.dir/server/v.c.o: U lar_public
 b.dir/cli/z.c.o: U lar_low
 b.dir/cli/z.c.o: U lar_public'
     printf '%s\n' "$sound" | check "$scratch/lariat.h" 1 >/dev/null ||
         { echo "links: sound calls are refused"; exit 1; }
-    for planted in 'a.dir/base/x.c.o: U lar_public' 'b.dir/cli/z.c.o: U lar_inside'; do
+    for planted in 'a.dir/base/x.c.o: U lar_public' 'b.dir/cli/z.c.o: U lar_inside' \
+        'a.dir/server/v.c.o: U lar_inside'; do
         if printf '%s\n%s\n' "$sound" "$planted" | check "$scratch/lariat.h" 1 >/dev/null; then
             echo "links: not found: $planted"
             exit 1

@@ -32,7 +32,8 @@ static void forces_are_slopes_of_the_energy(void **state) {
         double rest[8][3], now[8][3], force[8][3] = {{0}}, sum[3] = {0};
         lar_guard guard;
         crooked(&seed, 0.6, rest, now);
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, force, &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, force,
+                             &guard);
         if (guard.min >= LAR_GUARD_START) {
             assert_true(guard.energy == 0 && guard.stiffness == 0);
             assert_true(largest(&force[0][0], 24) == 0);
@@ -97,7 +98,8 @@ static void long_edges_have_slopes(void **state) {
         crooked(&seed, 0.6, rest, now);
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++) now[a][i] *= i == k % 3 ? 1 : 6;
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, force, &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, force,
+                             &guard);
         if (guard.min >= LAR_GUARD_START) continue;
         guarded++;
         double step = 1e-7 * size, max = largest(&force[0][0], 24);
@@ -125,16 +127,20 @@ static void damping_only_takes(void **state) {
         lar_guard guard;
         crooked(&seed, 0.6, rest, now);
         random_fill(&seed, 1, &v[0][0], 24);
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, 0, still, &guard);
-        lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, 1e-4, force, &guard);
+        const lar_guard_lead lead = {.closing = 1e-4, .opening = 1e-3};
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, still,
+                             &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, lead, force, &guard);
         double power = 0, max = 0;
         for (int i = 0; i < 24; i++) {
             double part = (force[i / 3][i % 3] - still[i / 3][i % 3]) * v[i / 3][i % 3];
             power += part;
             max += fabs(part);
         }
-        assert_true(guard.taken <= 0);
-        assert_below(fabs(power + guard.taken), 1e-10 * max + 1e-300);
+        double taken = lar_hex8_guard_power((rows)rest, (rows)now, (rows)v, guard.damper);
+        assert_true(taken >= 0);
+        assert_below(fabs(power - taken), 1e-10 * max + 1e-300);
+        for (int a = 0; a < 8; a++) assert_true(guard.slope[a] + guard.damper[a] <= 0);
     }
 }
 

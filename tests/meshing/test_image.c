@@ -53,6 +53,25 @@ static void by_extension(void **state) {
     assert_int_equal(count[255], 1);
     assert_int_equal(count[77], 0);
     assert_below(fabs(lar_image_voxel_volume(&image) - 6e-9), 1e-20);
+
+    /* The same by the public calls. */
+    lar_image *open = NULL;
+    lar_image_info info;
+    if (lar_image_open(FOLDER "/a.seg.NRRD", &open, &error)) fail_msg("%s", error.message);
+    lar_image_inspect(open, &info);
+    size_t voxels = (size_t)info.size[0] * (size_t)info.size[1] * (size_t)info.size[2];
+    assert_memory_equal(info.size, image.size, sizeof info.size);
+    assert_memory_equal(info.to_world, image.to_world, sizeof info.to_world);
+    assert_memory_equal(info.label, image.label, voxels * sizeof *info.label);
+    assert_int_equal(info.names, image.name_count);
+    for (int32_t n = 0; n < info.names; n++) {
+        int32_t label = -1;
+        assert_string_equal(lar_image_name(open, n, &label), image.name[n].name);
+        assert_int_equal(label, image.name[n].label);
+    }
+    assert_null(lar_image_name(open, -1, NULL));
+    assert_null(lar_image_name(open, info.names, NULL));
+    lar_image_destroy(open);
     lar_image_clear(&image);
     lar_image_clear(&image); /* once more is fine */
 

@@ -277,6 +277,40 @@ static void test_bad_materials(void **state) {
                    "Veronda-Westmann, Holmes-Mow and Ogden");
 #define OF_TYPE(type, rest)                                                                        \
     WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"" type "\">\n" rest "</material>")
+#define TERMS "<t1>0.1</t1><g1>0.5</g1>"
+#define SOFT  "<elastic type=\"neo-Hookean\"><E>3000</E><v>0.25</v></elastic>"
+#define OGDEN "<elastic type=\"Ogden\"><k>0</k><c1>1</c1><m1>2</m1></elastic>"
+    expect_failure(OF_TYPE("viscoelastic", TERMS), LAR_ERROR_FORMAT, 6, "no <elastic> inside");
+    expect_failure(OF_TYPE("viscoelastic", TERMS "<elastic type=\"muscle\"/>"),
+                   LAR_ERROR_UNSUPPORTED, 7, "material type 'muscle' is not read");
+    expect_failure(OF_TYPE("viscoelastic", SOFT "<g1>0.5</g1>"), LAR_ERROR_FORMAT, 6,
+                   "no parameter <t1>");
+    expect_failure(OF_TYPE("viscoelastic", SOFT "<t1>0.1</t1><g1>-0.5</g1>"), LAR_ERROR_MODEL, 6,
+                   "g of viscous term 1 is -0.5");
+    expect_failure(OF_TYPE("viscoelastic", SOFT "<t1>0</t1><g1>0.5</g1>"), LAR_ERROR_MODEL, 6,
+                   "the relaxation time of viscous term 1 is 0 s");
+    expect_failure(OF_TYPE("viscoelastic", SOFT "<t1 lc=\"1\">1</t1><g1>0.5</g1>"),
+                   LAR_ERROR_UNSUPPORTED, 7, "varies in space or time");
+    expect_failure(OF_TYPE("viscoelastic", SOFT "<g0>2</g0>"), LAR_ERROR_UNSUPPORTED, 6,
+                   "g0 is 2 and nothing relaxes");
+    expect_failure(OF_TYPE("viscoelastic", SOFT TERMS "<g2>1</g2><t2>1</t2><g3>1</g3><t3>2</t3>"
+                                                      "<g6>1</g6><t6>9</t6>"),
+                   LAR_ERROR_UNSUPPORTED, 6, "more than 3 terms of relaxation");
+    expect_failure(OF_TYPE("uncoupled viscoelastic", OGDEN TERMS), LAR_ERROR_FORMAT, 6,
+                   "no parameter <k>");
+    expect_failure(OF_TYPE("uncoupled viscoelastic", SOFT TERMS "<k>9</k>"), LAR_ERROR_MODEL, 6,
+                   "has no isochoric part that could relax alone");
+    lar_model *viscous = read_deck(
+        OF_TYPE("uncoupled viscoelastic", OGDEN TERMS "<k>9</k><g0>2</g0><g2>0</g2><t2>0</t2>"));
+    const lar_viscosity *v = &viscous->material[0].viscosity;
+    assert_true(v->terms == 1 && v->isochoric && v->rest == 2 && v->share[0] == 0.5);
+    assert_true(v->time[0] == 0.1 && viscous->material[0].law == LAR_LAW_ogden);
+    assert_true(lar_material_bulk(&viscous->material[0]) == 9);
+    lar_model_destroy(viscous);
+    viscous = read_deck(OF_TYPE("viscoelastic", SOFT TERMS));
+    v = &viscous->material[0].viscosity;
+    assert_true(v->terms == 1 && !v->isochoric && v->rest == 1);
+    lar_model_destroy(viscous);
     expect_failure(OF_TYPE("Ogden", "<c1>1</c1><k>9</k>"), LAR_ERROR_MODEL, 6,
                    "m1 of the law ogden is 0; it is the power of the term of c1");
     expect_failure(OF_TYPE("Ogden", "<c1>1</c1><m1>200</m1><k>9</k>"), LAR_ERROR_MODEL, 6,

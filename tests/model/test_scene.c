@@ -218,6 +218,28 @@ static void test_materials(void **state) {
     lar_model_destroy(model);
 }
 
+static void test_viscosity(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD "materials:\n"
+             "  - {cells: all, law: neo-hookean, density: 1000, youngs_modulus: 12e3, "
+             "poisson_ratio: 0.45, viscous: {part: isochoric, terms: [{g: 0.5, time: 0.1}, "
+             "{time: 3, g: 1.5}]}}\n"
+             "  - cells: 2\n    law: holmes-mow\n    density: 1000\n    mu: 1e3\n    lambda: 500\n"
+             "    beta: 1\n    viscous:\n      part: whole\n      g0: 0.5\n      terms:\n"
+             "        - {g: 0.25, time: 1e-2}\n");
+    const lar_viscosity *v = &model->material[0].viscosity;
+    assert_true(v->terms == 2 && v->isochoric && v->rest == 1);
+    assert_true(v->share[0] == 0.5 && v->time[0] == 0.1 && v->share[1] == 1.5 && v->time[1] == 3);
+    same(lar_material_instant_shear(&model->material[0]), 3 * 12e3 / 2.9);
+    same(lar_material_instant_bulk(&model->material[0]), 12e3 / 0.3);
+    v = &model->material[1].viscosity;
+    assert_true(v->terms == 1 && !v->isochoric && v->rest == 0.5 && v->share[0] == 0.25);
+    same(lar_material_shear(&model->material[1]), 500);
+    same(lar_material_instant_shear(&model->material[1]), 750);
+    lar_model_destroy(model);
+}
+
 static void test_motion_and_loads(void **state) {
     (void)state;
     lar_model *model = scene(
@@ -564,6 +586,7 @@ int main(void) {
         cmocka_unit_test(test_plain_values),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_stiffening_laws),
+        cmocka_unit_test(test_viscosity),
         cmocka_unit_test(test_motion_and_loads),
         cmocka_unit_test(test_surface),
         cmocka_unit_test(test_output),

@@ -182,6 +182,26 @@ static void test_materials(void **state) {
          "4:82", "poisson_ratio is -1"},
         {"  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 4}\n", "4:5",
          "either shear_modulus and bulk_modulus, or youngs_modulus and poisson_ratio"},
+#define VISCOUS(law, viscous) "  - {cells: all, " law ", density: 1, viscous: {" viscous "}}\n"
+#define SOFT                  "law: yeoh, shear_modulus: 4, bulk_modulus: 9"
+        {VISCOUS(SOFT, "terms: [{g: 1, time: 1}]"), "4:85", "viscous needs the key \"part\""},
+        {VISCOUS(SOFT, "part: whole"), "4:85", "terms: [{g: 0.5, time: 0.1}]"},
+        {VISCOUS(SOFT, "part: shear, terms: [{g: 1, time: 1}]"), "4:92",
+         "the parts are: isochoric, whole"},
+        {VISCOUS(SOFT, "part: whole, terms: []"), "4:106", "0 viscous terms; give one to 3"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: 1, tau: 1}]"), "4:114", "tau"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: -1, time: 1}]"), "4:111", "g is -1"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: .nan, time: 1}]"), "4:111",
+         "\".nan\" is not a finite number"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: 1, time: 0}]"), "4:120", "time is 0"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: 1, time: 1e13}]"), "4:5",
+         "the relaxation time of viscous term 1 is 1e+13 s"},
+        {VISCOUS(SOFT, "part: whole, terms: [{g: 1e5, time: 1}]"), "4:5",
+         "at once the material is 100001 times as stiff as in the end"},
+        {VISCOUS(SOFT, "part: whole, g0: 0, terms: [{g: 1, time: 1}]"), "4:103", "g0 is 0"},
+        {VISCOUS("law: holmes-mow, mu: 4, lambda: 3, beta: 1",
+                 "part: isochoric, terms: [{g: 1, time: 1}]"),
+         "4:5", "the law holmes-mow has no isochoric part that could relax alone"},
         {"  - {cells: all, law: neo-hookean, density: 1, mu: 4, lambda: 3}\n", "4:5",
          "the law neo-hookean needs"},
         {"  - {cells: all, law: mooney-rivlin, density: 1, c1: 4, c2: 3}\n", "4:5",
@@ -374,6 +394,8 @@ static void hostile(const char *text, size_t size, const char *words) {
 
 static void test_contact(void **state) {
     (void)state;
+#define RUBS(mu)                                                                                   \
+    "contact: [{faces: all, plane: {through: [0, 0, -1], normal: [0, 0, 1]}, friction: " mu "}]\n"
 #define PLANE(values) "contact: [{faces: all, plane: {" values "}}]\n"
     static const wrong_scene extra[] = {
         {"contact: all\n", "4:10", "expected a list of contacts, {self: true}"},
@@ -381,7 +403,7 @@ static void test_contact(void **state) {
         {"contact: [{}]\n", "4:11", "a contact entry says one of three things: {self: true}"},
         {"contact: [{slef: true}]\n", "4:12",
          "the key \"slef\" is unknown; did you mean self? a contact entry may have the keys: self, "
-         "between, faces, plane"},
+         "between, faces, plane, friction"},
         {"contact: [{self: true, between: [lid, bottom]}]\n", "4:11", "one of three things"},
         {"contact: [{faces: lid}]\n", "4:11", "one of three things"},
         {"contact: [{self: lid, faces: lid}]\n", "4:11", "one of three things"},
@@ -398,6 +420,13 @@ static void test_contact(void **state) {
         {"contact: [{between: [lid, {surface: true}]}]\n", "4:11",
          "the two sets of faces have 4 in common (one is face 5 of element 105); contact of a "
          "surface with itself is {self: FACES}"},
+        {RUBS("-0.1"), "4:83",
+         "friction is -0.1; it must be from 0 to 5: expected a number from 0"},
+        {RUBS("5.1"), "4:83", "friction is 5.1; it must be from 0 to 5"},
+        {RUBS(".nan"), "4:83", "\".nan\" is not a finite number; expected a number from 0 to 5"},
+        {RUBS("rough"), "4:83", "friction: expected a number from 0 to 5, for example 0.3"},
+        {"contact: [{self: true, friction: 0.3}]\n", "4:11",
+         "there is friction on planes and tools only; contact of bodies has none"},
         {"contact: [{faces: all, plane: [0, 0, 1]}]\n", "4:31", "the plane of a contact"},
         {PLANE("normal: [0, 0, 1]"), "4:31", "needs the key \"through\""},
         {PLANE("through: [0, 0, 0]"), "4:31", "needs the key \"normal\""},
@@ -451,6 +480,10 @@ static void test_tools(void **state) {
          "the key \"length\" is unknown; a sphere may have the keys: name, shape, radius, at"},
         {SPHERE("name: a, radius: 0.1, at: [0, 0, 1], towards: [0, 0, 1]"), "4:62",
          "the key \"towards\" is unknown"},
+        {SPHERE("name: a, radius: 0.1, at: [0, 0, 1], friction: -1"), "4:72",
+         "friction is -1; it must be from 0 to 5"},
+        {SPHERE("name: a, radius: 0.1, at: [0, 0, 1], friction: .inf"), "4:72",
+         "not a finite number"},
         {SPHERE("name: a, radius: 0.1, at: here"), "4:51", "at: expected three numbers in metres"},
         {SPHERE("name: [], radius: 0.1, at: [0, 0, 1]"), "4:31", "expected the name of the tool"},
         {SPHERE("name: hand, radius: 0.1, at: [0, 0, 1]"), "4:31",

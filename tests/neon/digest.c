@@ -41,6 +41,7 @@ typedef struct world {
     lar_hex8_block general[BLOCKS];
     lar_block_more more[BLOCKS];
     lar_box_block box[BLOCKS];
+    lar_fibre_block fibres[BLOCKS];
     double position[NODES][3];
     double u[NODES][4] __attribute__((aligned(64)));
     double v[NODES][4] __attribute__((aligned(64)));
@@ -100,9 +101,18 @@ static void pack_element(world *w, int e, int turn, const lar_material *material
     }
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         *lar_block_parameter(&block->head, &w->more[e / LAR_BLOCK], k, lane) =
-            material->parameter[k] *
-            (lar_law_scales(material->law, k) ? hex8.volume * SCALE : 1);
+            material->parameter[k] * (lar_law_scales(material->law, k) ? hex8.volume * SCALE : 1);
     box->head = block->head;
+    lar_fibre_block *fibres = &w->fibres[e / LAR_BLOCK];
+    const lar_fibre *fibre = &material->fibre;
+    double unit = hex8.volume * SCALE;
+    fibres->direction[e % 3][lane] = 0.6;
+    fibres->direction[(e + 1) % 3][lane] = -0.8;
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+        fibres->parameter[k][lane] =
+            fibre->parameter[k] * (lar_fibre_scales(fibre->law, k) ? unit : 1);
+    fibres->along[lane] = fibre->along * unit;
+    fibres->across[lane] = fibre->across * unit;
 }
 
 static uint64_t digest(uint64_t hash, const void *data, size_t size) {
@@ -112,10 +122,11 @@ static uint64_t digest(uint64_t hash, const void *data, size_t size) {
 }
 
 /* False when an element left the limits: then the digest would say nothing. */
-static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint64_t *hash) {
+static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibre, const form *as,
+                  uint64_t *hash) {
     world *w = lar_calloc_aligned(1, sizeof *w);
     if (!w) return false;
-    lar_material material = {.law = law, .density = DENSITY};
+    lar_material material = {.law = law, .density = DENSITY, .fibre = *fibre};
     lar_material_from_shear_bulk(&material, 4e3, 1e5);
     chance_state = 2001;
     place_nodes(w, as->turn);
@@ -133,7 +144,9 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
                                .streamed = as->turn == 1,
                                .count = BLOCKS,
                                .blocks = boxes ? (const void *)w->box : w->general,
-                               .more = lar_law_has_more(law) ? w->more : NULL};
+                               .more = lar_law_has_more(law) ? w->more : NULL,
+                               .fibrous = lar_fibre_kind(fibre),
+                               .fibres = w->fibres};
     static int32_t lane[BLOCKS * LAR_BLOCK];
     static double limit[BLOCKS * LAR_BLOCK] __attribute__((aligned(64)));
     static float strain[BLOCKS * LAR_BLOCK][LAR_STRAIN_NUMBERS];
@@ -142,8 +155,12 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     double damped = 0, fastest = 0;
     for (int step = 0; step < STEPS && good; step++) {
         lar_hex8_monitor monitor = {.limit = limit, .lane = lane, .strain = strain};
-        good = kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits,
-                                step % 10 == 0 ? &monitor : NULL) < 0 &&
+        lar_hex8_monitor *looks = step % 10 == 0 ? &monitor : NULL;
+        int64_t beyond =
+            run.fibrous
+                ? kernels->recover_more(&run, NULL, &w->u[0][0], &w->force[0][0], &limits, looks)
+                : kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, looks);
+        good = beyond < 0 &&
                kernels->update(&leapfrog, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
                                w->push, step % 10 ? NULL : w->mass, &damped, &fastest);
     }
@@ -154,29 +171,43 @@ static bool shake(const lar_kernels *kernels, lar_law law, const form *as, uint6
     return good;
 }
 
-static int print_digest(const lar_kernels *kernels, lar_law law, const form *as) {
+static int print_digest(const lar_kernels *kernels, lar_law law, const lar_fibre *fibre,
+                        const form *as) {
+    static const char *const fibres[] = {"",          "+active",     "+active",     "+exp-pow",
+                                         "+exp-pow~", "+exp-linear", "+exp-linear~"};
+    const char *with = fibres[lar_fibre_kind(fibre)];
     static const char *const body[] = {"crooked", "box0", "box1", "box2"};
     static const char *const shape[] = {"general", "box"};
     static const char *const rows[] = {"loose", "rows-of-four", "rows-of-eight"};
     uint64_t hash;
-    if (!shake(kernels, law, as, &hash)) {
-        fprintf(stderr, "digest: %s %s %s left the limits\n", kernels->name, lar_law_name[law],
-                body[as->turn + 1]);
+    if (!shake(kernels, law, fibre, as, &hash)) {
+        fprintf(stderr, "digest: %s %s%s %s left the limits\n", kernels->name, lar_law_name[law],
+                with, body[as->turn + 1]);
         return 1;
     }
-    printf("%s %s %s %016" PRIx64 " %s %s\n", kernels->name, lar_law_name[law], body[as->turn + 1],
-           hash, shape[as->shape], rows[as->rows]);
+    printf("%s %s%s %s %016" PRIx64 " %s %s\n", kernels->name, lar_law_name[law], with,
+           body[as->turn + 1], hash, shape[as->shape], rows[as->rows]);
     return 0;
 }
 
 int main(void) {
+    static const lar_fibre none,
+        fibres[] = {
+            {.law = LAR_FIBRE_EXP_POW, .parameter = {2e3, 1, 2.5}, .along = 300},
+            {.law = LAR_FIBRE_EXP_POW, .parameter = {2e3, 1, 2}, .isochoric = true},
+            {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .across = 200},
+            {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .isochoric = true},
+            {.along = 400}};
     int failures = 0;
     for (lar_isa isa = LAR_ISA_C; isa <= LAR_ISA_AVX512; isa++) {
         const lar_kernels *kernels = NULL;
         if (lar_kernels_find(isa, &kernels, NULL)) continue;
         for (int law = 0; law < LAR_LAW_COUNT; law++)
             for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++)
-                failures += print_digest(kernels, (lar_law)law, &forms[i]);
+                failures += print_digest(kernels, (lar_law)law, &none, &forms[i]);
+        for (size_t k = 0; k < sizeof fibres / sizeof *fibres; k++)
+            for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++)
+                failures += print_digest(kernels, LAR_LAW_neo_hookean, &fibres[k], &forms[i]);
     }
     return failures != 0;
 }

@@ -81,6 +81,62 @@ static void others_are_refused(void **unused) {
     close_bench(&b);
 }
 
+/* The answer to a ticket, when it is there. */
+static lar_grasp_answer await_answer(const bench *b, int32_t tool, uint64_t ticket) {
+    lar_grasp_answer answer = {0};
+    int64_t limit = lar_clock_ns() + 20000000000;
+    do {
+        usleep(1000);
+        DONE(lar_session_grasp_answer(b->session, tool, &answer, &failure));
+    } while (answer.ticket != ticket && lar_clock_ns() < limit);
+    assert_int_equal(answer.ticket, ticket);
+    return answer;
+}
+
+static void nobody_has_to_wait(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    bench b = open_bench(NULL, 0, &options);
+    lar_grasp_answer answer = {.ticket = 7};
+    lar_session_info info;
+    lar_session_inspect(b.session, &info);
+    assert_ptr_equal(info.simulation, b.simulation);
+    assert_int_equal(info.tick_steps, 10);
+    assert_true(fabs(info.tick - 1e-3) < 1e-12 && info.options.pace == 1);
+    assert_true(info.options.tool_speed == 1 && info.options.hand_force == 1);
+    DONE(lar_session_grasp_answer(b.session, HAND, &answer, &failure));
+    assert_int_equal(answer.ticket, 0);
+    /* Before the start it waits for it; 256 may. */
+    DONE(lar_session_ask_grasp(b.session, HAND, corner, 1, &failure));
+    DONE(lar_session_grasp_answer(b.session, HAND, &answer, &failure));
+    assert_int_equal(answer.ticket, 0);
+    for (int i = 0; i < 255; i++) DONE(lar_session_ask_release(b.session, HAND + 1, &failure));
+    assert_int_equal(lar_session_ask_release(b.session, HAND, &failure), LAR_ERROR_PEER);
+    assert_non_null(strstr(failure.message, "256"));
+    assert_int_equal(lar_session_ask_grasp(b.session, HAND, corner, 2, &failure), LAR_ERROR_PEER);
+    DONE(lar_session_start(b.session, &failure));
+    answer = await_answer(&b, HAND, 1);
+    assert_true(answer.held > 0 && answer.status == LAR_OK);
+    assert_int_equal(held_now(&b, HAND), answer.held);
+    DONE(lar_session_ask_grasp(b.session, HAND, nowhere, 2, &failure));
+    answer = await_answer(&b, HAND, 2);
+    assert_true(answer.held == 0 && answer.status == LAR_OK);
+    /* What waiting would have refused. */
+    DONE(lar_session_ask_grasp(b.session, HAND, NULL, 3, &failure));
+    answer = await_answer(&b, HAND, 3);
+    assert_true(answer.held == 0 && answer.status == LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_ask_grasp(b.session, HAND, corner, 0, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_ask_grasp(b.session, TOOLS, corner, 4, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_ask_grasp(NULL, HAND, corner, 4, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_ask_release(b.session, -1, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_ask_release(NULL, HAND, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_grasp_answer(NULL, HAND, &answer, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_grasp_answer(b.session, HAND, NULL, &failure), LAR_ERROR_ARGUMENT);
+    close_bench(&b);
+}
+
 static void recordings_have_them(void **unused) {
     (void)unused;
     static const char *const grid[] = {NULL, "2x1x1", "2x2x1"};
@@ -96,6 +152,10 @@ static void recordings_have_them(void **unused) {
         pull(&b, 0.002 * k);
         await(&b, LAR_SESSION_PLAYING, status_of(&b).step + 100);
         if (k % 2) DONE(lar_session_release(b.session, HAND, &failure));
+        /* And without waiting. */
+        DONE(lar_session_ask_grasp(b.session, HAND + 1, corner, (uint64_t)k, &failure));
+        assert_true(await_answer(&b, HAND + 1, (uint64_t)k).held > 0);
+        if (k % 2) DONE(lar_session_ask_release(b.session, HAND + 1, &failure));
     }
     close_bench(&b);
     for (int k = 0; k < 3; k++) {
@@ -146,6 +206,7 @@ static void simulations_have_them(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_hand_takes_hold_at_once), cmocka_unit_test(others_are_refused),
-        cmocka_unit_test(recordings_have_them), cmocka_unit_test(simulations_have_them)};
+        cmocka_unit_test(nobody_has_to_wait), cmocka_unit_test(recordings_have_them),
+        cmocka_unit_test(simulations_have_them)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,13 @@ static uint64_t record(const char *grid, int threads) {
     lead(&b, 300);
     DONE(lar_session_load(b.session, STATE, &failure));
     lead(&b, 300);
+    lar_saved *saved = NULL;
+    DONE(lar_saved_create(b.simulation, &saved, &failure));
+    DONE(lar_session_save_to(b.session, saved, &failure));
+    lead(&b, 200);
+    DONE(lar_session_load_from(b.session, saved, &failure));
+    lar_saved_destroy(saved);
+    lead(&b, 200);
     uint64_t step = status_of(&b).step;
     close_bench(&b);
     return step;

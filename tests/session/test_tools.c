@@ -95,6 +95,20 @@ static void they_are_moved_as_the_scenes(void **unused) {
     close_bench(&b);
 }
 
+/* Who looks at a place later knows that another tool is there. */
+static void places_are_told_apart(void **unused) {
+    (void)unused;
+    bench b = open_with(NULL, SPARES, NULL);
+    assert_int_equal(info_of(&b, BALL).serial, 0);
+    assert_int_equal(add(&b, LAR_TOOL_SPHERE, 0.004, 0), FIRST);
+    int32_t serial = info_of(&b, FIRST).serial;
+    assert_true(serial > 0);
+    DONE(lar_session_remove_tool(b.session, FIRST, &failure));
+    assert_int_equal(add(&b, LAR_TOOL_SPHERE, 0.004, 0), FIRST);
+    assert_int_equal(info_of(&b, FIRST).serial, serial + 1);
+    close_bench(&b);
+}
+
 static void what_makes_no_sense_is_refused(void **unused) {
     (void)unused;
     bench b = open_with(NULL, 1, NULL);
@@ -270,6 +284,7 @@ static void they_stay_when_a_run_goes_back(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(they_are_moved_as_the_scenes),
+        cmocka_unit_test(places_are_told_apart),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(paused_sessions_show_them_at_once),
         cmocka_unit_test(they_are_played_to_the_same_bits),

@@ -37,6 +37,11 @@ static void write_json(const bench_frame *frame, const lar_bench_step_result *r)
     lar_json_number(&json, "p999", r->p999);
     lar_json_number(&json, "max", r->longest);
     lar_json_close(&json);
+    lar_json_open(&json, "saved_us", '{');
+    lar_json_number(&json, "save", r->save);
+    lar_json_number(&json, "load", r->load);
+    lar_json_number(&json, "step_after", r->step_after);
+    lar_json_close(&json);
     lar_json_number(&json, "ns_per_element", 1e3 * r->microseconds.median / r->info.elements);
     lar_json_number(&json, "real_time_factor", real_time_factor(r));
     lar_json_integer(&json, "touching", r->contact.touching);
@@ -59,6 +64,8 @@ static void print_table(const step_settings *s, const lar_bench_step_result *r) 
            real_time_factor(r), r->time_step);
     if (r->contact.touching > 0)
         printf("%-17s%d nodes touch at the end\n", "contact", (int)r->contact.touching);
+    printf("%-17ssaving it in memory %.2f us, going back to it %.2f, the step after that %.2f\n",
+           "state", r->save, r->load, r->step_after);
     printf("%-17s%016" PRIx64 ", the same in all samples\n", "state hash", r->hash);
 }
 

@@ -31,6 +31,7 @@ static void write_contacts(lar_json *json, const lar_model *model) {
         lar_json_integer(json, "against", contact.against);
         lar_json_vector(json, "through", contact.through, 3);
         lar_json_vector(json, "normal", contact.normal, 3);
+        lar_json_number(json, "friction", contact.friction);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -50,6 +51,7 @@ static void write_tools(lar_json *json, const lar_model *model) {
         lar_json_number(json, "spread", degrees(tool.spread));
         lar_json_vector(json, "at", tool.rest.position, 3);
         lar_json_vector(json, "towards", direction, 3);
+        lar_json_number(json, "friction", tool.friction);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -93,6 +95,10 @@ void info_report_json(const info_report *report) {
         lar_json_number(&json, "density", material.density);
         lar_json_number(&json, "shear_modulus", material.shear_modulus);
         lar_json_number(&json, "bulk_modulus", material.bulk_modulus);
+        lar_json_integer(&json, "viscous_terms", material.viscous_terms);
+        lar_json_number(&json, "instant_shear_modulus", material.instant_shear_modulus);
+        lar_json_text(&json, "fibres", material.fibres);
+        lar_json_number(&json, "fibre_modulus", material.fibre_modulus);
         lar_json_close(&json);
     }
     lar_json_close(&json);
@@ -118,10 +124,18 @@ void info_report_json(const info_report *report) {
 
 static void print_materials(const lar_model *model) {
     lar_material_info m;
-    for (int32_t i = 0; !lar_model_material(model, i, &m, NULL); i++)
-        printf("%-17s%s%s%s, %d elements, %g kg/m^3, shear modulus %.4g Pa, bulk modulus %.4g Pa\n",
+    for (int32_t i = 0; !lar_model_material(model, i, &m, NULL); i++) {
+        printf("%-17s%s%s%s, %d elements, %g kg/m^3, shear modulus %.4g Pa, bulk modulus %.4g Pa",
                i ? "" : "materials", m.name, *m.name ? ": " : "", m.law, (int)m.elements, m.density,
                m.shear_modulus, m.bulk_modulus);
+        if (m.viscous_terms > 0)
+            printf(", viscous (%d term%s, shear modulus at once %.4g Pa)", (int)m.viscous_terms,
+                   m.viscous_terms > 1 ? "s" : "", m.instant_shear_modulus);
+        if (*m.fibres)
+            printf(", fibres (%s, modulus where they begin to pull %.4g Pa)", m.fibres,
+                   m.fibre_modulus);
+        putchar('\n');
+    }
 }
 
 static void print_sets(const lar_model *model) {
@@ -138,12 +152,14 @@ static void print_contacts(const lar_model *model) {
     for (int32_t i = 0; !lar_model_contact(model, i, &c, NULL); i++) {
         printf("%-17s%d faces ", i ? "" : "contact", (int)c.faces);
         if (c.kind[0] == 'b')
-            printf("with %d others\n", (int)c.against);
+            printf("with %d others", (int)c.against);
         else if (c.kind[0] == 'p')
-            printf("with a plane through (%.4g, %.4g, %.4g), normal (%.4g, %.4g, %.4g)\n",
+            printf("with a plane through (%.4g, %.4g, %.4g), normal (%.4g, %.4g, %.4g)",
                    c.through[0], c.through[1], c.through[2], c.normal[0], c.normal[1], c.normal[2]);
         else
-            printf("with each other\n");
+            printf("with each other");
+        if (c.friction > 0) printf(", friction %.4g", c.friction);
+        putchar('\n');
     }
 }
 
@@ -155,7 +171,9 @@ static void print_tools(const lar_model *model) {
         if (t.length > 0) printf(", length %.4g m", t.length);
         if (t.spread > 0) printf(", spread %.4g degrees", degrees(t.spread));
         const double *at = t.rest.position;
-        printf(", at (%.4g, %.4g, %.4g)\n", at[0], at[1], at[2]);
+        printf(", at (%.4g, %.4g, %.4g)", at[0], at[1], at[2]);
+        if (t.friction > 0) printf(", friction %.4g", t.friction);
+        putchar('\n');
     }
 }
 

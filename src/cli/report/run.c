@@ -43,6 +43,7 @@ static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_json_number(json, "external", energy.external);
     lar_json_number(json, "damping", energy.damping);
     lar_json_number(json, "contact", energy.contact);
+    if (energy.viscous != 0) lar_json_number(json, "viscous", energy.viscous);
     lar_json_close(json);
 }
 
@@ -207,6 +208,7 @@ static void print_body(const run_report *report, FILE *out) {
     fprintf(out, "%-17skinetic %.4g, strain %.4g, hourglass %.4g, damping %.4g", "energy [J]",
             energy.kinetic, energy.strain, energy.hourglass, energy.damping);
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
+    if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
     print_contact(report->simulation, out);
     print_tools(report->simulation, out);

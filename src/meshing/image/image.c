@@ -63,6 +63,46 @@ void lar_image_clear(lar_image *image) {
     *image = (lar_image){0};
 }
 
+/* ---- the public calls ------------------------------------------------------------------------ */
+
+lar_status lar_image_open(const char *path, lar_image **out, lar_error *error) {
+    if (!path || !*path || !out)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_image_open needs the path of a label image and a place for it");
+    lar_image *image = lar_calloc(1, sizeof *image);
+    if (!image) return lar_fail_memory(error, sizeof *image, "a label image");
+    lar_status status = lar_image_read(path, image, error);
+    if (status)
+        free(image);
+    else
+        *out = image;
+    return status;
+}
+
+void lar_image_destroy(lar_image *image) {
+    if (image) lar_image_clear(image);
+    free(image);
+}
+
+void lar_image_inspect(const lar_image *image, lar_image_info *info) {
+    if (!info) return;
+    *info = (lar_image_info){0};
+    if (!image) return;
+    info->names = image->name_count;
+    info->label = image->label;
+    memcpy(info->size, image->size, sizeof info->size);
+    memcpy(info->to_world, image->to_world, sizeof info->to_world);
+}
+
+const char *lar_image_name(const lar_image *image, int32_t index, int32_t *label) {
+    if (!image || index < 0 || index >= image->name_count) return NULL;
+    if (label) *label = image->name[index].label;
+    return image->name[index].name;
+}
+
+/* ---- what is in it ----------------------------------------------------------------------------
+ */
+
 void lar_image_count(const lar_image *image, int64_t *count) {
     memset(count, 0, (LAR_IMAGE_LABEL_MAX + 1) * sizeof *count);
     size_t voxels = (size_t)image->size[0] * (size_t)image->size[1] * (size_t)image->size[2];

@@ -26,14 +26,14 @@ typedef struct lar_label_name {
     char *name;
 } lar_label_name;
 
-typedef struct lar_image {
+struct lar_image {
     char *source;
     int32_t size[3];       /* voxels along i, j, k */
     double to_world[3][4]; /* [m]: world = to_world * (i, j, k, 1), at the voxel's centre */
     uint16_t *label;       /* [size[0] * size[1] * size[2]], i runs fastest */
     int32_t name_count;    /* names that the file gives to labels (NRRD segments) */
     lar_label_name *name;
-} lar_image;
+};
 
 /* The path's ending when it is one of a label image (".nii.gz"), else NULL. */
 const char *lar_image_ending(const char *path);

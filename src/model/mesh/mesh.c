@@ -45,6 +45,7 @@ void lar_mesh_clear(lar_mesh *mesh) {
     free(mesh->element);
     free(mesh->element_id);
     free(mesh->element_tag);
+    free(mesh->fibre);
     *mesh = (lar_mesh){0};
 }
 

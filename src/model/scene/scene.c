@@ -101,8 +101,7 @@ static lar_status read_root(lar_scene *scene) {
     const lar_yaml *mesh = NULL, *materials;
     double scale;
     lar_status status = check_root(scene);
-    if (!status)
-        status = lar_scene_need(scene, scene->root, "a scene", "mesh", "mesh: organ.vtu", &mesh);
+    if (!status) status = lar_scene_check_mesh(scene, &mesh);
     if (!status)
         status = lar_scene_need(scene, scene->root, "a scene", "materials",
                                 "materials: [{cells: all, law: neo-hookean, density: 1050, "
@@ -118,16 +117,17 @@ static lar_status read_root(lar_scene *scene) {
     return status ? status : lar_model_check(scene->model, scene->error);
 }
 
-lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
-                                lar_scene_mesh_reader *read_mesh, lar_model **model,
-                                lar_error *error) {
+/* `from`: path, and where the mesh comes from. */
+static lar_status parse(const lar_scene *from, const lar_bytes *bytes, lar_model **model,
+                        lar_error *error) {
     lar_error unused; /* the parts may rely on an error to write to */
     lar_yaml_tree tree;
-    lar_status status = lar_yaml_parse(path, bytes, &tree, error);
+    lar_status status = lar_yaml_parse(from->path, bytes, &tree, error);
     if (status) return status;
-    lar_scene scene = {.path = path,
+    lar_scene scene = {.path = from->path,
                        .root = tree.root,
-                       .read_mesh = read_mesh,
+                       .read_mesh = from->read_mesh,
+                       .given = from->given,
                        .model = lar_model_create(),
                        .error = error ? error : &unused};
     status = scene.model ? read_root(&scene) : lar_scene_no_memory(&scene, sizeof *scene.model);
@@ -139,4 +139,16 @@ lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
     else
         *model = scene.model;
     return status;
+}
+
+lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
+                                lar_scene_mesh_reader *read_mesh, lar_model **model,
+                                lar_error *error) {
+    return parse(&(lar_scene){.path = path, .read_mesh = read_mesh}, bytes, model, error);
+}
+
+lar_status lar_scene_parse_given(const char *path, const lar_bytes *bytes,
+                                 const lar_mesh_arrays *given, lar_model **model,
+                                 lar_error *error) {
+    return parse(&(lar_scene){.path = path, .given = given}, bytes, model, error);
 }

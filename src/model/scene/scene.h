@@ -6,6 +6,7 @@
  *           scene_sets.c      set names, ids, tags -> marks (one byte per node, element or face)
  *           scene_select.c    selectors -> marks -> lists of indices
  *           scene_material.c  materials
+ *           scene_fibre.c     fibres of materials
  *           scene_motion.c    fix, move, load, initial, curves
  *           scene_contact.c   contact
  *           scene_tools.c     tools
@@ -31,11 +32,16 @@ lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
                                 lar_scene_mesh_reader *read_mesh, lar_model **model,
                                 lar_error *error);
 
+/* The same of a mesh from memory: the scene names no file. */
+lar_status lar_scene_parse_given(const char *path, const lar_bytes *bytes,
+                                 const lar_mesh_arrays *given, lar_model **model, lar_error *error);
+
 typedef struct lar_scene {
     const char *path;
     const lar_yaml *root;
     lar_scene_mesh_reader *read_mesh;
-    lar_model *model; /* growing */
+    const lar_mesh_arrays *given; /* instead; NULL: the mesh is in files */
+    lar_model *model;             /* growing */
     lar_error *error;
 
     /* Made when first asked for (scene_sets.c). */
@@ -79,6 +85,7 @@ lar_status lar_scene_need(const lar_scene *scene, const lar_yaml *mapping, const
 #define LAR_IN_VELOCITY "three numbers in m/s (SI units), for example [0, 0, 0.5]"
 #define LAR_A_DIRECTION "three numbers, a direction, for example [0, 0, 1]"
 #define LAR_IN_DEGREES  "a number in degrees, for example 60"
+#define LAR_A_FRICTION  "a number from 0 to 5, for example 0.3"
 #define LAR_IN_GRAVITY  "three numbers in m/s^2 (SI units), for example [0, 0, -9.81]"
 
 /* A finite number that is written without quotes and unit. */
@@ -87,6 +94,8 @@ lar_status lar_scene_number(const lar_scene *scene, const lar_yaml *node, const 
 /* The same, more than zero, or at least zero. */
 lar_status lar_scene_positive(const lar_scene *scene, const lar_yaml *node, const char *expected,
                               double *value);
+/* `friction: MU` of a contact entry or a tool, where it is there. */
+lar_status lar_scene_friction(const lar_scene *scene, const lar_yaml *entry, double *friction);
 lar_status lar_scene_not_negative(const lar_scene *scene, const lar_yaml *node,
                                   const char *expected, double *value);
 lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const char *expected,
@@ -104,6 +113,8 @@ bool lar_scene_is_word(const lar_yaml *node, const char *word);
 
 /* ---- scene_mesh.c ------------------------------------------------------------------------- */
 
+/* The key `mesh`; of a mesh that was given it is not there, or says so. */
+lar_status lar_scene_check_mesh(const lar_scene *scene, const lar_yaml **mesh);
 lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double scale);
 
 /* ---- scene_sets.c -------------------------------------------------------------------------- */
@@ -143,6 +154,10 @@ lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_no
  * scene_surface.c ---------------------------------------------------------------------------- */
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
+/* The fibres of a material; and, when all elements have their materials, the directions of those of
+ * one (scene_fibre.c). */
+lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre);
+lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material);
 lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node);

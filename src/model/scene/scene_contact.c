@@ -58,7 +58,7 @@ static lar_status read_plane(lar_scene *scene, const lar_yaml *entry, const lar_
 }
 
 static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"self", "between", "faces", "plane", NULL};
+    static const char *const keys[] = {"self", "between", "faces", "plane", "friction", NULL};
     lar_status status = lar_scene_keys(scene, entry, "a contact entry", keys);
     if (status) return status;
     const lar_yaml *self = lar_yaml_get(entry, "self"), *between = lar_yaml_get(entry, "between");
@@ -76,6 +76,7 @@ static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
         status = read_between(scene, between, contact);
     else
         status = read_plane(scene, entry, faces, contact);
+    if (!status) status = lar_scene_friction(scene, entry, &contact->friction);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_contact_problem(scene->model, contact, problem))
         status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);

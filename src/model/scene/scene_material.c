@@ -23,8 +23,8 @@ static stiffness_form own_form(lar_law law) {
     return (stiffness_form){lar_law_table[law].count, lar_law_table[law].parameter};
 }
 
-/* Keys of a material: its own four, then all that any law may be asked with. */
-enum { OWN_KEYS = 4, KEYS_MAX = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
+/* Keys of a material: its own six, then all that any law may be asked with. */
+enum { OWN_KEYS = 6, KEYS_MAX = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
 
 static void add_keys(const char **key, const stiffness_form *form) {
     for (int i = 0; i < form->count; i++) {
@@ -36,7 +36,8 @@ static void add_keys(const char **key, const stiffness_form *form) {
 
 /* Ends with NULL. */
 static void list_keys(const char *key[KEYS_MAX + 1]) {
-    static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name"};
+    static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name", "viscous",
+                                              "fibres"};
     memset(key, 0, (KEYS_MAX + 1) * sizeof *key);
     for (int i = 0; i < OWN_KEYS; i++) key[i] = own[i];
     add_keys(key, &shear_bulk_form);
@@ -160,6 +161,57 @@ static lar_status read_law(const lar_scene *scene, const lar_yaml *node, lar_law
                              LAR_LAW_COUNT);
 }
 
+/* ---- viscosity ----------------------------------------------------------------------------- */
+
+static lar_status read_part(const lar_scene *scene, const lar_yaml *node, bool *isochoric) {
+    static const char *const names[] = {"isochoric", "whole"};
+    *isochoric = lar_scene_is_word(node, names[0]);
+    if (*isochoric || lar_scene_is_word(node, names[1])) return LAR_OK;
+    return lar_scene_unknown(scene, node, LAR_ERROR_FORMAT, "the part of the stress",
+                             "the parts are", names, 2);
+}
+
+static lar_status read_term(const lar_scene *scene, const lar_yaml *node, lar_viscosity *v) {
+    static const char *const keys[] = {"g", "time", NULL}, what[] = "a viscous term";
+    const lar_yaml *share = NULL, *time = NULL;
+    lar_status status = lar_scene_keys(scene, node, what, keys);
+    if (!status) status = lar_scene_need(scene, node, what, "g", "g: 0.5", &share);
+    if (!status) status = lar_scene_need(scene, node, what, "time", "time: 0.1", &time);
+    if (!status)
+        status = lar_scene_positive(scene, share, "a number without a unit, for example 0.5",
+                                    &v->share[v->terms]);
+    if (!status)
+        status = lar_scene_positive(scene, time, "a time in seconds, for example 0.1",
+                                    &v->time[v->terms]);
+    v->terms++;
+    return status;
+}
+
+static lar_status read_viscosity(const lar_scene *scene, const lar_yaml *node, lar_viscosity *v) {
+    static const char *const keys[] = {"part", "g0", "terms", NULL}, what[] = "viscous";
+    const lar_yaml *part = NULL, *terms = NULL;
+    lar_status status = lar_scene_keys(scene, node, what, keys);
+    if (!status) status = lar_scene_need(scene, node, what, "part", "part: isochoric", &part);
+    if (!status)
+        status = lar_scene_need(scene, node, what, "terms", "terms: [{g: 0.5, time: 0.1}]", &terms);
+    if (!status) status = read_part(scene, part, &v->isochoric);
+    const lar_yaml *rest = lar_yaml_get(node, "g0");
+    v->rest = 1;
+    v->line = node->line;
+    if (!status && rest)
+        status =
+            lar_scene_positive(scene, rest, "a number without a unit, for example 1", &v->rest);
+    if (!status) status = lar_scene_list(scene, terms, "terms, {g: 0.5, time: 0.1}");
+    if (status) return status;
+    if (terms->count < 1 || terms->count > LAR_VISCOUS_TERMS)
+        return lar_scene_fail(scene, terms, LAR_ERROR_FORMAT,
+                              "terms: %d viscous terms; give one to %d", (int)terms->count,
+                              LAR_VISCOUS_TERMS);
+    for (const lar_yaml *entry = terms->first; !status && entry; entry = entry->next)
+        status = read_term(scene, entry, v);
+    return status;
+}
+
 static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) {
     int32_t *index, count;
     lar_status status = lar_scene_select(scene, cells, LAR_SET_ELEMENTS, true, &index, &count);
@@ -190,6 +242,10 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     status = read_law(scene, law, &material->law);
     if (!status) status = lar_scene_positive(scene, density, LAR_IN_DENSITY, &material->density);
     if (!status) status = read_stiffness(scene, node, material);
+    const lar_yaml *viscous = lar_yaml_get(node, "viscous");
+    if (!status && viscous) status = read_viscosity(scene, viscous, &material->viscosity);
+    const lar_yaml *fibres = lar_yaml_get(node, "fibres");
+    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, &material->fibre);
     if (status) return status;
     char where[512];
     snprintf(where, sizeof where, "%s:%d:%d", scene->path, node->line, node->column);
@@ -215,5 +271,10 @@ lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node) {
                                   "element %lld (tag %d) has no material; add an entry whose cells "
                                   "contain it, for example cells: all as the first one",
                                   (long long)mesh->element_id[e], (int)mesh->element_tag[e]);
-    return LAR_OK;
+    int index = 0;
+    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next, index++) {
+        const lar_yaml *fibres = lar_yaml_get(entry, "fibres");
+        if (fibres) status = lar_scene_lay_fibres(scene, fibres, index);
+    }
+    return status;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/mesh/arrays.h"
+
 /* ---- putting two meshes together ------------------------------------------------------------ */
 
 /* What must be added to the ids of `more`, so that no id is in use: its numbering goes on after
@@ -37,7 +39,20 @@ static bool grow_mesh(lar_mesh *mesh, int32_t nodes, int32_t elements) {
            grow(&mesh->node_id, n, sizeof *mesh->node_id) &&
            grow(&mesh->element, e, sizeof *mesh->element) &&
            grow(&mesh->element_id, e, sizeof *mesh->element_id) &&
-           grow(&mesh->element_tag, e, sizeof *mesh->element_tag);
+           grow(&mesh->element_tag, e, sizeof *mesh->element_tag) &&
+           (!mesh->fibre || grow(&mesh->fibre, e, sizeof *mesh->fibre));
+}
+
+/* Directions of fibres, where one of the two has some. */
+static bool append_fibres(lar_mesh *mesh, int32_t elements, const lar_mesh *more) {
+    size_t all = (size_t)elements + (size_t)more->element_count;
+    if (!mesh->fibre && !more->fibre) return true;
+    if (!mesh->fibre) mesh->fibre = lar_calloc(all, sizeof *mesh->fibre);
+    if (!mesh->fibre) return false;
+    for (int32_t e = 0; e < more->element_count; e++)
+        for (int i = 0; i < 3; i++)
+            mesh->fibre[elements + e][i] = more->fibre ? more->fibre[e][i] : 0;
+    return true;
 }
 
 /* Adds a set of the second mesh, or its entries to the set of that name. */
@@ -72,7 +87,8 @@ static lar_status append_mesh(lar_scene *scene, const lar_yaml *node, const lar_
         return lar_scene_fail(scene, node, LAR_ERROR_UNSUPPORTED,
                               "the meshes together are too large, or their numbers are; at most "
                               "357 million elements can be numbered");
-    if (!grow_mesh(mesh, nodes + more->node_count, elements + more->element_count))
+    if (!grow_mesh(mesh, nodes + more->node_count, elements + more->element_count) ||
+        !append_fibres(mesh, elements, more))
         return lar_scene_no_memory(scene, (size_t)more->node_count * sizeof *mesh->position);
     int64_t node_shift = id_shift(mesh->node_id, nodes, more->node_id, more->node_count);
     int64_t element_shift =
@@ -160,8 +176,28 @@ static double diagonal(const lar_mesh *mesh) {
     return hypot(hypot(edge[0], edge[1]), edge[2]);
 }
 
+lar_status lar_scene_check_mesh(const lar_scene *scene, const lar_yaml **mesh) {
+    if (!scene->given)
+        return lar_scene_need(scene, scene->root, "a scene", "mesh", "mesh: organ.vtu", mesh);
+    *mesh = lar_yaml_get(scene->root, "mesh");
+    const lar_yaml *surface = lar_yaml_get(scene->root, "surface");
+    if (*mesh && !lar_scene_is_word(*mesh, "given"))
+        return lar_scene_fail(scene, *mesh, LAR_ERROR_MODEL,
+                              "mesh: the mesh of this scene was given as arrays, and no file is "
+                              "read besides; remove this key, or write mesh: given");
+    if (surface)
+        return lar_scene_fail(scene, surface, LAR_ERROR_UNSUPPORTED,
+                              "surface: a model from arrays reads no file; remove this key");
+    return LAR_OK;
+}
+
 lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double scale) {
     lar_mesh *mesh = &scene->model->mesh;
+    if (scene->given) {
+        lar_status taken = lar_mesh_from_arrays(scene->given, scale, mesh, scene->error);
+        if (!taken) scene->size = diagonal(mesh);
+        return taken;
+    }
     bool list = node->kind == LAR_YAML_LIST;
     lar_status status = LAR_OK;
     if (list && node->count == 0)

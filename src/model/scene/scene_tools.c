@@ -16,19 +16,24 @@ typedef struct shape_keys {
 } shape_keys;
 
 static const shape_keys known[] = {
-    {"sphere", "a sphere", LAR_TOOL_SPHERE, false, false, {"name", "shape", "radius", "at", NULL}},
+    {"sphere",
+     "a sphere",
+     LAR_TOOL_SPHERE,
+     false,
+     false,
+     {"name", "shape", "radius", "at", "friction", NULL}},
     {"capsule",
      "a capsule",
      LAR_TOOL_CAPSULE,
      true,
      false,
-     {"name", "shape", "radius", "length", "at", "towards", NULL}},
+     {"name", "shape", "radius", "length", "at", "towards", "friction", NULL}},
     {"grasper",
      "a grasper",
      LAR_TOOL_GRASPER,
      true,
      true,
-     {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", NULL}}};
+     {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", "friction", NULL}}};
 enum { SHAPES = sizeof known / sizeof known[0] };
 
 static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
@@ -113,8 +118,8 @@ static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape
 }
 
 static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"name", "shape",   "radius", "length", "spread",
-                                       "at",   "towards", "turn",   NULL};
+    static const char *const keys[] = {"name", "shape",   "radius", "length",   "spread",
+                                       "at",   "towards", "turn",   "friction", NULL};
     const char *const what = "a tool";
     const lar_yaml *name = NULL, *word = NULL;
     const shape_keys *shape = NULL;
@@ -133,6 +138,7 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     status = read_name(scene, name, tool);
     if (!status) status = read_size(scene, entry, shape, tool);
     if (!status) status = read_pose(scene, entry, shape, tool);
+    if (!status) status = lar_scene_friction(scene, entry, &tool->friction);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_tool_problem(scene->model, tool, problem))
         status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);

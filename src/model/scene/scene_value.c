@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "model/contact_check.h"
 
 /* ---- messages ----------------------------------------------------------------------------- */
 
@@ -167,6 +168,14 @@ lar_status lar_scene_not_negative(const lar_scene *scene, const lar_yaml *node,
                                   const char *expected, double *value) {
     lar_status status = lar_scene_number(scene, node, expected, value);
     return status ? status : check_sign(scene, node, expected, *value >= 0.0, "not be negative");
+}
+
+lar_status lar_scene_friction(const lar_scene *scene, const lar_yaml *entry, double *friction) {
+    const lar_yaml *node = lar_yaml_get(entry, "friction");
+    if (!node) return LAR_OK;
+    lar_status status = lar_scene_number(scene, node, LAR_A_FRICTION, friction);
+    if (status || !lar_friction_problem(*friction)) return status;
+    return check_sign(scene, node, LAR_A_FRICTION, false, "be from 0 to 5");
 }
 
 lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const char *expected,

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/pin.h"
 #include "model/demo/demo.h"
@@ -45,6 +46,48 @@ lar_status lar_bench_step_organ(lar_model **model, lar_error *error) {
     lar_status status = lar_scene_parse_with(scene->name, &bytes, make_organ_mesh, model, error);
     free(text);
     return status;
+}
+
+/* ---- going back ----------------------------------------------------------------------------- */
+
+enum { TRIES = 101 };
+
+/* Microseconds of what comes between two looks at the clock. */
+static double since(int64_t begin) {
+    return 1e-3 * (double)(lar_clock_ns() - begin);
+}
+
+static lar_status try_once(lar_simulation *simulation, lar_saved *saved, double time[3],
+                           lar_error *error) {
+    int64_t begin = lar_clock_ns();
+    lar_status status = lar_simulation_save_to(simulation, saved, error);
+    time[0] = since(begin);
+    if (!status) status = lar_simulation_advance(simulation, 1, error);
+    begin = lar_clock_ns();
+    if (!status) status = lar_simulation_load_from(simulation, saved, error);
+    time[1] = since(begin);
+    begin = lar_clock_ns();
+    if (!status) status = lar_simulation_advance(simulation, 1, error);
+    time[2] = since(begin);
+    return status ? status : lar_simulation_load_from(simulation, saved, error);
+}
+
+static lar_status time_saving(lar_bench_step_result *r, lar_simulation *simulation,
+                              lar_error *error) {
+    double time[3][TRIES];
+    lar_saved *saved = NULL;
+    lar_status status = lar_saved_create(simulation, &saved, error);
+    for (int i = 0; i < TRIES && !status; i++) {
+        double one[3];
+        status = try_once(simulation, saved, one, error);
+        for (int k = 0; k < 3; k++) time[k][i] = one[k];
+    }
+    lar_saved_destroy(saved);
+    if (status) return status;
+    r->save = lar_spread_of(time[0], TRIES).median;
+    r->load = lar_spread_of(time[1], TRIES).median;
+    r->step_after = lar_spread_of(time[2], TRIES).median;
+    return LAR_OK;
 }
 
 /* ---- one sample ----------------------------------------------------------------------------- */
@@ -108,6 +151,7 @@ static lar_status take_sample(bench *b, int sample, lar_error *error) {
     if (!status) status = time_steps(b, simulation, &b->samples[sample], error);
     if (!status) status = check_hash(r, lar_simulation_hash(simulation), sample, error);
     lar_simulation_contact(simulation, &r->contact);
+    if (!status) status = time_saving(r, simulation, error);
     lar_simulation_destroy(simulation);
     return status;
 }

@@ -8,6 +8,10 @@
  * the median of its steps: on a machine that does something else as well the mean is mostly of
  * that. The percentiles are those of the single steps of all samples. All samples end with the same
  * state hash, or the benchmark fails.
+ *
+ * In the state at the end of each sample it is measured, too, what it takes to save it in memory,
+ * to go back to it after a step, and how long the first step behind that is, in which contact is
+ * searched anew: what one try costs of who tries many things from one state (lar_saved).
  */
 #ifndef LAR_STUDY_BENCH_STEP_H
 #define LAR_STUDY_BENCH_STEP_H
@@ -37,6 +41,7 @@ typedef struct lar_bench_step_result {
     double p50, p99, p999, longest; /* of single steps [us] */
     uint64_t hash;                  /* after warm-up and steps */
     lar_contact_info contact;       /* then */
+    double save, load, step_after;  /* in memory; of the steps after loading [us], medians */
 } lar_bench_step_result;
 
 /* Fails as creating and advancing a simulation fails, and for options out of range. */

@@ -48,6 +48,15 @@ static lar_status refuse(const lar_model *model, const lar_implicit_options *o, 
                         "%s: the implicit comparison knows neither contact nor tools; take a scene "
                         "without them",
                         lar_model_source(model));
+    if (lar_model_viscous(model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: the implicit comparison knows no viscous materials; take a model "
+                        "without them",
+                        lar_model_source(model), lar_model_viscous(model)->viscosity.line);
+    if (lar_model_fibrous(model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: the implicit comparison knows no fibres; take a model without them",
+                        lar_model_source(model), lar_model_fibrous(model)->fibre.line);
     if (!(o->time_step > 0 && isfinite(o->time_step)) || !(o->tolerance > 0) || o->newton_max < 1)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "implicit integration needs a step, a tolerance and iterations above 0");
@@ -357,7 +366,8 @@ lar_status lar_implicit_create(const lar_model *model, const lar_implicit_option
     for (int32_t n = 0; !status && n < model->mesh.node_count; n++) m->local[n] = n;
     if (!status) status = lar_conditions_create(model, m->local, NULL, &m->conditions, error);
     if (!status) status = lar_condition_notes_create(&m->conditions, &m->notes, error);
-    if (!status) status = lar_state_create(&m->state, (model->mesh.node_count + 1) / 2 * 2, error);
+    if (!status)
+        status = lar_state_create(&m->state, (model->mesh.node_count + 1) / 2 * 2, 0, error);
     if (!status) {
         prepare_elements(m);
         start_motion(m);

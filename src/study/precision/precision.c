@@ -184,6 +184,17 @@ static lar_status check(const lar_precision_options *options, lar_error *error) 
                         "comparing precisions takes %d to 1e9 steps of a model or of a block of 8 "
                         "to 1e6 elements",
                         LAR_PRECISION_LOOKS);
+    if (!block && lar_model_viscous(options->model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: single precision knows no viscous materials; take a model without "
+                        "them",
+                        lar_model_source(options->model),
+                        lar_model_viscous(options->model)->viscosity.line);
+    if (!block && lar_model_fibrous(options->model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: single precision knows no fibres; take a model without them",
+                        lar_model_source(options->model),
+                        lar_model_fibrous(options->model)->fibre.line);
     return LAR_OK;
 }
 

@@ -361,6 +361,7 @@ static inline size_t lar_run_stride(const lar_block_run *run) {
 #define lar_kernels_c      JOIN(single_source_, LAR_SINGLE_NAME, LAR_SINGLE_STATE)
 #undef LAR_LANES
 #define LAR_LANES LANES
+#define LAR_KERNEL_ELASTIC
 #include "mechanics/hex8_kernel.c"
 #undef double
 #undef unsigned

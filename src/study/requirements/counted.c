@@ -117,13 +117,20 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 /* Other names for what other files define too. */
 #define lar_law_name                 counted_law_name
 #define lar_law_table                counted_law_table
+#define lar_fibre_law_name           counted_fibre_law_name
 #define lar_material_shear           counted_material_shear
 #define lar_material_bulk            counted_material_bulk
+#define lar_material_instant_shear   counted_material_instant_shear
+#define lar_material_instant_bulk    counted_material_instant_bulk
 #define lar_material_check           counted_material_check
 #define lar_material_from_young      counted_material_from_young
 #define lar_material_from_shear_bulk counted_material_from_shear_bulk
 #define lar_law_stress               counted_law_stress
 #define lar_law_energy               counted_law_energy
+#define lar_viscous_stress_at        counted_viscous_stress_at
+#define lar_material_stress          counted_material_stress
+#define lar_material_energy          counted_material_energy
+#define lar_active_energy            counted_active_energy
 #define lar_cauchy_stress            counted_cauchy_stress
 #define lar_von_mises                counted_von_mises
 #define lar_mean_pressure            counted_mean_pressure
@@ -209,6 +216,7 @@ LAR_INLINE lar_lane counted_to_lane(counted a) {
 #define lar_ilane_store       counted_store_force
 #define lar_ilane_to_lane     counted_to_lane
 
+#define LAR_KERNEL_ELASTIC
 #include "mechanics/hex8_kernel.c"
 
 _Static_assert(sizeof(((lar_counted_block *)NULL)->modulus) ==

@@ -204,6 +204,16 @@ static lar_status count_hex8(const lar_model *model, lar_requirements *r, lar_er
 }
 
 static lar_status count_kernels(const lar_model *model, lar_requirements *r, lar_error *error) {
+    if (lar_model_viscous(model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: operations of viscous materials are not counted yet; take a model "
+                        "without them",
+                        lar_model_source(model), lar_model_viscous(model)->viscosity.line);
+    if (lar_model_fibrous(model))
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: operations of fibres are not counted yet; take a model without "
+                        "them",
+                        lar_model_source(model), lar_model_fibrous(model)->fibre.line);
     lar_status status = count_hex8(model, r, error);
     if (status) return status;
     int64_t elements[LAR_LAW_COUNT] = {0};

@@ -125,10 +125,13 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
-    if (lar_feb_is(section, "MeshData"))
+    if (lar_feb_is(section, "MeshData")) {
+        while (content && lar_feb_is_direction(feb, content)) content = lar_feb_next(content);
+        if (!content) return LAR_OK; /* read with the materials */
         return lar_feb_notice(feb, section,
-                              "<MeshData> was left out; a value that refers to it is refused "
-                              "where it stands");
+                              "<MeshData> was left out but for directions of fibres; a value that "
+                              "refers to it is refused where it stands");
+    }
     return lar_feb_notice(feb, section, "the section <%s> is not known and was left out",
                           (const char *)section->name);
 }

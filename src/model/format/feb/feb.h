@@ -130,6 +130,27 @@ lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
 /* Reads the materials that elements use into the model and assigns them. */
 lar_status lar_feb_read_materials(lar_feb *feb);
 
+/* One parameter that does not vary in space or time. A missing one keeps *value when that is
+ * allowed. */
+lar_status lar_feb_parameter(lar_feb *feb, const xmlNode *material, const char *name, bool required,
+                             double *value);
+
+/* ---- fibre.c --------------------------------------------------------------------------------- */
+
+/* Whether a type within a mixture is one of fibres; reads it, and those of a "trans iso" law. */
+bool lar_feb_is_fibre(const char *type);
+lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
+                              lar_fibre *fibre);
+lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *fibre);
+/* The same of what contracts by a constant stress. */
+bool lar_feb_is_active(const char *type);
+lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
+                               lar_fibre *fibre);
+/* Gives all elements with fibres their directions; the materials are assigned. */
+lar_status lar_feb_lay_fibres(lar_feb *feb);
+/* Whether an entry of <MeshData> says directions. */
+bool lar_feb_is_direction(lar_feb *feb, const xmlNode *data);
+
 /* ---- curve.c --------------------------------------------------------------------------------- */
 
 /* Reads <LoadData>; the model's duration must be known. */

@@ -1,7 +1,10 @@
 /* FEBio decks: <Material> and <MeshDomains>. See feb.h.
  *
  * Which types are read, by which parameters, and what becomes of them stands in the rows of the
- * laws (law/law.h).
+ * laws (law/law.h). "viscoelastic" and "uncoupled viscoelastic" have a law inside of them, as
+ * <elastic>, and the terms of their relaxation; the second one the bulk modulus as well, in place
+ * of that of the law. "solid mixture" and "uncoupled solid mixture" are one law and fibres, as
+ * <solid>; "trans iso Mooney-Rivlin" and "trans iso Veronda-Westmann" have them built in.
  */
 #include "model/format/feb/feb.h"
 
@@ -85,10 +88,8 @@ lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
 /* ---- parameters --------------------------------------------------------------------------------
  */
 
-/* One parameter that does not vary in space or time. A missing one keeps *value when that is
- * allowed. */
-static lar_status read_parameter(lar_feb *feb, const xmlNode *material, const char *name,
-                                 bool required, double *value) {
+lar_status lar_feb_parameter(lar_feb *feb, const xmlNode *material, const char *name, bool required,
+                             double *value) {
     const xmlNode *child = lar_feb_child(material, name);
     if (!child && !required) return LAR_OK;
     if (!child)
@@ -106,7 +107,7 @@ static lar_status read_parameter(lar_feb *feb, const xmlNode *material, const ch
 static lar_status read_density(lar_feb *feb, const xmlNode *node, lar_material *material) {
     material->density = 1.0; /* FEBio's default */
     if (lar_feb_child(node, "density"))
-        return read_parameter(feb, node, "density", true, &material->density);
+        return lar_feb_parameter(feb, node, "density", true, &material->density);
     return lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
 }
 
@@ -136,23 +137,30 @@ static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_r
     return LAR_OK;
 }
 
-static lar_status read_law(lar_feb *feb, const xmlNode *node, lar_law law, lar_material *material) {
+/* `outer`: the viscous material around it, or NULL. */
+static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *outer, lar_law law,
+                           bool trans_iso, lar_material *material) {
     const lar_law_dialect *dialect = lar_law_table[law].febio;
-    const char *known[LAR_LAW_GIVEN + 3] = {"density"};
+    static const char *const fibres[] = {"c3", "c4", "c5", "lam_max", "fiber", "mat_axis"};
+    enum { FIBRES = sizeof fibres / sizeof *fibres }; /* of "trans iso" types: read apart */
+    const char *known[LAR_LAW_GIVEN + 3 + FIBRES] = {"density"};
     double given[LAR_LAW_GIVEN] = {0};
     material->law = law;
     lar_status status = check_pressure_model(feb, node, dialect);
     for (int i = 0; i < dialect->count && !status; i++) {
         const lar_law_parameter *of = &dialect->parameter[i];
         bool needed = !lar_law_may_miss(dialect->parameter, i);
+        bool outside = outer && strcmp(of->name, "k") == 0;
         known[1 + i] = of->name;
-        status = read_parameter(feb, node, of->name, needed, &given[i]);
+        status = lar_feb_parameter(feb, outside ? outer : node, of->name, needed, &given[i]);
     }
     for (int i = 0; i < dialect->count && !status; i++)
         status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
     if (status) return status;
     dialect->read(given, material->parameter);
-    known[1 + dialect->count] = dialect->volume ? "pressure_model" : NULL;
+    int count = 1 + dialect->count;
+    if (dialect->volume) known[count++] = "pressure_model";
+    for (int i = 0; i < FIBRES && trans_iso; i++) known[count++] = fibres[i];
     return lar_feb_notice_others(feb, node, known);
 }
 
@@ -176,6 +184,140 @@ static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *typ
                         "material type '%.60s' is not read; of FEBio's, Lariat has %s", type, list);
 }
 
+/* ---- fibres ---------------------------------------------------------------------------------
+ */
+
+/* The law in a "trans iso" type, LAR_LAW_COUNT: it is none. */
+static lar_law trans_iso_law(const char *type) {
+    static const char prefix[] = "trans iso ";
+    size_t length = sizeof prefix - 1;
+    lar_law law = strncmp(type, prefix, length) == 0 ? find_law(type + length) : LAR_LAW_COUNT;
+    return law == LAR_LAW_mooney_rivlin || law == LAR_LAW_veronda_westmann ? law : LAR_LAW_COUNT;
+}
+
+static bool is_mixture(const char *type, bool *isochoric) {
+    *isochoric = strcmp(type, "uncoupled solid mixture") == 0;
+    return *isochoric || strcmp(type, "solid mixture") == 0;
+}
+
+/* Parts that only one of can be. */
+static lar_status refuse_second(lar_feb *feb, const xmlNode *node, const char *what) {
+    return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                        "a second %s in a solid mixture; Lariat has one law, one family of "
+                        "fibres and one contraction, leave it out or put the two together",
+                        what);
+}
+
+/* One law, with the bulk modulus of the mixture where that is uncoupled, and fibres. */
+static lar_status read_mixture(lar_feb *feb, const xmlNode *node, bool isochoric,
+                               lar_material *material) {
+    static const char *const known[] = {"density", "solid",          "mat_axis",
+                                        "k",       "pressure_model", NULL};
+    bool has_law = false;
+    lar_status status = LAR_OK;
+    for (xmlNode *solid = lar_feb_first(node); solid && !status; solid = lar_feb_next(solid)) {
+        const char *type;
+        if (!lar_feb_is(solid, "solid")) continue;
+        status = lar_feb_need_attribute(feb, solid, "type", &type);
+        if (status) return status;
+        if (lar_feb_is_fibre(type)) {
+            if (material->fibre.law != LAR_FIBRE_NONE)
+                return refuse_second(feb, solid, "family of fibres");
+            status = lar_feb_read_fibre(feb, solid, type, &material->fibre);
+            continue;
+        }
+        if (lar_feb_is_active(type)) {
+            if (lar_fibre_active(&material->fibre))
+                return refuse_second(feb, solid, "active contraction");
+            status = lar_feb_read_active(feb, solid, type, &material->fibre);
+            continue;
+        }
+        lar_law law = find_law(type);
+        if (law == LAR_LAW_COUNT) return refuse_type(feb, solid, type);
+        if (has_law) return refuse_second(feb, solid, "law");
+        has_law = true;
+        if (isochoric) status = check_pressure_model(feb, node, lar_law_table[law].febio);
+        if (!status) status = read_law(feb, solid, isochoric ? node : NULL, law, false, material);
+    }
+    if (!status && !has_law)
+        return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                            "the mixture has no law besides its fibres; add one as <solid>");
+    return status ? status : lar_feb_notice_others(feb, node, known);
+}
+
+static lar_status read_trans_iso(lar_feb *feb, const xmlNode *node, lar_law law,
+                                 lar_material *material) {
+    lar_status status = read_law(feb, node, NULL, law, true, material);
+    return status ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
+}
+
+/* ---- viscosity ---------------------------------------------------------------------------------
+ */
+
+enum { FEB_TERMS = 6 }; /* that FEBio has */
+
+/* Terms without a share do nothing, whatever their times are. */
+static lar_status read_terms(lar_feb *feb, const xmlNode *node, lar_viscosity *v) {
+    v->rest = 1;
+    lar_status status = lar_feb_parameter(feb, node, "g0", false, &v->rest);
+    for (int i = 1; i <= FEB_TERMS && !status; i++) {
+        const char share_name[] = {'g', (char)('0' + i), '\0'};
+        const char time_name[] = {'t', (char)('0' + i), '\0'};
+        double share = 0, time = 1;
+        status = lar_feb_parameter(feb, node, share_name, false, &share);
+        if (!status) status = lar_feb_parameter(feb, node, time_name, share != 0, &time);
+        if (status || share == 0) continue;
+        if (v->terms == LAR_VISCOUS_TERMS)
+            return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                                "more than %d terms of relaxation; Lariat has %d at most, give the "
+                                "others a share of 0",
+                                LAR_VISCOUS_TERMS, LAR_VISCOUS_TERMS);
+        v->share[v->terms] = share;
+        v->time[v->terms++] = time;
+    }
+    if (!status && v->terms == 0 && v->rest != 1)
+        status = lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                              "g0 is %g and nothing relaxes; multiply the moduli by it and take "
+                              "the material inside",
+                              v->rest);
+    return status;
+}
+
+/* Returns whether the type is viscous; *part: whether only the isochoric part relaxes. */
+static bool is_viscous(const char *type, bool *isochoric) {
+    *isochoric = strcmp(type, "uncoupled viscoelastic") == 0;
+    return *isochoric || strcmp(type, "viscoelastic") == 0;
+}
+
+/* The law inside a viscous material. */
+static lar_status read_viscous(lar_feb *feb, const xmlNode *node, lar_material *material) {
+    static const char *const known[] = {"density", "elastic", "g0", "g1", "g2", "g3", "g4", "g5",
+                                        "g6",      "t1",      "t2", "t3", "t4", "t5", "t6", NULL};
+    static const char *const known_apart[] = {"density", "elastic", "k",  "pressure_model",
+                                              "g0",      "g1",      "g2", "g3",
+                                              "g4",      "g5",      "g6", "t1",
+                                              "t2",      "t3",      "t4", "t5",
+                                              "t6",      NULL};
+    lar_viscosity *v = &material->viscosity;
+    const xmlNode *inner = lar_feb_child(node, "elastic");
+    const char *type;
+    if (!inner)
+        return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
+                            "the viscous material has no <elastic> inside; add it");
+    lar_status status = lar_feb_need_attribute(feb, inner, "type", &type);
+    if (status) return status;
+    lar_law law = trans_iso_law(type);
+    bool fibres = law != LAR_LAW_COUNT;
+    if (!fibres) law = find_law(type);
+    if (law == LAR_LAW_COUNT) return refuse_type(feb, inner, type);
+    if (v->isochoric) status = check_pressure_model(feb, node, lar_law_table[law].febio);
+    if (!status) status = read_law(feb, inner, v->isochoric ? node : NULL, law, fibres, material);
+    if (!status && fibres) status = lar_feb_read_trans_iso(feb, inner, &material->fibre);
+    if (!status) status = read_terms(feb, node, v);
+    v->line = lar_feb_line(node);
+    return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known_apart : known);
+}
+
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, entry->node, "type", &type);
@@ -187,9 +329,18 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     if (!material->name) return lar_feb_no_memory(feb, "the materials");
     status = read_density(feb, entry->node, material);
     if (status) return status;
-    lar_law law = find_law(type);
-    if (law == LAR_LAW_COUNT) return refuse_type(feb, entry->node, type);
-    status = read_law(feb, entry->node, law, material);
+    lar_law law = find_law(type), within = trans_iso_law(type);
+    bool isochoric;
+    if (is_viscous(type, &material->viscosity.isochoric))
+        status = read_viscous(feb, entry->node, material);
+    else if (is_mixture(type, &isochoric))
+        status = read_mixture(feb, entry->node, isochoric, material);
+    else if (within != LAR_LAW_COUNT)
+        status = read_trans_iso(feb, entry->node, within, material);
+    else if (law == LAR_LAW_COUNT)
+        status = refuse_type(feb, entry->node, type);
+    else
+        status = read_law(feb, entry->node, NULL, law, false, material);
     if (status) return status;
     char where[300];
     snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));
@@ -229,5 +380,5 @@ lar_status lar_feb_read_materials(lar_feb *feb) {
                                     "material '%.100s' is not used by any element and was left "
                                     "out",
                                     feb->material[i].name);
-    return status;
+    return status ? status : lar_feb_lay_fibres(feb);
 }

@@ -126,6 +126,7 @@ static const keyword_row keywords[] = {
     {"HYPERELASTIC", inp_read_hyperelastic, NULL, OF_MATERIAL},
     {"DENSITY", inp_read_density, NULL, OF_MATERIAL},
     {"DAMPING", inp_read_damping, NULL, OF_MATERIAL},
+    {"VISCOELASTIC", inp_read_viscoelastic, NULL, OF_MATERIAL},
     {"AMPLITUDE", inp_read_amplitude, NULL, OF_DECK},
     {"STEP", read_step, enter_step, OF_DECK},
     {"STATIC", read_static, NULL, OF_DECK},

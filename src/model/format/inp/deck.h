@@ -24,10 +24,11 @@ typedef struct inp_material {
     char *name;
     int line;
     bool has_law, has_density;
-    bool linear;    /* from *ELASTIC */
-    double damping; /* ALPHA of *DAMPING [1/s] */
-    lar_material value;
-    int index; /* in lar_model.material, -1 until a section uses it */
+    bool linear;        /* from *ELASTIC */
+    double damping;     /* ALPHA of *DAMPING [1/s] */
+    lar_material value; /* its viscosity without what `instant` says */
+    bool instant;       /* its moduli are those at once: MODULI=INSTANTANEOUS */
+    int index;          /* in lar_model.material, -1 until a section uses it */
 } inp_material;
 
 typedef struct inp_amplitude {
@@ -151,6 +152,14 @@ lar_status inp_read_damping(inp_deck *deck, const inp_card *card);
 lar_status inp_read_section(inp_deck *deck, const inp_card *card);
 /* Densities, notices and the damping of what sections use. */
 lar_status inp_finish_materials(inp_deck *deck);
+
+/* ---- viscous.c --------------------------------------------------------------------------- */
+
+lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card);
+/* Whether the moduli of *ELASTIC or *HYPERELASTIC are those at once. */
+lar_status inp_read_moduli(const inp_deck *deck, const inp_card *card, inp_material *material);
+/* The viscosity of the model's material, once its moduli are known too. */
+lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_material *material);
 
 /* ---- conditions.c ------------------------------------------------------------------------ */
 

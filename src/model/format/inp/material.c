@@ -89,12 +89,13 @@ static lar_status check_law(const inp_deck *deck, const inp_material *material) 
     char where[300];
     lar_material tried = material->value;
     tried.density = 1.0;
+    tried.viscosity.terms = 0; /* looked at when both are known */
     snprintf(where, sizeof where, "%.200s:%d", deck->reader.path, material->line);
     return lar_material_check(&tried, where, deck->reader.error);
 }
 
 lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"TYPE", NULL};
+    static const char *const known[] = {"TYPE", "MODULI", NULL};
     lar_span type, field[3];
     int count;
     inp_material *material;
@@ -111,6 +112,7 @@ lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
     if (!status) status = inp_number(deck, field, count, 0, "Young's modulus", &young);
     if (!status) status = inp_number(deck, field, count, 1, "Poisson's ratio", &poisson);
     if (!status) status = take_law(deck, card, material, LAR_LAW_neo_hookean);
+    if (!status) status = inp_read_moduli(deck, card, material);
     if (status) return status;
     if (!(poisson > -1.0 && poisson < 0.5))
         return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL,
@@ -283,6 +285,7 @@ lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
     while (!has_constants(lar_law_table[law].abaqus, lar_law_table[asked.law].abaqus, given, own))
         law++; /* as far as the one that is asked for */
     status = take_law(deck, card, material, law);
+    if (!status) status = inp_read_moduli(deck, card, material);
     if (status) return status;
     lar_law_table[law].abaqus->read(own, material->value.parameter);
     return check_law(deck, material);
@@ -343,7 +346,7 @@ static lar_status use_material(inp_deck *deck, inp_material *material) {
     made->name = lar_strdup(material->name);
     if (!made->name) return inp_no_memory(deck, "the materials");
     material->index = index;
-    return LAR_OK;
+    return inp_finish_viscosity(deck, material, made);
 }
 
 lar_status inp_read_section(inp_deck *deck, const inp_card *card) {

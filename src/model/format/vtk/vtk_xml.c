@@ -276,12 +276,31 @@ lar_status lar_vtk_xml_cells(const lar_vtk_xml *file, xmlNode *parent, lar_vtk_c
     return lar_vtk_xml_integers(file, parent, "connectivity", list->corner_count, &list->corner);
 }
 
+/* The directions of fibres, a cell array of three numbers; the last one counts. */
+static lar_status read_fibres(const lar_vtk_xml *file, xmlNode *node, int64_t cells,
+                              lar_vtk_grid *grid) {
+    lar_vtu_array_text array;
+    lar_status status = describe_array(file, node, &array);
+    if (status) return status;
+    double *value = NULL;
+    status = lar_vtu_array_doubles(&array, 3 * (size_t)cells, &value, file->error);
+    if (status) return status;
+    free(grid->fibre);
+    grid->fibre = value;
+    return LAR_OK;
+}
+
 lar_status lar_vtk_xml_data(const lar_vtk_xml *file, xmlNode *parent, lar_vtk_place place,
                             int64_t count, lar_vtk_grid *grid) {
     for (xmlNode *node = lar_vtk_xml_child(parent, "DataArray"); node;
          node = find_element(node->next, "DataArray")) {
         const char *name = attribute(node, "Name"), *type = attribute(node, "type");
         lar_vtk_scalar scalar;
+        if (name && count >= 0 && lar_vtk_is_fibre(place, name) && components(node) == 3) {
+            lar_status status = read_fibres(file, node, count, grid);
+            if (status) return status;
+            continue;
+        }
         if (!name || !type || !lar_vtk_wants(place, name) ||
             !lar_vtk_scalar_from_xml(type, &scalar) || !lar_vtk_scalar_is_integer(scalar) ||
             components(node) != 1)

@@ -1,9 +1,13 @@
 /* Stream sockets with deadlines. All sockets are non-blocking, closed on exec, and never raise
- * SIGPIPE; times are those of lar_comm_now. */
-#ifndef LAR_COMM_SOCKET_H
-#define LAR_COMM_SOCKET_H
+ * SIGPIPE; times are those of lar_clock_seconds. */
+#ifndef LAR_BASE_SOCKET_H
+#define LAR_BASE_SOCKET_H
 
-#include "comm/comm.h"
+#include <stdbool.h>
+
+#include "base/error.h"
+
+enum { LAR_SOCKET_HOST_BYTES = 64 }; /* of a numeric address of a host */
 
 typedef enum lar_socket_end {
     LAR_SOCKET_DONE,
@@ -17,10 +21,10 @@ lar_status lar_socket_check(const char *address, int min, lar_error *error);
 lar_status lar_socket_listen(const char *address, int *listener, lar_error *error);
 /* The port that a listener got. */
 int lar_socket_port(int listener);
-/* Host of the other side, numeric, into host[LAR_COMM_HOST_BYTES]; "" when unknown. */
+/* Host of the other side, numeric, into host[LAR_SOCKET_HOST_BYTES]; "" when unknown. */
 void lar_socket_peer_host(int socket, char *host);
 /* An address of this machine that other machines can reach, numeric, into
- * host[LAR_COMM_HOST_BYTES]: what LARIAT_HOST says, what the machine's name stands for, or the
+ * host[LAR_SOCKET_HOST_BYTES]: what LARIAT_HOST says, what the machine's name stands for, or the
  * first network that is not the loopback. */
 lar_status lar_socket_own_host(char *host, lar_error *error);
 

@@ -1,4 +1,4 @@
-#include "comm/socket.h"
+#include "base/socket.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,7 +15,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "comm/backend.h"
+#include "base/clock.h"
+
+enum { BACKLOG = 4096 }; /* who may wait to be accepted; the system has a limit of its own */
 
 /* A number that is no port would be cut to 16 bits, and be another one. Names are looked up. */
 static bool is_port(const char *text, int min) {
@@ -29,12 +31,10 @@ lar_status lar_socket_check(const char *address, int min, lar_error *error) {
     const char *colon = strrchr(address, ':');
     if (!colon || !colon[1])
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s is no address of processor 0; write host:port, as in localhost:7077",
-                        address);
+                        "%s is no address; write host:port, as in localhost:7077", address);
     if (is_port(colon + 1, min)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s is no address of processor 0: a port is a number from %d to 65535, as in "
-                    "localhost:7077",
+                    "%s is no address: a port is a number from %d to 65535, as in localhost:7077",
                     address, min);
 }
 
@@ -50,8 +50,7 @@ static lar_status look_up(const char *address, bool passive, struct addrinfo **f
     if (length >= 2 && begin[0] == '[' && begin[length - 1] == ']') begin++, length -= 2;
     if (length == 0 || length >= sizeof host)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s is no address of processor 0; write host:port, as in localhost:7077",
-                        address);
+                        "%s is no address; write host:port, as in localhost:7077", address);
     memcpy(host, begin, length);
     host[length] = '\0';
     struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = passive ? AI_PASSIVE : 0};
@@ -79,8 +78,7 @@ lar_status lar_socket_listen(const char *address, int *listener, lar_error *erro
     if (good) {
         prepare(fd);
         setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-        good = bind(fd, found->ai_addr, found->ai_addrlen) == 0 &&
-               listen(fd, LAR_COMM_PROCESSORS_MAX) == 0;
+        good = bind(fd, found->ai_addr, found->ai_addrlen) == 0 && listen(fd, BACKLOG) == 0;
     }
     freeaddrinfo(found);
     if (good) {
@@ -109,7 +107,7 @@ void lar_socket_peer_host(int socket, char *host) {
     socklen_t length = sizeof at;
     host[0] = '\0';
     if (getpeername(socket, (struct sockaddr *)&at, &length) == 0 &&
-        getnameinfo((struct sockaddr *)&at, length, host, LAR_COMM_HOST_BYTES, NULL, 0,
+        getnameinfo((struct sockaddr *)&at, length, host, LAR_SOCKET_HOST_BYTES, NULL, 0,
                     NI_NUMERICHOST) != 0)
         host[0] = '\0';
 }
@@ -126,12 +124,12 @@ static bool reachable(const struct sockaddr *at, char *host) {
                    127) {
         return false;
     }
-    return getnameinfo(at, length, host, LAR_COMM_HOST_BYTES, NULL, 0, NI_NUMERICHOST) == 0;
+    return getnameinfo(at, length, host, LAR_SOCKET_HOST_BYTES, NULL, 0, NI_NUMERICHOST) == 0;
 }
 
 lar_status lar_socket_own_host(char *host, lar_error *error) {
     const char *said = getenv("LARIAT_HOST");
-    if (said && *said && strlen(said) < LAR_COMM_HOST_BYTES) {
+    if (said && *said && strlen(said) < LAR_SOCKET_HOST_BYTES) {
         memcpy(host, said, strlen(said) + 1);
         return LAR_OK;
     }
@@ -156,7 +154,7 @@ lar_status lar_socket_own_host(char *host, lar_error *error) {
 }
 
 void lar_socket_poll(int socket, short events, double deadline) {
-    double left = deadline - lar_comm_now();
+    double left = deadline - lar_clock_seconds();
     struct pollfd one = {.fd = socket, .events = events};
     if (left > 0) poll(&one, 1, left > 60 ? 60000 : (int)(1e3 * left) + 1);
 }
@@ -195,13 +193,14 @@ lar_status lar_socket_connect(const char *address, double deadline, int *connect
     while (fd < 0) {
         for (const struct addrinfo *to = found; to && fd < 0; to = to->ai_next)
             if ((fd = connect_once(to, deadline)) < 0) reason = errno;
-        if (fd >= 0 || lar_comm_now() > deadline) break;
+        if (fd >= 0 || lar_clock_seconds() > deadline) break;
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     }
     freeaddrinfo(found);
     if (fd < 0)
         return lar_fail(error, LAR_ERROR_PEER,
-                        "nobody answers at %s: %s; start processor 0 and check the address",
+                        "nobody answers at %s: %s; see that the program there runs, and check the "
+                        "address",
                         address, strerror(reason));
     *connected = fd;
     return LAR_OK;
@@ -217,7 +216,7 @@ int lar_socket_accept(int listener, double deadline) {
         int reason = errno;
         bool broken = reason == EINVAL || reason == EBADF || reason == ENOTSOCK;
         if (broken || reason == EMFILE || reason == ENFILE) return -reason;
-        if (lar_comm_now() > deadline) return LAR_SOCKET_NOBODY;
+        if (lar_clock_seconds() > deadline) return LAR_SOCKET_NOBODY;
         if (reason == EAGAIN || reason == EWOULDBLOCK)
             lar_socket_poll(listener, POLLIN, deadline);
         else if (reason != EINTR && reason != ECONNABORTED)
@@ -236,7 +235,7 @@ lar_socket_end lar_socket_send(int socket, const void *data, size_t bytes, doubl
         }
         if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
             return LAR_SOCKET_CLOSED;
-        if (lar_comm_now() > deadline) return LAR_SOCKET_LATE;
+        if (lar_clock_seconds() > deadline) return LAR_SOCKET_LATE;
         lar_socket_poll(socket, POLLOUT, deadline);
     }
     return LAR_SOCKET_DONE;
@@ -253,7 +252,7 @@ lar_socket_end lar_socket_receive(int socket, void *data, size_t bytes, double d
         }
         if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR))
             return LAR_SOCKET_CLOSED;
-        if (lar_comm_now() > deadline) return LAR_SOCKET_LATE;
+        if (lar_clock_seconds() > deadline) return LAR_SOCKET_LATE;
         lar_socket_poll(socket, POLLIN, deadline);
     }
     return LAR_SOCKET_DONE;
@@ -263,15 +262,4 @@ bool lar_socket_ended(int socket) {
     char byte;
     ssize_t got = recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
     return got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
-}
-
-lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_COMM_ADDRESS_TEXT],
-                           lar_error *error) {
-    lar_status status = lar_socket_listen(address, listener, error);
-    if (status) return status;
-    const char *colon = strrchr(address, ':');
-    int length = (int)(colon - address);
-    snprintf(bound, LAR_COMM_ADDRESS_TEXT, "%.*s:%d", length < 70 ? length : 70, address,
-             lar_socket_port(*listener));
-    return LAR_OK;
 }

@@ -1,0 +1,252 @@
+#include "contact/tool_friction.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "contact/touch_list.h"
+
+/* ---- set-up -------------------------------------------------------------------------------- */
+
+bool lar_tool_friction_any(const lar_tool_list *list) {
+    for (int32_t t = 0; list && t < list->count; t++)
+        if (list->tool[t].friction > 0) return true;
+    return false;
+}
+
+/* By local node: the surface node of the model that may rub, -1: none. */
+static void find_nodes(const lar_model *model, const int32_t *local,
+                       const lar_condition_share *share, int32_t *node) {
+    for (int32_t i = 0; i < 4 * model->surface.face_count; i++) {
+        int32_t n = model->surface.corner[i / 4][i % 4];
+        if (local[n] >= 0 && (!share || share->holds[n] == share->thread)) node[local[n]] = n;
+    }
+}
+
+lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
+                                  const lar_condition_share *share,
+                                  const lar_conditions *conditions, lar_tool_faces *faces,
+                                  lar_error *error) {
+    for (int32_t n = 0; n < model->mesh.node_count; n++)
+        if (local[n] >= faces->local_count) faces->local_count = local[n] + 1;
+    size_t nodes = (size_t)model->surface.node_count, all = (size_t)faces->local_count;
+    int32_t *node = lar_calloc(all, sizeof *node), *place = lar_calloc(all, sizeof *place);
+    faces->rub = lar_calloc(nodes, sizeof *faces->rub);
+    faces->rub_value = lar_calloc(nodes, sizeof *faces->rub_value);
+    lar_status status = LAR_OK;
+    if (!node || !place || !faces->rub || !faces->rub_value)
+        status = lar_fail_memory(error, nodes * sizeof *faces->rub, "the nodes before tools");
+    for (size_t n = 0; n < all && !status; n++) node[n] = place[n] = -1;
+    if (!status) find_nodes(model, local, share, node);
+    for (int32_t n = 0; n < faces->local_count && !status; n++) {
+        if (node[n] < 0) continue;
+        place[n] = faces->rub_count++;
+        faces->rub_value[place[n]] = 4 * n;
+        memcpy(faces->rub[place[n]].rest, model->mesh.position[node[n]], sizeof faces->rub->rest);
+    }
+    for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
+        int32_t at = place[conditions->constraint[i].value / 4];
+        if (at >= 0) faces->rub[at].held = true;
+    }
+    free(node);
+    free(place);
+    return status;
+}
+
+lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error) {
+    if (!lar_tool_friction_any(contact->list)) return LAR_OK;
+    size_t values = 4 * (size_t)contact->faces->local_count;
+    size_t nodes = (size_t)contact->faces->rub_count;
+    contact->press = lar_calloc(values, sizeof *contact->press);
+    contact->rubbed = lar_calloc(nodes, sizeof *contact->rubbed);
+    if (contact->press && contact->rubbed) return LAR_OK;
+    return lar_fail_memory(error, values * sizeof *contact->press + nodes * sizeof *contact->rubbed,
+                           "friction of tools");
+}
+
+void lar_tool_friction_destroy(lar_tool_contact *contact) {
+    free(contact->press);
+    free(contact->rubbed);
+    contact->press = NULL;
+    contact->rubbed = NULL;
+}
+
+void lar_tool_friction_forget(lar_tool_contact *contact) {
+    if (!contact->press) return;
+    memset(contact->press, 0, 4 * (size_t)contact->faces->local_count * sizeof *contact->press);
+}
+
+/* ---- the step ------------------------------------------------------------------------------ */
+
+void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_context *context,
+                             double friction, const lar_tool_contact_face *face,
+                             const double force[4][3]) {
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) {
+            double units = friction * force[a][i] * context->scale;
+            if (fabs(units) < 0x1p56) contact->press[face->value[a] + i] += llrint(units);
+        }
+}
+
+/* A tool with friction in the step under way. */
+typedef struct rough_tool {
+    int32_t tool;
+    lar_tool_pose now, next;
+    lar_tool_body body;
+    bool turns;
+    double speed[3];   /* of the tip [m/s] */
+    double turn[3][3]; /* from the way from the tip to a point: what its speed is more [1/s] */
+} rough_tool;
+
+/* How fast what is fixed to the tool goes: as fast as takes it to its next place. */
+static void follow(rough_tool *r, double dt) {
+    r->turns = memcmp(r->now.orientation, r->next.orientation, sizeof r->now.orientation) != 0;
+    for (int i = 0; i < 3; i++) r->speed[i] = (r->next.position[i] - r->now.position[i]) / dt;
+    for (int i = 0; i < 3 && r->turns; i++) {
+        double axis[3] = {i == 0, i == 1, i == 2}, own[3], to[3];
+        lar_turn_back(r->now.orientation, axis, own);
+        lar_turn(r->next.orientation, own, to);
+        for (int k = 0; k < 3; k++) r->turn[k][i] = (to[k] - axis[k]) / dt;
+    }
+}
+
+static int32_t place_tools(const lar_tool_contact *contact, const lar_condition_context *context,
+                           const lar_state *state, rough_tool rough[LAR_TOOLS_MAX]) {
+    int32_t count = 0;
+    for (int32_t t = 0; t < contact->list->count; t++) {
+        const lar_tool *tool = &contact->list->tool[t];
+        if (!(tool->friction > 0)) continue;
+        rough_tool *r = &rough[count++];
+        const lar_tool_motion *motion = &contact->tools->motion[t];
+        r->tool = t;
+        lar_tool_pose_now(motion, state, 0, context->whole_step, &r->now);
+        lar_tool_pose_now(motion, state, 1, context->whole_step, &r->next);
+        lar_tool_place(tool, &r->now, &r->body, r->body.now);
+        lar_tool_place(tool, &r->next, &r->body, r->body.next);
+        follow(r, context->time_step);
+    }
+    return count;
+}
+
+static const rough_tool *nearest(const lar_tool_contact *contact, const rough_tool *rough,
+                                 int32_t count, const double x[3]) {
+    const rough_tool *found = rough;
+    double min = INFINITY;
+    for (int32_t i = 0; i < count && count > 1; i++) {
+        double radius = contact->list->tool[rough[i].tool].radius;
+        double distance = lar_tool_contact_distance(&rough[i].body, radius, x);
+        if (!(distance < min)) continue;
+        min = distance;
+        found = &rough[i];
+    }
+    return found;
+}
+
+static void rigid_velocity(const rough_tool *tool, const double x[3], double velocity[3]) {
+    memcpy(velocity, tool->speed, 3 * sizeof *velocity);
+    if (!tool->turns) return;
+    double arm[3];
+    lar_minus(x, tool->now.position, arm);
+    for (int i = 0; i < 3; i++) velocity[i] += lar_dot(tool->turn[i], arm);
+}
+
+/* Velocity of the tool's material at x. Jaws turn about their hinge besides: their middle lines
+ * tell by how much. */
+static void tool_velocity(const rough_tool *tool, double radius, const double x[3], double dt,
+                          double velocity[3]) {
+    rigid_velocity(tool, x, velocity);
+    if (tool->body.count < 2) return;
+    double deepest = -INFINITY, normal[3], along = 0, part, end[3];
+    int32_t jaw = 0;
+    for (int32_t s = 0; s < tool->body.count; s++) {
+        double depth = lar_segment_depth(&tool->body.now[s], radius, x, normal, &part);
+        if (!(depth > deepest)) continue;
+        deepest = depth;
+        jaw = s;
+        along = part;
+    }
+    const double *now = tool->body.now[jaw].end[1], *next = tool->body.next[jaw].end[1];
+    rigid_velocity(tool, now, end);
+    for (int i = 0; i < 3; i++) velocity[i] += along * ((next[i] - now[i]) / dt - end[i]);
+}
+
+/* The force on a node whose press sum is `press`, in whole units. */
+static inline void rub(const double press[3], const double velocity[3], double unit,
+                       const lar_leapfrog *leapfrog, const double *v, const int64_t *force,
+                       int64_t units[3]) {
+    double square = lar_dot(press, press), along[3], before[3];
+    for (int i = 0; i < 3; i++) {
+        double ahead = leapfrog->keep * v[i] + leapfrog->drift[i] - unit * (double)force[i];
+        before[i] = v[i] - velocity[i];
+        along[i] = ahead - velocity[i];
+    }
+    double across = lar_dot(press, along) / square;
+    for (int i = 0; i < 3; i++) along[i] -= press[i] * across;
+    double part =
+        lar_friction_part(unit * sqrt(square), lar_dot(along, along), lar_dot(along, before));
+    double times = -part / unit;
+    for (int i = 0; i < 3; i++) {
+        double wanted = times * along[i];
+        units[i] = fabs(wanted) < 0x1p56 ? llrint(wanted) : 0;
+    }
+}
+
+static void rub_node(lar_tool_contact *contact, const lar_condition_context *context,
+                     const lar_leapfrog *leapfrog, const double *push, const rough_tool *rough,
+                     int32_t count, int32_t at, const int64_t sum[3], lar_state *state) {
+    const double press[3] = {(double)sum[0], (double)sum[1], (double)sum[2]};
+    const lar_tool_rub_node *node = &contact->faces->rub[at];
+    const int32_t value = contact->faces->rub_value[at];
+    double x[3], velocity[3], unit = leapfrog->push * push[value / 4];
+    for (int i = 0; i < 3; i++) x[i] = node->rest[i] + state->u[value + i];
+    const rough_tool *tool = nearest(contact, rough, count, x);
+    tool_velocity(tool, contact->list->tool[tool->tool].radius, x, context->time_step, velocity);
+    lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
+    rubbed->value = value;
+    rub(press, velocity, unit, leapfrog, state->v + value, state->force + value, rubbed->force);
+    for (int i = 0; i < 3; i++) state->force[value + i] -= rubbed->force[i];
+    if (!(context->weight[value / 4] > 0)) return; /* another processor tells the tool */
+    if (contact->touches && contact->touches->tool == tool->tool) {
+        lar_touch touch = {
+            .kind = LAR_TOUCH_RUBBED, .face = -1, .node = {value / 4}, .weight = {1}};
+        double size = lar_length(press);
+        for (int i = 0; i < 3; i++) {
+            touch.place[i] = x[i];
+            touch.normal[i] = press[i] / size;
+        }
+        lar_touch_note(contact->touches, &touch);
+        lar_touch_settle(contact->touches, rubbed->force, context->scale);
+    }
+    double arm[3];
+    lar_minus(x, tool->now.position, arm);
+    lar_tool_sum_add(&contact->sum[tool->tool], context->shares, arm, rubbed->force);
+}
+
+void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_context *context,
+                           const lar_leapfrog *leapfrog, const double *push, lar_state *state) {
+    rough_tool rough[LAR_TOOLS_MAX];
+    int32_t count = 0;
+    contact->rubbed_count = 0;
+    for (int32_t i = 0; i < contact->faces->rub_count; i++) {
+        int64_t *press = contact->press + contact->faces->rub_value[i];
+        if (!(press[0] | press[1] | press[2])) continue;
+        const int64_t sum[3] = {press[0], press[1], press[2]};
+        memset(press, 0, sizeof sum);
+        if (contact->faces->rub[i].held) continue;
+        if (count == 0) count = place_tools(contact, context, state, rough);
+        rub_node(contact, context, leapfrog, push, rough, count, i, sum, state);
+    }
+}
+
+void lar_tool_friction_half_work(const lar_tool_contact *contact,
+                                 const lar_condition_context *context, lar_state *state) {
+    double work = 0;
+    for (int32_t i = 0; i < contact->rubbed_count; i++) {
+        const lar_tool_rubbed *rubbed = &contact->rubbed[i];
+        /* A node that several processors have is accounted for by one. */
+        if (!(context->weight[rubbed->value / 4] > 0)) continue;
+        for (int k = 0; k < 3; k++) work += (double)rubbed->force[k] * state->v[rubbed->value + k];
+    }
+    state->external += 0.5 * context->mean_step * work / context->scale;
+}

@@ -1,0 +1,31 @@
+/* Where one tool touches, point by point (lar_touch): noted by who looks at a state
+ * (step/measure.h), never in a step.
+ *
+ * What acts on a face is rounded to whole force units corner by corner, and the tool gets exactly
+ * the opposite. So the points of a face become whole units too, and the largest of them takes what
+ * rounding has left: their sum is what the tool gets.
+ */
+#ifndef LAR_CONTACT_TOUCH_LIST_H
+#define LAR_CONTACT_TOUCH_LIST_H
+
+#include <stdint.h>
+
+#include "contact/tool_contact.h"
+
+/* Of one face and tool: all points of the grid and the wall, for both jaws. */
+enum { LAR_TOUCHES_OF_FACE = 74 };
+
+struct lar_touch_list {
+    int32_t tool;
+    int32_t max, count; /* room; how many there are */
+    lar_touch *touch;   /* [max]. What rubs has its local node in node[0]; others have no nodes */
+    int32_t pending;
+    lar_touch noted[LAR_TOUCHES_OF_FACE]; /* of the face under way */
+};
+
+/* A point of the face under way; its force on the tool is still exact. */
+void lar_touch_note(lar_touch_list *list, const lar_touch *touch);
+/* The face is done: the tissue gets `total` from the tool [force units, `scale` in a newton]. */
+void lar_touch_settle(lar_touch_list *list, const int64_t total[3], double scale);
+
+#endif

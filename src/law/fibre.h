@@ -1,0 +1,81 @@
+/* Fibres of a material, on top of any law: one family of them in each element, along a unit vector
+ * `a` of the body at rest, which carry tension only; and the stress that they develop when a
+ * muscle is active. Adding to the law's energy (a solid mixture, in FEBio's words),
+ *
+ *     exp-pow      W = ksi / (alpha beta) (exp(alpha (I - 1)^beta) - 1),      I = l^2 > 1
+ *                  alpha = 0: ksi / beta (I - 1)^beta
+ *     exp-linear   l dW/dl = c3 (exp(c4 (l - 1)) - 1),                        1 < l <= lam_max
+ *                          = ... at lam_max + c5 (l - lam_max)                beyond
+ *     active       W = along / 2 (I - 1) + across / 2 (I1 - 2 - I), times the activation
+ *
+ * l = |F a| is the stretch along the fibres, or its isochoric part J^(-1/3) |F a|. exp-pow is
+ * FEBio's "fiber-exp-pow" (Maas and others 2012; Holzapfel, Gasser and Ogden 2000 for beta = 2),
+ * exp-linear that of Weiss, Maker and Govindjee (1996, eqs. 7.1 to 7.3) in FEBio's "trans iso
+ * Mooney-Rivlin". An active stress is T/J F a (x) F a, FEBio's "prescribed active contraction".
+ *
+ * The stress for a lane is in fibre_stress.h. Directions belong to elements (lar_mesh.fibre).
+ */
+#ifndef LAR_LAW_FIBRE_H
+#define LAR_LAW_FIBRE_H
+
+#include <stdbool.h>
+
+typedef enum lar_fibre_law {
+    LAR_FIBRE_NONE,
+    LAR_FIBRE_EXP_POW,    /* ksi [Pa], alpha, beta */
+    LAR_FIBRE_EXP_LINEAR, /* c3 [Pa], c4, c5 [Pa], lam_max */
+    LAR_FIBRE_LAWS
+} lar_fibre_law;
+
+enum { LAR_FIBRE_PARAMETERS = 4 };
+
+typedef struct lar_fibre {
+    lar_fibre_law law;
+    bool isochoric; /* they see the isochoric part of the stretch */
+    double parameter[LAR_FIBRE_PARAMETERS];
+    double along, across; /* active stress [Pa] at an activation of 1 */
+    int line;             /* of the file that says so, for messages */
+} lar_fibre;
+
+/* Whether there are any, and whether they need a direction. */
+static inline bool lar_fibre_active(const lar_fibre *fibre) {
+    return fibre->along != 0 || fibre->across != 0;
+}
+static inline bool lar_fibre_here(const lar_fibre *fibre) {
+    return fibre->law != LAR_FIBRE_NONE || lar_fibre_active(fibre);
+}
+static inline bool lar_fibre_directed(const lar_fibre *fibre) {
+    return fibre->law != LAR_FIBRE_NONE || fibre->along != fibre->across;
+}
+
+/* Kinds of fibres whose elements may share a block: 0 none, else law and part. */
+enum { LAR_FIBRE_KINDS = 1 + 2 * LAR_FIBRE_LAWS };
+static inline int lar_fibre_kind(const lar_fibre *fibre) {
+    return lar_fibre_here(fibre) ? 1 + 2 * (int)fibre->law + fibre->isochoric : 0;
+}
+static inline lar_fibre_law lar_fibre_kind_law(int kind) {
+    return (lar_fibre_law)((kind - 1) / 2);
+}
+static inline bool lar_fibre_kind_isochoric(int kind) {
+    return (kind - 1) % 2 != 0;
+}
+
+/* Whether parameter k is in pascal. */
+static inline bool lar_fibre_scales(lar_fibre_law law, int k) {
+    return k == 0 || (law == LAR_FIBRE_EXP_LINEAR && k == 2);
+}
+
+/* The slope of l dW/dl by l where tension begins [Pa]. */
+static inline double lar_fibre_modulus(const lar_fibre *fibre) {
+    const double *p = fibre->parameter;
+    if (fibre->law == LAR_FIBRE_EXP_LINEAR) return p[0] * p[1];
+    return fibre->law == LAR_FIBRE_EXP_POW && p[2] <= 2 ? 4 * p[0] : 0;
+}
+
+/* The largest eigenvalue of their stiffness there [Pa]: the square of the deviator of a (x) a is
+ * 2/3. */
+static inline double lar_fibre_stiffest(const lar_fibre *fibre) {
+    return lar_fibre_modulus(fibre) * (fibre->isochoric ? 2.0 / 3 : 1);
+}
+
+#endif

@@ -1,0 +1,136 @@
+/* The stress of fibres for a lane (base/simd.h); law/fibre.h has the laws. With g = F a, I = g.g
+ * and s = l dW/dl,
+ *
+ *     P += s (g (x) a / I)                             of the whole stretch
+ *     P += s (g (x) a / I - cof F / (3 J))             of its isochoric part
+ *
+ * Fibres that are pressed have exactly no stress, and lanes without an element, with a direction
+ * and parameters of zero, too. What is active is added behind viscosity: it does not relax.
+ *
+ * How stiff they are: the second derivative of W by F has the eigenvalues s'/l - s/I along g (x) a
+ * and s/I across it. Of the isochoric stretch, dI/dF has the square 4/3 I + 4/9 I^2 |F^-T|^2, hence
+ *
+ *     s' l (1 / (3 |g|^2) + |F^-T|^2 / 9) + s (1 / |g|^2 + |F^-T|^2 / 3)
+ *
+ * is not below any of them.
+ */
+#ifndef LAR_LAW_FIBRE_STRESS_H
+#define LAR_LAW_FIBRE_STRESS_H
+
+#include "law/fibre.h"
+#include "law/kinematics.h"
+#include "law/lane_math.h"
+
+typedef struct lar_fibre_lane {
+    lar_lane direction[3], parameter[LAR_FIBRE_PARAMETERS], along, across;
+} lar_fibre_lane;
+
+/* What a stretch says of the fibres. */
+typedef struct lar_fibre_answer {
+    lar_lane tension; /* s */
+    lar_lane slope;   /* ds/dl, never too low where the law has a corner */
+} lar_fibre_answer;
+
+/* x > 0 ? 1 : 0, for x that is not below 0. */
+LAR_INLINE lar_lane lar_lane_is_above(lar_lane x) {
+    return -lar_lane_max(-x * lar_lane_set(1e300), lar_lane_set(-1));
+}
+
+/* (I - 1)^(beta - 2) = e^((beta - 2) ln(I - 1)); the factors that are left of (I - 1)^(beta - 1)
+ * make it zero where nothing pulls. */
+LAR_INLINE lar_fibre_answer lar_fibre_exp_pow(lar_lane square, const lar_lane *p) {
+    lar_lane x = lar_lane_max(square - lar_lane_set(1), lar_lane_set(0));
+    lar_lane log_x = lar_lane_log(lar_lane_max(x, lar_lane_set(LAR_LANE_TINY)));
+    lar_lane power = lar_lane_exp((p[2] - lar_lane_set(2)) * log_x);
+    lar_lane exponent = p[1] * (x * x * power);
+    lar_lane steep = p[0] * power * lar_lane_exp(exponent);
+    lar_lane first = steep * x;
+    lar_lane second = steep * lar_lane_fma(p[2], exponent, p[2] - lar_lane_set(1));
+    return (lar_fibre_answer){.tension = lar_lane_set(2) * square * first,
+                              .slope = lar_lane_set(4) * lar_lane_sqrt(square) *
+                                       lar_lane_fma(square, second, first)};
+}
+
+LAR_INLINE lar_fibre_answer lar_fibre_exp_linear(lar_lane stretch, const lar_lane *p) {
+    lar_lane x = lar_lane_max(stretch - lar_lane_set(1), lar_lane_set(0));
+    lar_lane end = p[3] - lar_lane_set(1);
+    lar_lane toe = -lar_lane_max(-x, -end), beyond = x - toe;
+    lar_lane rise = lar_lane_expm1(p[1] * toe);
+    lar_lane steep = p[0] * p[1] * (rise + lar_lane_set(1));
+    return (lar_fibre_answer){.tension = lar_lane_fma(p[0], rise, p[2] * beyond),
+                              .slope = lar_lane_max(steep, p[2] * lar_lane_is_above(beyond))};
+}
+
+/* `square`: l^2. */
+LAR_INLINE lar_fibre_answer lar_fibre_tension(lar_fibre_law law, lar_lane square,
+                                              const lar_lane *p) {
+    if (law == LAR_FIBRE_EXP_POW) return lar_fibre_exp_pow(square, p);
+    if (law == LAR_FIBRE_EXP_LINEAR) return lar_fibre_exp_linear(lar_lane_sqrt(square), p);
+    return (lar_fibre_answer){lar_lane_set(0), lar_lane_set(0)};
+}
+
+/* l^2 from |F a|^2. */
+LAR_INLINE lar_lane lar_fibre_square(int kind, lar_lane length, lar_lane J) {
+    if (!lar_fibre_kind_isochoric(kind)) return length;
+    lar_lane side = lar_lane_rcbrt(J);
+    return side * side * length;
+}
+
+/* The largest eigenvalue of their stiffness, or more; `area` = |cof F|^2. */
+LAR_INLINE lar_lane lar_fibre_stiffness(int kind, const lar_fibre_answer *now, lar_lane square,
+                                        lar_lane length, lar_lane J, lar_lane area) {
+    lar_lane inverse = lar_lane_set(1) / lar_lane_max(length, lar_lane_set(LAR_LANE_TINY));
+    lar_lane stretch = lar_lane_sqrt(lar_lane_max(square, lar_lane_set(LAR_LANE_TINY)));
+    if (!lar_fibre_kind_isochoric(kind)) {
+        lar_lane across = now->tension * inverse;
+        return lar_lane_max(now->slope / stretch - across, across);
+    }
+    lar_lane third = lar_lane_set(1.0 / 3), turned = area / (J * J);
+    lar_lane mean = third * lar_lane_fma(turned, third, inverse);
+    return lar_lane_fma(now->slope * stretch, mean, lar_lane_set(3) * now->tension * mean);
+}
+
+/* F a, and its square. */
+LAR_INLINE lar_lane lar_fibre_push(const lar_lane F[9], const lar_lane a[3], lar_lane g[3]) {
+    for (int i = 0; i < 3; i++)
+        g[i] = lar_lane_fma(F[3 * i + 2], a[2], lar_lane_fma(F[3 * i + 1], a[1], F[3 * i] * a[0]));
+    return lar_lane_fma(g[2], g[2], lar_lane_fma(g[1], g[1], g[0] * g[0]));
+}
+
+/* Adds to P the stress of fibres that are stretched. Returns the square of its size, as laws do;
+ * *length becomes |F a|^2 and *stiff, where it is not NULL, lar_fibre_stiffness. */
+LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
+                                     lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
+    lar_lane g[3], cof[9], sum = lar_lane_set(0);
+    lar_lane J = lar_lane_cofactor(F, cof);
+    *length = lar_fibre_push(F, c->direction, g);
+    lar_lane square = lar_fibre_square(kind, *length, J);
+    lar_fibre_answer now = lar_fibre_tension(lar_fibre_kind_law(kind), square, c->parameter);
+    if (stiff)
+        *stiff = lar_fibre_stiffness(kind, &now, square, *length, J, lar_lane_square_sum(cof));
+    lar_lane along = now.tension / lar_lane_max(*length, lar_lane_set(LAR_LANE_TINY));
+    lar_lane pressure =
+        lar_fibre_kind_isochoric(kind) ? lar_lane_set(-1.0 / 3) * now.tension / J : lar_lane_set(0);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            lar_lane more = lar_lane_fma(along * g[i], c->direction[j], pressure * cof[3 * i + j]);
+            P[3 * i + j] = P[3 * i + j] + more;
+            sum = lar_lane_fma(more, more, sum);
+        }
+    return sum;
+}
+
+/* Adds what is active: P += (along - across) g (x) a + across F. Returns the square of its size. */
+LAR_INLINE lar_lane lar_active_stress(const lar_lane F[9], const lar_fibre_lane *c, lar_lane P[9]) {
+    lar_lane g[3], sum = lar_lane_set(0), pull = c->along - c->across;
+    (void)lar_fibre_push(F, c->direction, g);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            lar_lane more = lar_lane_fma(pull * g[i], c->direction[j], c->across * F[3 * i + j]);
+            P[3 * i + j] = P[3 * i + j] + more;
+            sum = lar_lane_fma(more, more, sum);
+        }
+    return sum;
+}
+
+#endif

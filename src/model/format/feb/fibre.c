@@ -1,0 +1,329 @@
+/* FEBio decks: fibres of materials, and along what they run. See feb.h.
+ *
+ * A material with fibres is a "trans iso" one, or a "solid mixture" of a law and one family. What
+ * says the direction stands in it or in the material around it, as <fiber> or <mat_axis>, of which
+ * the first axis counts; or element by element in <MeshData>.
+ */
+#include "model/format/feb/feb.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "model/mesh/id_map.h"
+
+/* ---- laws ------------------------------------------------------------------------------------ */
+
+/* Types of FEBio and their parameters, in the order of lar_fibre.parameter. */
+static const struct fibre_type {
+    const char *type;
+    lar_fibre_law law;
+    bool isochoric;
+    const char *name[LAR_FIBRE_PARAMETERS];
+} fibre_types[] = {
+    {"fiber-exp-pow", LAR_FIBRE_EXP_POW, false, {"ksi", "alpha", "beta"}},
+    {"fiber-exp-pow-uncoupled", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
+    {"uncoupled fiber-exp-pow", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
+    {"fiber-exp-linear", LAR_FIBRE_EXP_LINEAR, false, {"c3", "c4", "c5", "lambda"}},
+    {"uncoupled fiber-exp-linear", LAR_FIBRE_EXP_LINEAR, true, {"c3", "c4", "c5", "lambda"}},
+};
+enum { FIBRE_TYPES = sizeof fibre_types / sizeof *fibre_types };
+static const struct fibre_type trans_iso = {
+    "", LAR_FIBRE_EXP_LINEAR, true, {"c3", "c4", "c5", "lam_max"}};
+
+static const struct fibre_type *find_type(const char *type) {
+    for (int i = 0; i < FIBRE_TYPES; i++)
+        if (strcmp(type, fibre_types[i].type) == 0) return &fibre_types[i];
+    return NULL;
+}
+
+bool lar_feb_is_fibre(const char *type) {
+    return find_type(type) != NULL;
+}
+
+/* Types that contract by T0, along fibres and across them. */
+static const struct active_type {
+    const char *type;
+    double along, across;
+} active_types[] = {
+    {"prescribed uniaxial active contraction", 1, 0},
+    {"uncoupled prescribed uniaxial active contraction", 1, 0},
+    {"prescribed trans iso active contraction", 0, 1},
+    {"uncoupled prescribed trans iso active contraction", 0, 1},
+    {"prescribed isotropic active contraction", 1, 1},
+    {"uncoupled prescribed isotropic active contraction", 1, 1},
+};
+
+static const struct active_type *find_active(const char *type) {
+    for (size_t i = 0; i < sizeof active_types / sizeof *active_types; i++)
+        if (strcmp(type, active_types[i].type) == 0) return &active_types[i];
+    return NULL;
+}
+
+bool lar_feb_is_active(const char *type) {
+    return find_active(type) != NULL;
+}
+
+/* The same total stress in both forms: FEBio's uncoupled one is no deviator. */
+lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
+                               lar_fibre *fibre) {
+    static const char *const known[] = {"density",  "k", "pressure_model", "T0", "fiber",
+                                        "mat_axis", NULL};
+    const struct active_type *active = find_active(type);
+    double stress = 0;
+    lar_status status = lar_feb_parameter(feb, node, "T0", true, &stress);
+    fibre->along = active->along * stress;
+    fibre->across = active->across * stress;
+    if (!fibre->line) fibre->line = lar_feb_line(node);
+    return status ? status : lar_feb_notice_others(feb, node, known);
+}
+
+/* What would change the answer and is not read. */
+static lar_status refuse_children(lar_feb *feb, const xmlNode *node, const char *const *names) {
+    for (int i = 0; names[i]; i++) {
+        const xmlNode *child = lar_feb_child(node, names[i]);
+        if (child)
+            return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
+                                "<%s> of a material with fibres is not read; remove it", names[i]);
+    }
+    return LAR_OK;
+}
+
+static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct fibre_type *type,
+                               lar_fibre *fibre) {
+    lar_status status = LAR_OK;
+    fibre->law = type->law;
+    fibre->isochoric = type->isochoric;
+    fibre->line = lar_feb_line(node);
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS && !status; k++)
+        if (type->name[k])
+            status = lar_feb_parameter(feb, node, type->name[k], true, &fibre->parameter[k]);
+    /* FEBio then takes the one with which the slope goes on as c5. */
+    double *p = fibre->parameter;
+    if (!status && type->law == LAR_FIBRE_EXP_LINEAR && p[0] == 0 && p[1] > 0)
+        p[0] = p[2] / p[1] * exp(-p[1] * (p[3] - 1));
+    return status;
+}
+
+lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
+                              lar_fibre *fibre) {
+    static const char *const refused[] = {"theta", "phi", "lam0", "mu", NULL};
+    static const char *const known[] = {
+        "density", "k",  "pressure_model", "ksi",   "alpha",    "beta", "c3",
+        "c4",      "c5", "lambda",         "fiber", "mat_axis", NULL};
+    lar_status status = refuse_children(feb, node, refused);
+    if (!status) status = read_numbers(feb, node, find_type(type), fibre);
+    return status ? status : lar_feb_notice_others(feb, node, known);
+}
+
+lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *fibre) {
+    static const char *const refused[] = {"active_contraction", NULL};
+    lar_status status = refuse_children(feb, node, refused);
+    return status ? status : read_numbers(feb, node, &trans_iso, fibre);
+}
+
+/* ---- directions ------------------------------------------------------------------------------ */
+
+/* The rule that a material or a part of it has, NULL: none. */
+static const xmlNode *own_rule(const xmlNode *node) {
+    const xmlNode *fiber = lar_feb_child(node, "fiber");
+    return fiber ? fiber : lar_feb_child(node, "mat_axis");
+}
+
+/* The rule of a material of any depth; two of them would have to be put together. */
+static lar_status find_rule(lar_feb *feb, const xmlNode *node, const xmlNode **rule) {
+    const xmlNode *own = own_rule(node);
+    if (own && *rule)
+        return lar_feb_fail(feb, own, LAR_ERROR_UNSUPPORTED,
+                            "a second direction within one material; Lariat has one family of "
+                            "fibres, keep the first (line %d)",
+                            lar_feb_line(*rule));
+    if (own) *rule = own;
+    lar_status status = LAR_OK;
+    for (const xmlNode *inner = lar_feb_first(node); inner && !status; inner = lar_feb_next(inner))
+        if (lar_feb_is(inner, "solid") || lar_feb_is(inner, "elastic"))
+            status = find_rule(feb, inner, rule);
+    return status;
+}
+
+/* One direction for all: a vector, two angles, or the first of two vectors. */
+static lar_status read_constant(lar_feb *feb, const xmlNode *rule, const char *type, double a[3]) {
+    double theta, phi;
+    const xmlNode *of = lar_feb_child(rule, strcmp(type, "vector") == 0 ? "vector" : "theta");
+    if (strcmp(type, "vector") == 0) {
+        if (!of) of = lar_feb_child(rule, "a");
+        return lar_feb_doubles(feb, of ? of : rule, a, 3);
+    }
+    lar_status status = lar_feb_parameter(feb, rule, "theta", true, &theta);
+    if (!status) status = lar_feb_parameter(feb, rule, "phi", true, &phi);
+    if (status) return status;
+    const double degree = 3.14159265358979323846 / 180;
+    a[0] = cos(theta * degree) * sin(phi * degree);
+    a[1] = sin(theta * degree) * sin(phi * degree);
+    a[2] = cos(phi * degree);
+    return LAR_OK;
+}
+
+/* "local": from one corner of an element to another, counted from 1 as in the deck. */
+static lar_status read_corners(lar_feb *feb, const xmlNode *rule, int corner[2]) {
+    int64_t id[3];
+    const xmlNode *of = lar_feb_child(rule, "local");
+    int count = lar_feb_is(rule, "mat_axis") ? 3 : 2;
+    lar_status status = lar_feb_ids(feb, of ? of : rule, id, count);
+    if (status) return status;
+    if (count == 2 && id[0] == 0 && id[1] == 0) id[0] = 1, id[1] = 2; /* FEBio's default */
+    for (int i = 0; i < 2; i++) {
+        if (id[i] < 1 || id[i] > 8 || id[0] == id[1])
+            return lar_feb_fail(feb, rule, LAR_ERROR_FORMAT,
+                                "a local direction runs from one corner to another, of 1 to 8");
+        corner[i] = (int)id[i] - 1;
+        if (feb->mesh->turned) corner[i] = (corner[i] + 4) % 8; /* lar_mesh_turn */
+    }
+    return LAR_OK;
+}
+
+static lar_status need_directions(lar_feb *feb) {
+    lar_mesh *mesh = feb->mesh;
+    if (!mesh->fibre) mesh->fibre = lar_calloc((size_t)mesh->element_count, sizeof *mesh->fibre);
+    return mesh->fibre ? LAR_OK : lar_feb_no_memory(feb, "the directions of fibres");
+}
+
+/* The directions of one material's elements. */
+static lar_status lay(lar_feb *feb, const xmlNode *rule, int material) {
+    lar_mesh *mesh = feb->mesh;
+    const char *type = lar_feb_attribute(feb, rule, "type");
+    double a[3] = {0};
+    int corner[2];
+    bool local = type && strcmp(type, "local") == 0;
+    if (type && (strcmp(type, "user") == 0 || strcmp(type, "map") == 0)) return LAR_OK;
+    if (!type || (!local && strcmp(type, "vector") != 0 && strcmp(type, "angles") != 0))
+        return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
+                            "a direction of type '%.40s' is not read; vector, local, angles and "
+                            "user are",
+                            type ? type : "");
+    lar_status status = need_directions(feb);
+    if (!status)
+        status = local ? read_corners(feb, rule, corner) : read_constant(feb, rule, type, a);
+    for (int32_t e = 0; e < mesh->element_count && !status; e++) {
+        if (feb->model->element_material[e] != material) continue;
+        if (local)
+            lar_minus(mesh->position[mesh->element[e][corner[1]]],
+                      mesh->position[mesh->element[e][corner[0]]], mesh->fibre[e]);
+        else
+            memcpy(mesh->fibre[e], a, sizeof a);
+    }
+    return status;
+}
+
+/* ---- <MeshData> ------------------------------------------------------------------------------ */
+
+/* The ids of a set or part in the order of the deck; lid counts in it from 1. */
+typedef struct id_list {
+    int64_t *id;
+    size_t count, room;
+} id_list;
+
+static lar_status list_ids(lar_feb *feb, const xmlNode *set, id_list *list) {
+    lar_status status = LAR_OK;
+    xmlNode *child = lar_feb_first(set);
+    for (; child && !status; child = lar_feb_next(child)) {
+        if (!LAR_GROW(list->id, list->room, list->count)) return lar_feb_no_memory(feb, "a set");
+        status = lar_feb_id_attribute(feb, child, "id", &list->id[list->count++]);
+    }
+    if (list->count > 0 || status) return status;
+    lar_feb_list text = lar_feb_list_of(feb, set);
+    for (lar_span item; lar_feb_list_next(&text, &item);) {
+        if (!LAR_GROW(list->id, list->room, list->count)) return lar_feb_no_memory(feb, "a set");
+        if (!lar_span_int64(item, &list->id[list->count++]))
+            return lar_feb_fail(feb, set, LAR_ERROR_FORMAT, "an entry of the set is no id");
+    }
+    return LAR_OK;
+}
+
+/* The element set of that name, or the part; NULL: there is none. */
+static const xmlNode *find_elements(lar_feb *feb, const char *name) {
+    const xmlNode *section = lar_feb_child(feb->root, "Mesh"), *part = NULL;
+    xmlNode *block = section ? lar_feb_first(section) : NULL;
+    for (; block; block = lar_feb_next(block)) {
+        const char *found = lar_feb_attribute(feb, block, "name");
+        if (!found || strcmp(found, name) != 0) continue;
+        if (lar_feb_is(block, "ElementSet")) return block;
+        if (lar_feb_is(block, "Elements")) part = block;
+    }
+    return part;
+}
+
+static lar_status read_entries(lar_feb *feb, const xmlNode *data, const id_list *list,
+                               const lar_id_map *map) {
+    lar_status status = LAR_OK;
+    for (xmlNode *entry = lar_feb_first(data); entry && !status; entry = lar_feb_next(entry)) {
+        int64_t lid;
+        double a[3];
+        const xmlNode *first = lar_feb_child(entry, "a");
+        status = lar_feb_id_attribute(feb, entry, "lid", &lid);
+        if (!status) status = lar_feb_doubles(feb, first ? first : entry, a, 3);
+        if (status) return status;
+        int32_t e =
+            lid >= 1 && (uint64_t)lid <= list->count ? lar_id_map_find(map, list->id[lid - 1]) : -1;
+        if (e < 0)
+            return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
+                                "lid %lld is no element of its set, which has %zu", (long long)lid,
+                                list->count);
+        memcpy(feb->mesh->fibre[e], a, sizeof a);
+    }
+    return status;
+}
+
+static lar_status read_data(lar_feb *feb, const xmlNode *data) {
+    const lar_mesh *mesh = feb->mesh;
+    const char *name;
+    lar_status status = lar_feb_need_attribute(feb, data, "elem_set", &name);
+    if (status) return status;
+    if (lar_feb_attribute(feb, data, "generator"))
+        return lar_feb_fail(feb, data, LAR_ERROR_UNSUPPORTED,
+                            "directions that a generator makes are not read; list them");
+    const xmlNode *set = find_elements(feb, name);
+    if (!set)
+        return lar_feb_fail(feb, data, LAR_ERROR_FORMAT,
+                            "<ElementData> names the element set '%.100s', which the mesh does not "
+                            "define; define it or correct the name",
+                            name);
+    id_list list = {0};
+    lar_id_map map = {0};
+    lar_id_clash clash;
+    status = need_directions(feb);
+    if (!status && !lar_id_map_build(&map, mesh->element_id, mesh->element_count,
+                                     sizeof *mesh->element_id, &clash))
+        status = lar_feb_no_memory(feb, "the directions of fibres");
+    if (!status) status = list_ids(feb, set, &list);
+    if (!status) status = read_entries(feb, data, &list, &map);
+    lar_id_map_clear(&map);
+    free(list.id);
+    return status;
+}
+
+bool lar_feb_is_direction(lar_feb *feb, const xmlNode *data) {
+    const char *type = lar_feb_attribute(feb, data, "type");
+    if (!type) type = lar_feb_attribute(feb, data, "var"); /* version 3.0 */
+    return lar_feb_is(data, "ElementData") && type &&
+           (strcmp(type, "fiber") == 0 || strcmp(type, "mat_axis") == 0);
+}
+
+/* What a material says, and over it what the mesh says of its elements. */
+lar_status lar_feb_lay_fibres(lar_feb *feb) {
+    lar_status status = LAR_OK;
+    for (int i = 0; i < feb->material_count && !status; i++) {
+        const lar_feb_material *entry = &feb->material[i];
+        const xmlNode *rule = NULL;
+        if (entry->index < 0 || !lar_fibre_directed(&feb->model->material[entry->index].fibre))
+            continue;
+        status = find_rule(feb, entry->node, &rule);
+        if (!status && rule) status = lay(feb, rule, entry->index);
+    }
+    const xmlNode *section = lar_feb_child(feb->root, "MeshData");
+    xmlNode *data = section ? lar_feb_first(section) : NULL;
+    for (; data && !status && lar_model_fibrous(feb->model); data = lar_feb_next(data))
+        if (lar_feb_is_direction(feb, data)) status = read_data(feb, data);
+    return status;
+}

@@ -1,0 +1,149 @@
+#include "model/mesh/arrays.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+
+static lar_status check_counts(const lar_mesh_arrays *a, lar_error *error) {
+    if (a->nodes < 1 || a->elements < 1 || a->elements > INT32_MAX / 6)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a mesh of %ld nodes and %ld elements; it has one element at least, and "
+                        "%d at most",
+                        (long)a->nodes, (long)a->elements, INT32_MAX / 6);
+    if (!a->position || !a->element || a->sets < 0 || (a->sets > 0 && !a->set))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a mesh from arrays needs positions, elements and, where it says that "
+                        "there are sets, these; none may be NULL");
+    return LAR_OK;
+}
+
+/* Before anything is done with them: the sentences of lar_mesh_check speak of files. */
+static lar_status check_values(const lar_mesh_arrays *a, uint8_t *used, lar_error *error) {
+    for (int32_t n = 0; n < a->nodes; n++)
+        for (int i = 0; i < 3; i++)
+            if (!isfinite(a->position[n][i]))
+                return lar_fail(error, LAR_ERROR_MODEL,
+                                "node %ld has the %c coordinate %g, which is no usable number; "
+                                "give its place",
+                                (long)n, "xyz"[i], a -> position[n][i]);
+    for (int32_t e = 0; e < a->elements; e++)
+        for (int k = 0; k < 8; k++) {
+            int32_t node = a->element[e][k];
+            if (node < 0 || node >= a->nodes)
+                return lar_fail(error, LAR_ERROR_MODEL,
+                                "element %ld has node %ld as its corner %d, but nodes are 0 to "
+                                "%ld; give the index of a node",
+                                (long)e, (long)node, k, (long)a->nodes - 1);
+            used[node] = 1;
+        }
+    for (int32_t n = 0; n < a->nodes; n++)
+        if (!used[n])
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "node %ld belongs to no element and would have no mass; leave it out "
+                            "and count the others anew",
+                            (long)n);
+    return LAR_OK;
+}
+
+static lar_status check_indices(const lar_mesh_arrays *a, lar_error *error) {
+    uint8_t *used = lar_calloc((size_t)a->nodes, sizeof *used);
+    if (!used) return lar_fail_memory(error, (size_t)a->nodes, "a mesh from arrays");
+    lar_status status = check_values(a, used, error);
+    free(used);
+    return status;
+}
+
+/* ---- sets ---------------------------------------------------------------------------------- */
+
+static bool kind_of(const char *word, lar_set_kind *kind) {
+    static const char *const words[] = {"nodes", "elements", "faces"};
+    *kind = LAR_SET_NODES;
+    for (int k = 0; word && k < 3; k++)
+        if (strcmp(word, words[k]) == 0) {
+            *kind = (lar_set_kind)k;
+            return true;
+        }
+    return !word;
+}
+
+static lar_status check_set(const lar_mesh_arrays *a, int32_t s, lar_set_kind *kind,
+                            lar_error *error) {
+    const lar_array_set *set = &a->set[s];
+    if (!set->name || !*set->name)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "set %ld has no name; give it one", (long)s);
+    if (!kind_of(set->kind, kind))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "set '%.100s' is of kind '%.40s'; a set is of nodes, elements or faces",
+                        set->name, set->kind);
+    if (set->count < 1 || !set->index)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "set '%.100s' holds nothing; leave it out, or give what belongs to it",
+                        set->name);
+    int32_t end = *kind == LAR_SET_NODES      ? a->nodes
+                  : *kind == LAR_SET_ELEMENTS ? a->elements
+                                              : 6 * a->elements;
+    for (int32_t i = 0; i < set->count; i++)
+        if (set->index[i] < 0 || set->index[i] >= end)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "set '%.100s' of %s holds the index %ld at place %ld, but there are 0 "
+                            "to %ld; correct the set",
+                            set->name, set->kind ? set->kind : "nodes", (long)set->index[i],
+                            (long)i, (long)end - 1);
+    return LAR_OK;
+}
+
+static lar_status add_sets(const lar_mesh_arrays *a, lar_mesh *mesh, lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int32_t s = 0; s < a->sets && !status; s++) {
+        lar_set_kind kind = LAR_SET_NODES;
+        size_t count;
+        int32_t *index;
+        status = check_set(a, s, &kind, error);
+        if (status) return status;
+        count = (size_t)a->set[s].count;
+        index = lar_calloc(count, sizeof *index);
+        if (!index) return lar_fail_memory(error, count * sizeof *index, "a set");
+        memcpy(index, a->set[s].index, count * sizeof *index);
+        status = lar_mesh_add_set(mesh, a->set[s].name, kind, index, a->set[s].count, error);
+    }
+    return status;
+}
+
+/* ---- the mesh ------------------------------------------------------------------------------ */
+
+static lar_status copy(const lar_mesh_arrays *a, double scale, lar_mesh *mesh, lar_error *error) {
+    lar_status status =
+        lar_mesh_allocate(mesh, "mesh", (size_t)a->nodes, (size_t)a->elements, error);
+    if (status) return status;
+    mesh->node_count = a->nodes;
+    mesh->element_count = a->elements;
+    for (int32_t n = 0; n < a->nodes; n++) {
+        for (int i = 0; i < 3; i++) mesh->position[n][i] = a->position[n][i] * scale;
+        mesh->node_id[n] = n;
+    }
+    memcpy(mesh->element, a->element, (size_t)a->elements * sizeof *mesh->element);
+    for (int32_t e = 0; e < a->elements; e++) {
+        mesh->element_id[e] = e;
+        mesh->element_tag[e] = a->tag ? a->tag[e] : 0;
+    }
+    if (a->fibre) {
+        size_t bytes = (size_t)a->elements * sizeof *mesh->fibre;
+        mesh->fibre = lar_calloc((size_t)a->elements, sizeof *mesh->fibre);
+        if (!mesh->fibre) return lar_fail_memory(error, bytes, "the directions of fibres");
+        memcpy(mesh->fibre, a->fibre, bytes);
+    }
+    return add_sets(a, mesh, error);
+}
+
+lar_status lar_mesh_from_arrays(const lar_mesh_arrays *arrays, double scale, lar_mesh *mesh,
+                                lar_error *error) {
+    lar_status status = check_counts(arrays, error);
+    if (!status) status = check_indices(arrays, error);
+    if (!status) status = copy(arrays, scale, mesh, error);
+    if (!status) lar_mesh_turn(mesh);
+    if (!status) status = lar_mesh_check(mesh, error);
+    if (status) lar_mesh_clear(mesh);
+    return status;
+}

@@ -1,0 +1,210 @@
+/* Viscous bodies: the same bits everywhere, what they remember in checkpoints, copies and on any
+ * number of processors; stress against closed forms, and the account of energy. */
+#include "engine/same_bits_test.h"
+#include "step/viscous_history.h"
+
+#define PATH LAR_TEST_BUILD "/viscous.checkpoint"
+
+static void make_viscous(lar_material *material, bool isochoric, int terms) {
+    static const double share[] = {0.6, 0.9, 0.3}, time[] = {0.05, 0.008, 0.4};
+    material->viscosity = (lar_viscosity){.terms = terms, .isochoric = isochoric, .rest = 1};
+    memcpy(material->viscosity.share, share, sizeof share);
+    memcpy(material->viscosity.time, time, sizeof time);
+}
+
+/* Tools, supports, loads, all laws; some of these are viscous, each in another way. */
+static lar_model *viscous_tool_model(const brick *b) {
+    lar_model *model = tool_model_of(b);
+    make_viscous(&model->material[LAR_LAW_neo_hookean], true, 2);
+    make_viscous(&model->material[LAR_LAW_yeoh], false, 3);
+    make_viscous(&model->material[LAR_LAW_holmes_mow], false, 1);
+    make_viscous(&model->material[LAR_LAW_ogden], true, 1);
+    return model;
+}
+
+/* ---- the same bits -------------------------------------------------------------------------- */
+
+static const same_bits body = {viscous_tool_model, PATH, {0xd6555355d2b218e6, 0x9d0960999b85d8db}};
+
+static void the_hash_is_golden(void **unused) {
+    (void)unused;
+    check_golden(&body);
+}
+
+static void grids_and_threads_agree(void **unused) {
+    (void)unused;
+    check_grids_and_threads(&body);
+}
+
+static void lean_blocks_and_whole_ones_agree(void **unused) {
+    (void)unused;
+    check_lean_blocks(&body);
+}
+
+static void processes_agree(void **unused) {
+    (void)unused;
+    check_processes(&body);
+}
+
+static void a_saved_run_goes_on(void **unused) {
+    (void)unused;
+    check_saved_runs(&body);
+}
+
+/* A model in which nothing is viscous has nothing of it. */
+static void elastic_models_have_no_history(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(NULL, 0));
+    assert_null(simulation->domain.relaxing);
+    assert_null(simulation->domain.element_history);
+    assert_null(simulation->state.history);
+    assert_int_equal(lar_viscous_total(model), 0);
+    finish(simulation, model);
+}
+
+/* ---- closed forms --------------------------------------------------------------------------- */
+
+/* A cube that is pulled evenly from 0 to the strain E within RAMP and held; sides stay. At small
+ * strain sigma = M (g0 e + sum g t e' (1 - exp(-t / t_i))) while it is pulled. */
+static const double E = 1e-4, RAMP = 0.02;
+
+static double relaxed(const lar_viscosity *v, double t) {
+    double pulled = fmin(t, RAMP), sum = v->rest * pulled;
+    for (int i = 0; i < v->terms; i++)
+        sum += v->share[i] * v->time[i] * exp(-(t - pulled) / v->time[i]) *
+               -expm1(-pulled / v->time[i]);
+    return sum * E / RAMP;
+}
+
+static lar_simulation *pulled_cube(bool isochoric, int terms, lar_model **model) {
+    static const double points[2][2] = {{0, 0}, {0.02, 1}};
+    const brick b = {{1, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    *model = brick_model(&b);
+    make_viscous(&(*model)->material[0], isochoric, terms);
+    (*model)->time_step = 5e-4;
+    fix_nodes(*model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+    fix_nodes(*model, brick_side(&b, 0, -1), LAR_AXIS_Y | LAR_AXIS_Z);
+    move_nodes(*model, brick_side(&b, 0, -1), LAR_AXIS_X, E * b.edge,
+               add_table(*model, LAR_CURVE_LINEAR, 2, points));
+    return start(*model);
+}
+
+static double axial_stress(lar_simulation *simulation) {
+    lar_state state = *lar_simulation_state(simulation);
+    double cauchy[6];
+    state.past =
+        lar_past_step(&simulation->domain, lar_division_of(&simulation->interactions), &state);
+    lar_measure_stress(&simulation->domain, &state, 0, cauchy);
+    return cauchy[0];
+}
+
+/* In the middle the body becomes four times as stiff, and steps are divided. */
+static void a_pulled_cube_relaxes_by_the_closed_form(void **unused) {
+    (void)unused;
+    for (int isochoric = 0; isochoric < 2; isochoric++)
+        for (int terms = 1; terms <= LAR_VISCOUS_TERMS; terms++) {
+            lar_model *model;
+            lar_error error;
+            double worst = 0, factor = 1;
+            lar_simulation *simulation = pulled_cube(isochoric, terms, &model);
+            for (int n = 1; n <= 80; n++) {
+                advance(simulation, 10);
+                if (n == 40) {
+                    factor = 4;
+                    assert_int_equal(lar_simulation_set_stiffness(simulation, 0, factor, &error),
+                                     LAR_OK);
+                }
+                double t = lar_simulation_time(simulation);
+                double strain = E * fmin(t / RAMP, 1), G = 2e3, K = 2e4;
+                double wave = relaxed(&model->material[0].viscosity, t);
+                double wanted = isochoric ? K * strain + 4 * G / 3 * wave : (K + 4 * G / 3) * wave;
+                worst = fmax(worst, fabs(axial_stress(simulation) / (factor * wanted) - 1));
+            }
+            assert_below(worst, 1e-3);
+            assert_true(lar_division_of(&simulation->interactions)->base > 1);
+            finish(simulation, model);
+        }
+}
+
+/* ---- energy --------------------------------------------------------------------------------- */
+
+static double sum_of(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
+}
+
+/* A thrown body with a load and a moved support: every joule is accounted for, and what the terms
+ * take stops its swing. */
+static void every_joule_is_accounted_for(void **unused) {
+    (void)unused;
+    for (int isochoric = 0; isochoric < 2; isochoric++) {
+        lar_model *model = brick_model(&soft_brick);
+        static const double points[3][2] = {{0, 0}, {0.1, 1}, {0.2, 1}};
+        int ramp = add_ramp(model, 0.05);
+        make_viscous(&model->material[0], isochoric, 3);
+        fix_nodes(model, brick_side(&soft_brick, 0, 0), LAR_AXIS_ALL);
+        move_nodes(model, brick_side(&soft_brick, 0, -1), LAR_AXIS_Y, 0.004,
+                   add_table(model, LAR_CURVE_SMOOTH, 3, points));
+        load_nodes(model, single_node(brick_node(&soft_brick, 1, 2, 2)), 0.01, 0, -0.01, ramp);
+        throw_body(model, (double[]){0, 0, 0}, (double[]){0, 2, -1}, 0.05);
+        model->time_step = 1e-4;
+        lar_simulation *simulation = start(model);
+        lar_energy start_energy, e;
+        lar_simulation_energy(simulation, &start_energy);
+        double worst = 0, largest = 0, viscous = 0;
+        for (int n = 0; n < 60; n++) {
+            advance(simulation, 100);
+            lar_simulation_energy(simulation, &e);
+            largest = fmax(largest, sum_of(&e));
+            worst = fmax(worst, fabs(sum_of(&e) - e.external - sum_of(&start_energy)));
+            assert_true(e.viscous >= 0);
+            viscous = e.viscous;
+        }
+        assert_below(worst, 2e-3 * largest);
+        assert_true(viscous > 0.2 * largest && e.kinetic < 0.01 * largest);
+        print_message("%s: open by %.2g of %.2g J, viscous %.2g J\n",
+                      isochoric ? "isochoric" : "whole", worst, largest, viscous);
+        finish(simulation, model);
+    }
+}
+
+/* ---- what cannot be ------------------------------------------------------------------------- */
+
+static void expect_refusal(const lar_model *model, lar_options options, const char *words) {
+    lar_simulation *simulation = NULL;
+    lar_error error;
+    assert_int_not_equal(lar_simulation_create(model, &options, &simulation, &error), LAR_OK);
+    if (!strstr(error.message, words)) fail_msg("'%s' lacks '%s'", error.message, words);
+}
+
+static void what_cannot_be_is_refused(void **unused) {
+    (void)unused;
+    lar_model *model = brick_model(&soft_brick);
+    make_viscous(&model->material[0], true, 2);
+    lar_options options = lar_options_default();
+    options.element = LAR_ELEMENT_HEX8_FULL;
+    expect_refusal(model, options, "only elements hex8 can be");
+    options.element = LAR_ELEMENT_HEX8;
+    model->material[0].viscosity.time[1] = 1e-6;
+    expect_refusal(model, options,
+                   "viscous term 2 of the material without a name relaxes in 1e-06 s");
+    model->material[0].viscosity.time[1] = 1;
+    options.grid = "2x1x1";
+    lar_simulation_destroy(start_with(model, options));
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_hash_is_golden),
+        cmocka_unit_test(grids_and_threads_agree),
+        cmocka_unit_test(lean_blocks_and_whole_ones_agree),
+        cmocka_unit_test(a_saved_run_goes_on),
+        cmocka_unit_test(processes_agree),
+        cmocka_unit_test(elastic_models_have_no_history),
+        cmocka_unit_test(a_pulled_cube_relaxes_by_the_closed_form),
+        cmocka_unit_test(every_joule_is_accounted_for),
+        cmocka_unit_test(what_cannot_be_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

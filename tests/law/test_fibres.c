@@ -1,0 +1,252 @@
+/* Fibres in one point (law/fibre_stress.h): stress against energy, rotations, closed forms, and
+ * that the bound of their stiffness is none too low. */
+#include "law/fibre_stress.h"
+#include "mechanics/hex8.h"
+#include "mechanics/hex8_guard.h"
+#include "mechanics/mechanics_test.h"
+
+/* One of each, in pascal beside a law of G = 1000. */
+static const lar_fibre FIBRES[] = {
+    {.law = LAR_FIBRE_EXP_POW, .parameter = {400, 1.5, 2}},
+    {.law = LAR_FIBRE_EXP_POW, .parameter = {900, 0, 3.3}, .isochoric = true},
+    {.law = LAR_FIBRE_EXP_POW, .parameter = {250, 0.7, 2.5}, .along = 300, .across = 120},
+    {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {80, 12, 2000, 1.15}, .isochoric = true},
+    {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {120, 6, 900, 1.3}, .isochoric = false},
+    {.law = LAR_FIBRE_NONE, .along = 500, .across = 0},
+    {.law = LAR_FIBRE_EXP_LINEAR,
+     .parameter = {80, 12, 2000, 1.15},
+     .isochoric = true,
+     .along = 700},
+};
+enum { FAMILIES = sizeof FIBRES / sizeof *FIBRES, STATES = 100 };
+
+static lar_material material_with(int family, lar_law law) {
+    lar_material material = test_material(law, 1000, 5000);
+    material.fibre = FIBRES[family];
+    return material;
+}
+
+static void random_unit(uint64_t *seed, double a[3]) {
+    double R[3][3];
+    random_rotation(seed, R);
+    for (int i = 0; i < 3; i++) a[i] = R[i][0];
+}
+
+static void stress_is_energy_slope(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    for (int family = 0; family < FAMILIES; family++)
+        for (int n = 0; n < STATES; n++) {
+            lar_material material = material_with(family, (lar_law)(n % LAR_LAW_COUNT));
+            double F[3][3], P[3][3], a[3], slope[9];
+            random_unit(&seed, a);
+            random_deformation(&seed, 0.3, F);
+            lar_material_stress(&material, a, (rows)F, P);
+            for (int k = 0; k < 9; k++) {
+                const double step = 1e-5;
+                double *value = &F[k / 3][k % 3], kept = *value;
+                *value = kept + step;
+                double above = lar_material_energy(&material, a, (rows)F);
+                *value = kept - step;
+                slope[k] = (above - lar_material_energy(&material, a, (rows)F)) / (2 * step);
+                *value = kept;
+            }
+            assert_below(largest_difference(&P[0][0], slope, 9) / largest(&P[0][0], 9), 1e-7);
+        }
+}
+
+/* P(Q F) = Q P(F), and with fibres that are turned as well P(F Q', Q a) = P(F, a) Q'. */
+static void turned_with_the_body(void **state) {
+    (void)state;
+    uint64_t seed = 6;
+    for (int family = 0; family < FAMILIES; family++)
+        for (int n = 0; n < STATES; n++) {
+            lar_material material = material_with(family, (lar_law)(n % LAR_LAW_COUNT));
+            double F[3][3], Q[3][3], P[3][3], a[3], b[3], QF[3][3], QP[3][3], FQ[3][3], PQ[3][3];
+            double found[3][3];
+            random_unit(&seed, a);
+            random_deformation(&seed, 0.4, F);
+            random_rotation(&seed, Q);
+            for (int i = 0; i < 3; i++) {
+                b[i] = Q[i][0] * a[0] + Q[i][1] * a[1] + Q[i][2] * a[2];
+            }
+            lar_material_stress(&material, a, (rows)F, P);
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++) {
+                    QF[i][j] = QP[i][j] = FQ[i][j] = PQ[i][j] = 0;
+                    for (int k = 0; k < 3; k++) {
+                        QF[i][j] += Q[i][k] * F[k][j];
+                        QP[i][j] += Q[i][k] * P[k][j];
+                        FQ[i][j] += F[i][k] * Q[j][k];
+                        PQ[i][j] += P[i][k] * Q[j][k];
+                    }
+                }
+            double size = largest(&P[0][0], 9) + 1000;
+            lar_material_stress(&material, a, (rows)QF, found);
+            assert_below(largest_difference(&found[0][0], &QP[0][0], 9) / size, 1e-11);
+            lar_material_stress(&material, b, (rows)FQ, found);
+            assert_below(largest_difference(&found[0][0], &PQ[0][0], 9) / size, 1e-11);
+        }
+}
+
+/* Not a bit of stress, and no energy. */
+static void pressed_fibres_do_nothing(void **state) {
+    (void)state;
+    static const double F[3][3] = {{0.8, 0, 0}, {0, 1.2, 0.1}, {0, 0, 1.1}}, a[3] = {1, 0, 0};
+    for (int family = 0; family < FAMILIES; family++) {
+        lar_material material = material_with(family, LAR_LAW_neo_hookean);
+        double P[3][3], law[3][3];
+        material.fibre.along = material.fibre.across = 0;
+        lar_material_stress(&material, a, F, P);
+        lar_law_stress(&material, F, law);
+        assert_memory_equal(P, law, sizeof P);
+        assert_true(lar_material_energy(&material, a, F) == lar_law_energy(&material, F));
+    }
+}
+
+/* Pulled along the fibres at constant volume: sigma_1 - sigma_2 of the fibres is s by the formulas
+ * of the papers, and 0 across. */
+static void pulled_along_and_across(void **state) {
+    (void)state;
+    for (int family = 0; family < FAMILIES; family++)
+        for (double L = 0.85; L < 1.5; L += 0.05) {
+            lar_material material = material_with(family, LAR_LAW_neo_hookean), bare = material;
+            const lar_fibre *f = &material.fibre;
+            const double *p = f->parameter;
+            double side = 1 / sqrt(L);
+            const double F[3][3] = {{L, 0, 0}, {0, side, 0}, {0, 0, side}};
+            double a[3] = {1, 0, 0}, P[3][3], Q[3][3], wanted = 0;
+            bare.fibre = (lar_fibre){0};
+            lar_material_stress(&material, a, F, P);
+            lar_material_stress(&bare, a, F, Q);
+            double found = L * (P[0][0] - Q[0][0]) - side * (P[1][1] - Q[1][1]);
+            if (f->law == LAR_FIBRE_EXP_POW && L > 1)
+                wanted =
+                    2 * L * L * p[0] * pow(L * L - 1, p[2] - 1) * exp(p[1] * pow(L * L - 1, p[2]));
+            if (f->law == LAR_FIBRE_EXP_LINEAR && L > 1)
+                wanted = L < p[3] ? p[0] * expm1(p[1] * (L - 1))
+                                  : p[2] * L + p[0] * expm1(p[1] * (p[3] - 1)) - p[2] * p[3];
+            wanted += f->along * L * L - f->across / L;
+            assert_below(fabs(found - wanted), 1e-12 * (fabs(wanted) + 1000));
+        }
+}
+
+/* The second derivative of the fibres' energy, times a direction. */
+static void curve(const lar_material *material, const double a[3], double F[3][3],
+                  const double *way, double *image) {
+    const double step = 1e-6;
+    double above[3][3], below[3][3], law[3][3], kept[9];
+    memcpy(kept, F, sizeof kept);
+    for (int k = 0; k < 9; k++) (&F[0][0])[k] = kept[k] + step * way[k];
+    lar_material_stress(material, a, (rows)F, above);
+    lar_law_stress(material, (rows)F, law);
+    for (int k = 0; k < 9; k++) (&above[0][0])[k] -= (&law[0][0])[k];
+    for (int k = 0; k < 9; k++) (&F[0][0])[k] = kept[k] - step * way[k];
+    lar_material_stress(material, a, (rows)F, below);
+    lar_law_stress(material, (rows)F, law);
+    for (int k = 0; k < 9; k++) (&below[0][0])[k] -= (&law[0][0])[k];
+    memcpy(F, kept, sizeof kept);
+    for (int k = 0; k < 9; k++) image[k] = ((&above[0][0])[k] - (&below[0][0])[k]) / (2 * step);
+}
+
+/* Largest eigenvalue by power iteration, shifted so that the lowest does not win. */
+static double stiffest(const lar_material *material, const double a[3], double F[3][3],
+                       double shift) {
+    double way[9], image[9], value = 0;
+    for (int k = 0; k < 9; k++) way[k] = 0.3 + 0.17 * k - 0.03 * k * k;
+    for (int n = 0; n < 300; n++) {
+        double norm = 0;
+        for (int k = 0; k < 9; k++) norm += way[k] * way[k];
+        for (int k = 0; k < 9; k++) way[k] /= sqrt(norm);
+        curve(material, a, F, way, image);
+        value = 0;
+        for (int k = 0; k < 9; k++) value += way[k] * image[k];
+        for (int k = 0; k < 9; k++) way[k] = image[k] + shift * way[k];
+    }
+    return value;
+}
+
+static void the_bound_of_stiffness_holds(void **state) {
+    (void)state;
+    uint64_t seed = 7;
+    for (int family = 0; family < FAMILIES; family++) {
+        double closest = 0;
+        lar_material material = material_with(family, LAR_LAW_neo_hookean);
+        material.fibre.along = material.fibre.across = 0;
+        if (material.fibre.law == LAR_FIBRE_NONE) continue;
+        for (int n = 0; n < STATES; n++) {
+            double F[3][3], a[3], g[3], p[4], cof[9];
+            random_unit(&seed, a);
+            random_deformation(&seed, 0.25, F);
+            int kind = lar_fibre_kind(&material.fibre);
+            double J = lar_lane_cofactor((const double *)F, cof), length = lar_fibre_push((const double *)F, a, g);
+            double square = lar_fibre_square(kind, length, J);
+            memcpy(p, material.fibre.parameter, sizeof p);
+            lar_fibre_answer now = lar_fibre_tension(material.fibre.law, square, p);
+            double bound =
+                lar_fibre_stiffness(kind, &now, square, length, J, lar_lane_square_sum(cof));
+            double found = stiffest(&material, a, F, bound);
+            if (square < 1.0001) continue;
+            assert_below(found, bound * (1 + 1e-4));
+            closest = fmax(closest, found / bound);
+        }
+        print_message("fibres %d: at most %.3f of the bound\n", family, closest);
+        assert_true(closest > 0.6);
+    }
+}
+
+/* An element pulled along its fibres by so little that it is as at rest: no mode is faster than its
+ * frequency says, and some mode is nearly as fast. */
+static void frequency_counts_fibres(void **state) {
+    (void)state;
+    uint64_t seed = 8;
+    double closest = 0;
+    for (int family = 0; family < FAMILIES; family++)
+        for (int n = 0; n < 20; n++) {
+            lar_material material = material_with(family, LAR_LAW_neo_hookean);
+            double corner[8][3], u[8][3], above[8][3], below[8][3], way[24], omega = 0;
+            lar_hex8 element;
+            random_corners(&seed, 0.01, 0.2, corner);
+            for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+                if (lar_fibre_scales(material.fibre.law, k)) material.fibre.parameter[k] *= 5;
+            lar_hex8_prepare((rows)corner, &material, &element);
+            random_unit(&seed, element.fibre);
+            for (int k = 0; k < 24; k++) way[k] = 1 + 0.3 * k - 0.05 * k * (k % 5);
+            double mass = material.density * element.volume / 8, edge = cbrt(element.volume);
+            for (int round = 0; round < 200; round++) {
+                double norm = 0;
+                for (int k = 0; k < 24; k++) norm += way[k] * way[k];
+                for (int sign = -1; sign < 2; sign += 2) {
+                    double(*force)[3] = sign < 0 ? below : above;
+                    for (int b = 0; b < 8; b++)
+                        for (int i = 0; i < 3; i++) {
+                            double along = 0;
+                            for (int j = 0; j < 3; j++) along += element.fibre[j] * corner[b][j];
+                            u[b][i] = 1e-4 * along * element.fibre[i] +
+                                      sign * 1e-6 * edge * way[3 * b + i] / sqrt(norm);
+                        }
+                    lar_hex8_force(&element, &material, (rows)u, force);
+                }
+                omega = 0;
+                for (int k = 0; k < 24; k++) {
+                    double image = ((&above[0][0])[k] - (&below[0][0])[k]) / (2e-6 * edge);
+                    omega += way[k] / sqrt(norm) * image;
+                    way[k] = image;
+                }
+            }
+            double bound = lar_hex8_frequency(&element, &material);
+            assert_below(omega / mass, 1.005 * bound * bound);
+            closest = fmax(closest, omega / mass / (bound * bound));
+        }
+    print_message("at most %.3f of the bound of the square\n", closest);
+    assert_true(closest > 0.8);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stress_is_energy_slope),       cmocka_unit_test(turned_with_the_body),
+        cmocka_unit_test(pressed_fibres_do_nothing),    cmocka_unit_test(pulled_along_and_across),
+        cmocka_unit_test(the_bound_of_stiffness_holds), cmocka_unit_test(frequency_counts_fibres),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,299 @@
+/* Fibres of materials and their directions, from scenes, meshes and FEBio decks; and what is said
+ * where they cannot be. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+
+#include "brick.h"
+#include "model/format/mesh_io.h"
+#include "model/scene/scene.h"
+
+#define TISSUE "cells: all, law: yeoh, density: 1000, shear_modulus: 1e3, bulk_modulus: 1e5"
+#define SCENE(fibres)                                                                              \
+    "lariat: 1\nmesh: brick.vtu\nmaterials:\n  - {" TISSUE ", fibres: {" fibres "}}\n"
+#define POW    "law: exp-pow, part: isochoric, ksi: 300, alpha: 1.5, beta: 2.5, "
+#define LINEAR "law: exp-linear, part: whole, c3: 40, c4: 12, c5: 3e3, lam_max: 1.2, "
+
+static lar_status parse(const char *text, lar_model **model, lar_error *error) {
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_status status = lar_scene_parse_with("s.yaml", &bytes, brick_read, model, error);
+    lar_bytes_free(&bytes);
+    return status;
+}
+
+static lar_model *scene(const char *text) {
+    lar_model *model = NULL;
+    lar_error error = {0};
+    if (parse(text, &model, &error)) fail_msg("%s", error.message);
+    return model;
+}
+
+static void near(const double a[3], double x, double y, double z) {
+    if (!(fabs(a[0] - x) + fabs(a[1] - y) + fabs(a[2] - z) < 1e-12))
+        fail_msg("%g %g %g instead of %g %g %g", a[0], a[1], a[2], x, y, z);
+}
+
+static void scenes_say_laws_and_directions(void **state) {
+    (void)state;
+    lar_model *model = scene(SCENE(POW "direction: {axis: [0, 3, 4]}"));
+    const lar_fibre *f = &model->material[0].fibre;
+    assert_true(f->law == LAR_FIBRE_EXP_POW && f->isochoric && f->line == 4);
+    assert_true(f->parameter[0] == 300 && f->parameter[1] == 1.5 && f->parameter[2] == 2.5);
+    for (int32_t e = 0; e < model->mesh.element_count; e++)
+        near(lar_model_fibre(model, e), 0, 0.6, 0.8);
+    lar_model_destroy(model);
+    model = scene(SCENE(LINEAR "direction: {around: {point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
+    f = &model->material[0].fibre;
+    assert_true(f->law == LAR_FIBRE_EXP_LINEAR && !f->isochoric && f->parameter[3] == 1.2);
+    const double s = sqrt(0.5); /* element 0 lies at -x -y of the axis */
+    near(lar_model_fibre(model, 0), s, -s, 0);
+    lar_model_destroy(model);
+}
+
+static void scenes_say_what_is_active(void **state) {
+    (void)state;
+    lar_model *model = scene(SCENE("active: {along: 2e3}, direction: {axis: [0, 0, 1]}"));
+    const lar_fibre *f = &model->material[0].fibre;
+    assert_true(f->law == LAR_FIBRE_NONE && f->along == 2e3 && f->across == 0);
+    lar_model_destroy(model);
+    model = scene(SCENE(POW "active: {along: 2e3, across: 1e3}, direction: {axis: [0, 0, 1]}"));
+    f = &model->material[0].fibre;
+    assert_true(f->law == LAR_FIBRE_EXP_POW && f->along == 2e3 && f->across == 1e3);
+    lar_model_destroy(model);
+}
+
+static void the_last_material_has_its_own_rule(void **state) {
+    (void)state;
+    lar_model *model =
+        scene(SCENE(POW "direction: {axis: [1, 0, 0]}") "  - {cells: 2, law: yeoh, "
+                                                        "density: 1000, shear_modulus: 1e3, "
+                                                        "bulk_modulus: 1e5, fibres: {" POW
+                                                        "direction: {axis: [0, 1, 0]}}}\n");
+    for (int32_t e = 0; e < model->mesh.element_count; e++)
+        near(lar_model_fibre(model, e), model->element_material[e] == 0, model->element_material[e],
+             0);
+    lar_model_destroy(model);
+}
+
+static void scenes_say_what_is_wrong(void **state) {
+    (void)state;
+    static const char *const wrong[][2] = {
+        {SCENE("part: whole"), "fibres needs the key \"law\""},
+        {SCENE("law: exp-pow, part: whole, ksi: 1, alpha: 0, beta: 2"),
+         "fibres needs the key \"direction\""},
+        {SCENE("law: exp-pov, part: whole, direction: mesh"), "did you mean exp-pow"},
+        {SCENE("law: exp-pow, part: deviator, direction: mesh"), "the parts are: isochoric, whole"},
+        {SCENE("law: exp-pow, part: whole, ksi: 1, alpha: 0, direction: mesh"),
+         "need beta; add it"},
+        {SCENE(POW "c3: 1, direction: mesh"), "c3 is no parameter of the law exp-pow"},
+        {SCENE("active: {}, direction: mesh"), "give \"along\" or \"across\" the fibres"},
+        {SCENE("active: {along: -1}, direction: mesh"), "along is -1"},
+        {SCENE("active: {along: 1}, ksi: 3, direction: mesh"),
+         "ksi is no parameter of the law none"},
+        {SCENE("active: {along: 1, curve: 2}, direction: mesh"), "curve"},
+        {SCENE(POW "twist: 1, direction: mesh"), "twist"},
+        {SCENE(POW "direction: mesh"), "no mesh has directions"},
+        {SCENE(POW "direction: {}"), "direction: expected mesh, {axis: [x, y, z]}"},
+        {SCENE(POW "direction: {axis: [0, 0, 0]}"), "axis"},
+        {SCENE(POW "direction: {axis: [1, 0]}"), "axis"},
+        {SCENE(POW "direction: {axis: [.nan, 0, 1]}"), "not a finite number"},
+        {SCENE(POW "direction: {around: {point: [0.005, 0.005, 0], axis: [0, 0, 1]}}"),
+         "element 101 has fibres and their direction is 0, 0, 0"},
+        {SCENE("law: exp-pow, part: whole, ksi: 300, alpha: 1, beta: 1.5, direction: {axis: [1, 0, "
+               "0]}"),
+         "beta must be between 2 and 20"},
+        {SCENE("law: exp-pow, part: whole, ksi: -3, alpha: 1, beta: 2, direction: {axis: [1, 0, "
+               "0]}"),
+         "ksi is -3"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        lar_model *model = NULL;
+        lar_error error = {0};
+        assert_int_not_equal(parse(wrong[i][0], &model, &error), LAR_OK);
+        if (!strstr(error.message, wrong[i][1]) || strncmp(error.message, "s.yaml:4:", 9) != 0)
+            fail_msg("\"%s\" lacks \"%s\"", error.message, wrong[i][1]);
+    }
+}
+
+/* ---- VTU ------------------------------------------------------------------------------------ */
+
+#define FILE_NAME LAR_TEST_BUILD "/fibres.vtu"
+
+static void write_fibres(double first) {
+    lar_mesh mesh = {0};
+    lar_error error;
+    assert_int_equal(brick_read("brick.vtu", 1, &mesh, &error), LAR_OK);
+    double *value = lar_calloc((size_t)mesh.element_count, 3 * sizeof *value);
+    for (int32_t e = 0; e < mesh.element_count; e++) {
+        value[3 * e] = e == 3 ? first : 2;
+        value[3 * e + 1] = e == 3 ? 0 : e;
+    }
+    const lar_vtu_array array = {"fibre", 3, value};
+    const lar_vtu_frame frame = {.mesh = &mesh, .cell_array = &array, .cell_array_count = 1};
+    if (lar_vtu_write(FILE_NAME, &frame, &error)) fail_msg("%s", error.message);
+    free(value);
+    lar_mesh_clear(&mesh);
+}
+
+static void meshes_bring_directions(void **state) {
+    (void)state;
+    static const char text[] =
+        "lariat: 1\nmesh: [" FILE_NAME ", " FILE_NAME "]\nmaterials:\n  - {" TISSUE
+        ", fibres: {" POW "direction: mesh}}\n";
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    lar_error error;
+    write_fibres(2);
+    if (lar_scene_parse("s.yaml", &bytes, &model, &error)) fail_msg("%s", error.message);
+    int32_t half = model->mesh.element_count / 2;
+    for (int32_t e = 0; e < 2 * half; e++) {
+        double y = e % half == 3 ? 0 : e % half, length = sqrt(4 + y * y);
+        near(lar_model_fibre(model, e), 2 / length, y / length, 0);
+    }
+    lar_model_destroy(model);
+    const double bad[2] = {0, NAN};
+    for (int i = 0; i < 2; i++) {
+        write_fibres(bad[i]);
+        assert_int_not_equal(lar_scene_parse("s.yaml", &bytes, &model, &error), LAR_OK);
+        assert_non_null(strstr(error.message, i ? "direction is not finite" : "is 0, 0, 0"));
+        assert_non_null(strstr(error.message, "element 3 "));
+    }
+    lar_bytes_free(&bytes);
+}
+
+/* ---- decks ---------------------------------------------------------------------------------- */
+
+#define NODES                                                                                      \
+    "<Nodes name=\"all\"><node id=\"1\">0,0,0</node><node id=\"2\">1,0,0</node>"                   \
+    "<node id=\"3\">1,1,0</node><node id=\"4\">0,1,0</node><node id=\"5\">0,0,1</node>"            \
+    "<node id=\"6\">1,0,1</node><node id=\"7\">1,1,1</node><node id=\"8\">0,1,1</node>"            \
+    "<node id=\"9\">2,0,0</node><node id=\"10\">2,1,0</node><node id=\"11\">2,0,1</node>"          \
+    "<node id=\"12\">2,1,1</node></Nodes>\n"
+#define PARTS                                                                                      \
+    "<Elements type=\"hex8\" name=\"left\"><elem id=\"1\">1,2,3,4,5,6,7,8</elem>"                  \
+    "<elem id=\"2\">2,9,10,3,6,11,12,7</elem></Elements>\n"                                        \
+    "<ElementSet name=\"back\">2,1</ElementSet>\n"
+#define DECK(type, material, data)                                                                 \
+    "<?xml version=\"1.0\"?>\n<febio_spec version=\"4.0\">\n<Module type=\"solid\"/>\n<Material>"  \
+    "<material id=\"1\" name=\"soft\" type=\"" type "\"><density>1000</density>\n" material        \
+    "</material></Material>\n<Mesh>\n" NODES PARTS "</Mesh>\n<MeshDomains><SolidDomain "           \
+    "name=\"left\" mat=\"soft\"/></MeshDomains>\n<MeshData>" data "</MeshData></febio_spec>\n"
+#define ISO                                                                                        \
+    "<k>9e4</k><c1>500</c1><c2>100</c2><c3>40</c3><c4>12</c4><c5>3e3</c5><lam_max>1.2</lam_max>"
+#define SOLID "<solid type=\"neo-Hookean\"><E>3000</E><v>0.25</v></solid>"
+#define EXP   "<ksi>300</ksi><alpha>1.5</alpha><beta>2.5</beta>"
+#define ALONG "<fiber type=\"vector\">0,3,4</fiber>"
+
+static lar_status read_deck(const char *text, lar_model **model, lar_error *error) {
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_status status = lar_feb_parse("deck.feb", &bytes, model, error);
+    lar_bytes_free(&bytes);
+    return status;
+}
+
+static lar_model *deck(const char *text) {
+    lar_model *model = NULL;
+    lar_error error = {0};
+    if (read_deck(text, &model, &error)) fail_msg("%s", error.message);
+    return model;
+}
+
+static void decks_say_laws_and_directions(void **state) {
+    (void)state;
+    lar_model *model = deck(DECK("trans iso Mooney-Rivlin", ISO ALONG, ""));
+    const lar_fibre *f = &model->material[0].fibre;
+    assert_true(model->material[0].law == LAR_LAW_mooney_rivlin);
+    assert_true(f->law == LAR_FIBRE_EXP_LINEAR && f->isochoric && f->parameter[2] == 3e3);
+    near(lar_model_fibre(model, 1), 0, 0.6, 0.8);
+    lar_model_destroy(model);
+
+    model = deck(DECK("solid mixture",
+                      SOLID "<solid type=\"fiber-exp-pow\">" EXP "<mat_axis type=\"local\">1,7,3"
+                            "</mat_axis></solid>",
+                      ""));
+    f = &model->material[0].fibre;
+    assert_true(model->material[0].law == LAR_LAW_coupled_neo_hookean);
+    assert_true(f->law == LAR_FIBRE_EXP_POW && !f->isochoric && f->parameter[1] == 1.5);
+    const double s = sqrt(1.0 / 3);
+    near(lar_model_fibre(model, 0), s, s, s);
+    lar_model_destroy(model);
+
+    model = deck(DECK("trans iso Mooney-Rivlin",
+                      ISO "<fiber type=\"angles\"><theta>90</theta><phi>45</phi></fiber>", ""));
+    near(lar_model_fibre(model, 0), 0, sqrt(0.5), sqrt(0.5));
+    lar_model_destroy(model);
+
+    /* lid counts in the order of the set. */
+    model = deck(DECK("trans iso Mooney-Rivlin", ISO "<fiber type=\"user\"/>",
+                      "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"1\">0,0,5</e>"
+                      "<e lid=\"2\">2,0,0</e></ElementData>"));
+    near(lar_model_fibre(model, 0), 1, 0, 0);
+    near(lar_model_fibre(model, 1), 0, 0, 1);
+    lar_model_destroy(model);
+    model = deck(DECK("trans iso Mooney-Rivlin", ISO ALONG,
+                      "<ElementData type=\"mat_axis\" elem_set=\"left\"><e lid=\"2\"><a>1,0,0</a>"
+                      "<d>0,1,0</d></e></ElementData>"));
+    near(lar_model_fibre(model, 0), 0, 0.6, 0.8);
+    near(lar_model_fibre(model, 1), 1, 0, 0);
+    lar_model_destroy(model);
+}
+
+static void decks_say_what_is_wrong(void **state) {
+    (void)state;
+#define OF(material, data) DECK("trans iso Mooney-Rivlin", material, data)
+#define MIX(material)      DECK("solid mixture", material, "")
+    static const char *const wrong[][2] = {
+        {OF(ISO, ""), "element 1 has fibres and nothing says along what"},
+        {OF(ISO "<fiber type=\"user\"/>", ""), "nothing says along what"},
+        {OF(ISO "<fiber type=\"vector\">0,0,0</fiber>", ""), "their direction is 0, 0, 0"},
+        {OF(ISO "<fiber type=\"spherical\">0,0,0</fiber>", ""),
+         "a direction of type 'spherical' is not read"},
+        {OF(ISO "<fiber type=\"local\">1,9</fiber>", ""), "one corner to another, of 1 to 8"},
+        {OF(ISO ALONG "<active_contraction/>", ""), "<active_contraction> of a material"},
+        {OF("<k>9</k><c1>1</c1><c3>1</c3>" ALONG, ""), "no parameter <c4>"},
+        {OF(ISO ALONG, "<ElementData type=\"fiber\" elem_set=\"none\"/>"),
+         "names the element set 'none'"},
+        {OF(ISO ALONG,
+            "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"3\">1,0,0</e></ElementData>"),
+         "lid 3 is no element of its set, which has 2"},
+        {OF(ISO ALONG,
+            "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"1\">1,0</e></ElementData>"),
+         "deck.feb:"},
+        {MIX("<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"), "no law besides its fibres"},
+        {MIX(SOLID SOLID), "a second law in a solid mixture"},
+        {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG
+                   "</solid><solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"),
+         "a second family of fibres in a solid mixture"},
+        {MIX(SOLID "<mat_axis type=\"vector\"><a>1,0,0</a><d>0,1,0</d></mat_axis>"
+                   "<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"),
+         "a second direction within one material"},
+        {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG "<lam0>1.1</lam0></solid>"),
+         "<lam0> of a material with fibres is not read"},
+        {MIX(SOLID "<solid type=\"ellipsoidal fiber distribution\"/>"), "is not read"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        lar_model *model = NULL;
+        lar_error error = {0};
+        assert_int_not_equal(read_deck(wrong[i][0], &model, &error), LAR_OK);
+        if (!strstr(error.message, wrong[i][1]))
+            fail_msg("\"%s\" lacks \"%s\"", error.message, wrong[i][1]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scenes_say_laws_and_directions),
+        cmocka_unit_test(scenes_say_what_is_active),
+        cmocka_unit_test(the_last_material_has_its_own_rule),
+        cmocka_unit_test(scenes_say_what_is_wrong),
+        cmocka_unit_test(meshes_bring_directions),
+        cmocka_unit_test(decks_say_laws_and_directions),
+        cmocka_unit_test(decks_say_what_is_wrong),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+/* Forces on nodes and points of contact in a session: done between two ticks, recorded, replayed on
+ * another grid, and refused where settings are. */
+#include "session/session_test.h"
+
+#define PATH LAR_TEST_BUILD "/calls.recording"
+
+/* The block with its right side as the set "end". */
+static lar_model *named_block(void) {
+    lar_model *model = hanging_block();
+    lar_node_list end = brick_side(&soft_brick, 0, -1);
+    DONE(lar_mesh_add_set(&model->mesh, "end", LAR_SET_NODES, end.node, end.count, &failure));
+    return model;
+}
+
+static void wait_steps(const bench *b, uint64_t steps) {
+    uint64_t end = status_of(b).step + steps;
+    while (status_of(b).step < end) nap(0.001);
+}
+
+static void forces_are_played(void **unused) {
+    (void)unused;
+    const double up[3] = {0, 0, 0.01}, aside[3] = {0.004, 0, 0}, none[3] = {0};
+    lar_session_options options = lar_session_options_default();
+    lar_saved *saved = NULL;
+    options.record = PATH;
+    options.hash_every = 50;
+    bench b = open_bench_of(named_block(), "2x1x1", 1, &options);
+    DONE(lar_saved_create(b.simulation, &saved, &failure));
+    DONE(lar_session_set_force(b.session, 3, aside, &failure)); /* before the start */
+    DONE(lar_session_start(b.session, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_set_force_on(b.session, "end", up, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_save_to(b.session, saved, &failure));
+    DONE(lar_session_set_force(b.session, -1, NULL, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_load_from(b.session, saved, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_set_force(b.session, 3, none, &failure));
+    assert_int_equal(lar_session_set_force(b.session, 99999, aside, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_force(b.session, -1, aside, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_force_on(b.session, "start", up, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_force_on(NULL, "end", up, &failure), LAR_ERROR_ARGUMENT);
+    wait_steps(&b, 100);
+    lar_saved_destroy(saved);
+    close_bench(&b);
+    for (int grid = 0; grid < 2; grid++) {
+        lar_replay_report report;
+        lar_model *model = named_block();
+        lar_simulation *simulation = NULL;
+        const lar_options divided = block_options(grid ? "2x2x1" : NULL, 1);
+        double force[3];
+        DONE(lar_simulation_create(model, &divided, &simulation, &failure));
+        DONE(lar_replay(simulation, PATH, NULL, NULL, &report, &failure));
+        assert_true(report.hashes > 5 && report.different == UINT64_MAX);
+        lar_simulation_force(simulation, brick_node(&soft_brick, 3, 1, 1), force);
+        assert_memory_equal(force, up, sizeof up);
+        lar_simulation_force(simulation, 3, force);
+        assert_true(force[0] == 0);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model);
+    }
+    options.record = NULL;
+    b = open_bench_of(named_block(), NULL, 0, &options);
+    DONE(lar_session_start(b.session, &failure));
+    DONE(lar_session_replay(b.session, PATH, &failure));
+    await(&b, LAR_SESSION_PAUSED, 0);
+    assert_string_equal(status_of(&b).message, "");
+    assert_int_equal(lar_session_set_force(b.session, 3, up, &failure), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "is being played"));
+    close_bench(&b);
+}
+
+static void touches_are_told_between_ticks(void **unused) {
+    (void)unused;
+    static lar_touch touch[300];
+    const lar_tool_pose pose = {{0.02, 0.01, 0.021}, {1, 0, 0, 0}, 1};
+    int32_t count = -1;
+    lar_session_options options = lar_session_options_default();
+    bench b = open_bench_of(named_block(), "2x1x1", 1, &options);
+    DONE(lar_session_tool_touches(b.session, BALL, 300, touch, &count, &failure));
+    assert_int_equal(count, 0);
+    DONE(lar_session_start(b.session, &failure));
+    DONE(lar_session_tool_move(b.session, BALL, &pose, &failure));
+    for (int i = 0; i < 20000 && count == 0; i++) {
+        nap(0.001);
+        DONE(lar_session_tool_touches(b.session, BALL, 300, touch, &count, &failure));
+    }
+    assert_true(count > 0 && touch[0].depth > 0 && touch[0].node[0] >= 0);
+    assert_int_equal(lar_session_tool_touches(b.session, 99, 300, touch, &count, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_tool_touches(b.session, BALL, 3, NULL, &count, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_tool_touches(b.session, BALL, 3, touch, NULL, &failure),
+                     LAR_ERROR_ARGUMENT);
+    close_bench(&b);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(forces_are_played),
+                                       cmocka_unit_test(touches_are_told_between_ticks)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
