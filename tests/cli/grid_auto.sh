@@ -19,11 +19,22 @@ if [ "$cores" -gt 1 ]; then
 fi
 says '^grid  *1x1x1: there is one core'
 
-# What takes longer is tried, and comes to the same bits.
+# What takes an hour is tried; where one ends that is too short for that, only the machine knows.
+"$LARIAT" run $scene --time 3600 --out tried --json >out 2>err &
+pid=$!
+for _ in $(seq 300); do
+    [ -e tried/probes.csv ] && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+[ "$cores" -eq 1 ] || "$JSON" --print grid_reason <out | grep -Eq '[um]s' ||
+    fail "nothing was measured: $("$JSON" --print grid_reason <out)"
+
+# Tried or not, it comes to the same bits.
 expect 0 "$LARIAT" run $scene --time 3 --json
 [ "$(value_of processors)" -le "$cores" ] || fail "more processors than cores"
 long=$(value_of state_hash)
-[ "$cores" -eq 1 ] || "$JSON" --print grid_reason <out | grep -q 'us' || fail "nothing was measured"
 expect 0 "$LARIAT" run $scene --time 3 --grid 1x1x1 --json
 [ "$(value_of state_hash)" = "$long" ] || fail "the chosen grid has another hash"
 [ "$(value_of grid_reason)" = '""' ] || fail "a grid that was asked for has a reason"
