@@ -60,21 +60,6 @@ static void corners_of(const lar_body_contact *contact, const lar_state *state, 
                       v ? v[a] : NULL);
 }
 
-/* The face is at least so far away: as far as the box around it. */
-static double nearest_possible(const double x[3], const double corner[4][3]) {
-    double square = 0;
-    for (int i = 0; i < 3; i++) {
-        double low = corner[0][i], high = low;
-        for (int a = 1; a < 4; a++) {
-            low = corner[a][i] < low ? corner[a][i] : low;
-            high = corner[a][i] > high ? corner[a][i] : high;
-        }
-        double away = x[i] < low ? low - x[i] : x[i] > high ? x[i] - high : 0;
-        square += away * away;
-    }
-    return sqrt(square);
-}
-
 /* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct survey {
     double reach; /* of the faces for the node [m] */
@@ -106,7 +91,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, con
                           int32_t f, int32_t i, survey *s) {
     double corner[4][3], tie = tie_of(contact, f);
     corners_of(contact, state, f, corner, NULL);
-    double distance = nearest_possible(x, (const double(*)[3])corner);
+    double distance = lar_face_box_distance(x, (const double(*)[3])corner);
     if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
         lar_face_point point;
         contact->info.tested++;
@@ -457,6 +442,18 @@ static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
                lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
+/* How far a node that touches nothing may come nearer to the closest face of another body [m] until
+ * it is looked at again: upright over it, half of the way to where they touch. Beside an edge a
+ * little motion may bring it behind another face; of its own body a node does not see all faces,
+ * and may come behind one from the side. */
+static double clear_of(const lar_body_contact *contact, int32_t node, int32_t face,
+                       const lar_face_point *point) {
+    const lar_contact_surface *surface = contact->surface;
+    bool upright = point->height > 0.5 * point->distance;
+    double standoff = lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+    return upright ? 0.5 * (point->distance - standoff) : 0;
+}
+
 /* Contact of group g. */
 static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_t g, touching *t) {
     const lar_contact_group *group = &contact->list.group[g];
@@ -465,8 +462,12 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     int32_t face = closest(contact, state, g, &s, &point);
     if (face >= 0 && touches(contact, group->node, face, &point))
         return push(contact, state, g, face, &point, &s, t);
-    if (same_body(contact, group->node, contact->list.face[group->first]))
+    if (same_body(contact, group->node, contact->list.face[group->first])) {
         leave_offset(contact, state, group->node, face);
+    } else if (face >= 0) {
+        double clear = 0.999 * clear_of(contact, group->node, face, &point) / APPROACH;
+        contact->due[g] = fmax(contact->due[g], contact->travel + clear);
+    }
     return false;
 }
 

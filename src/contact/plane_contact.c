@@ -196,7 +196,8 @@ static inline double min_velocity(double height, double rate) {
 
 /* What a step's stops sum up to. */
 typedef struct stops {
-    double work, damped, fastest, deepest;
+    double work, damped, deepest;
+    double stopped, fastest; /* speeds of stopped nodes along an axis, without and with planes */
     int32_t touching;
 } stops;
 
@@ -209,6 +210,7 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
     if (change > 0) {
         double mean[3], free[3];
         for (int i = 0; i < 3; i++) {
+            sum->stopped = larger(sum->stopped, fabs(v[i]));
             double now = v[i] + way->slide[i] * change;
             free[i] = near->before[i] + v[i];
             mean[i] = near->before[i] + now;
@@ -324,6 +326,7 @@ static inline void rub_node(const lar_plane_near *near, int32_t count, const lar
     const double *before = isnan(near->before[0]) ? free : near->before;
     double work = 0, damped = 0;
     for (int i = 0; i < 3; i++) {
+        sum->stopped = larger(sum->stopped, fabs(free[i]));
         sum->fastest = larger(sum->fastest, fabs(v[i]));
         work += (v[i] - free[i]) * (before[i] + v[i]);
         damped += (v[i] - free[i]) * (before[i] + free[i]);
@@ -346,6 +349,18 @@ static void rub_nodes(const lar_plane_contact *plane_contact, double dt, double 
 
 /* ---- the step ------------------------------------------------------------------------------ */
 
+/* The largest speed along an axis, with planes. The update kernel's is that of a node at rest,
+ * where a body stands: it falls in every step, with all the weight that it bears and its own small
+ * mass, before it is stopped. Searches would see a body fly that does not move. */
+static double fastest_of(const lar_condition_context *context, const lar_state *state) {
+    double max[4] = {0}; /* the fourth is 0 */
+    for (const double *v = state->v + 4 * (size_t)context->first,
+                      *end = state->v + 4 * (size_t)context->end;
+         v < end; v += 4)
+        for (int i = 0; i < 4; i++) max[i] = larger(max[i], fabs(v[i]));
+    return larger(max[0], larger(max[1], max[2]));
+}
+
 void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
                             lar_state *state, bool always, lar_contact_info *seen) {
     if (plane_contact->planes->count == 0) return;
@@ -355,7 +370,7 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     if (!(plane_contact->travel < plane_contact->reach) && !always)
         (plane_contact->last ? search_again : search)(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);
-    stops sum = {.fastest = state->fastest};
+    stops sum = {0};
     const lar_plane_way *way = plane_contact->planes->way;
     if (plane_contact->planes->rough) rub_nodes(plane_contact, dt, rate, state, &sum);
     int32_t smooth = plane_contact->planes->rough ? 0 : plane_contact->near_count;
@@ -364,7 +379,8 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
         stop_node(near, &way[near->node.way], dt, rate, state->u + near->node.value,
                   state->v + near->node.value, &sum);
     }
-    state->fastest = sum.fastest;
+    if (!(sum.stopped < state->fastest)) state->fastest = fastest_of(context, state);
+    state->fastest = larger(state->fastest, sum.fastest);
     double damping = lar_damping_of(context->model, context->settings);
     /* The update kernel has counted the free motion. */
     state->damped += damping * sum.damped * (context->mean_step / context->whole_step);

@@ -45,6 +45,21 @@ typedef struct lar_face_point {
 /* The distance alone. `corner` counter-clockwise seen from outside. */
 double lar_face_distance(const double x[3], const double corner[4][3]);
 
+/* The distance of the box around a face: the face is no nearer. */
+static inline double lar_face_box_distance(const double x[3], const double corner[4][3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        double low = corner[0][i], high = low;
+        for (int a = 1; a < 4; a++) {
+            low = corner[a][i] < low ? corner[a][i] : low;
+            high = corner[a][i] > high ? corner[a][i] : high;
+        }
+        double away = x[i] < low ? low - x[i] : x[i] > high ? x[i] - high : 0;
+        square += away * away;
+    }
+    return sqrt(square);
+}
+
 /* The closest point of a face to x. Triangles whose distance exceeds the smallest by no more than
  * `tie` [m] count as equally close. Faces without area are as good as any, at height 0. */
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
