@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/clock.h"
 #include "base/file/folder.h"
 #include "base/file/part_file.h"
 #include "cli/commands.h"
@@ -14,32 +13,29 @@
 
 enum { PATH_SIZE = 4096 };
 
-/* ---- progress ----------------------------------------------------------------------------------- */
+/* ---- progress -----------------------------------------------------------------------------------
+ */
 
-/* Told after every evaluation: a line that is rewritten on a terminal, one every ten seconds in a
- * log. */
+/* Told after every evaluation, on a terminal. */
 static void show_progress(void *context, const lar_fit_progress *p) {
-    static const double EVERY = 10;
-    double *last = context, now = lar_clock_seconds();
-    bool terminal = isatty(STDERR_FILENO);
     char left[48] = "";
-    if (!terminal && now < *last + EVERY) return;
-    *last = now;
+    (void)context;
     if (p->remaining >= 0) snprintf(left, sizeof left, ", some %.0f s to go", ceil(p->remaining));
-    fprintf(stderr, "%s%s: residual %.4g, %d simulations%s%s", terminal ? "\r" : "", p->doing,
-            p->residual, p->runs, left, terminal ? " \033[K" : "\n");
+    fprintf(stderr, "\r%s: residual %.4g, %d simulations%s \033[K", p->doing, p->residual, p->runs,
+            left);
     fflush(stderr);
 }
 
-/* ---- results ------------------------------------------------------------------------------------ */
+/* ---- results ------------------------------------------------------------------------------------
+ */
 
 /* Letters, digits, - and _ of a name; the others become _. */
 static void file_name(const char *name, char *to, size_t size) {
     size_t n = 0;
     for (; *name && n + 1 < size; name++) {
         char c = *name;
-        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                     c == '-';
+        bool plain =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
         to[n++] = plain ? c : '_';
     }
     to[n] = '\0';
@@ -75,7 +71,8 @@ static lar_status write_all(const char *folder, const lar_fit_problem *p, const 
     return lar_part_close(&out, status);
 }
 
-/* ---- the command ---------------------------------------------------------------------------------- */
+/* ---- the command
+ * ---------------------------------------------------------------------------------- */
 
 static int complain(const lar_error *error) {
     return cli_complain(&cli_fit, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
@@ -85,22 +82,23 @@ static int complain(const lar_error *error) {
 static int fit(const lar_fit_problem *problem, const char *folder, bool json) {
     lar_fit_result result;
     lar_error error = {0}, full = {0};
-    double last = lar_clock_seconds();
-    const lar_fit_options options = {
-        .stop = &cli_stop_asked, .progress = show_progress, .context = &last};
+    const bool terminal = isatty(STDERR_FILENO);
+    const lar_fit_options options = {.stop = &cli_stop_asked,
+                                     .progress = terminal ? show_progress : NULL};
     cli_catch_stop();
     lar_status failed = lar_fit_solve(problem, &options, &result, &error);
-    if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
+    if (terminal) fputs("\r\033[K", stderr);
     int status = CLI_DONE;
     if (failed && cli_stop_asked)
-        status = cli_complain(&cli_fit, CLI_INTERRUPTED,
-                              "interrupted before the first guess was computed: there is no answer");
+        status =
+            cli_complain(&cli_fit, CLI_INTERRUPTED,
+                         "interrupted before the first guess was computed: there is no answer");
     else if (failed)
         status = complain(&error);
     if (!status && folder && write_all(folder, problem, &result, &full)) status = complain(&full);
     /* What took long is told also where the disk is full. */
-    if (!failed && json) fit_report_json(problem, &result, stdout);
-    if (!failed && !json) fit_report_table(problem, &result, stdout);
+    if (!failed && !status && json) fit_report_json(problem, &result, stdout);
+    if (!failed && (status || !json)) fit_report_table(problem, &result, json ? stderr : stdout);
     if (!status && result.interrupted)
         status = cli_complain(&cli_fit, CLI_INTERRUPTED,
                               "interrupted: these are the best values so far, without intervals");
@@ -125,8 +123,7 @@ static int fit_main(int argc, char **argv) {
         return cli_complain(&cli_fit, CLI_FAILED,
                             "this program was built without cminpack, which fits need; apt-get "
                             "install libcminpack-dev, then make");
-    if (lar_fit_problem_read(path, &problem, &error) ||
-        (folder && lar_folder_make(folder, &error)))
+    if (lar_fit_problem_read(path, &problem, &error) || (folder && lar_folder_make(folder, &error)))
         status = complain(&error);
     else
         status = fit(&problem, folder, json);

@@ -42,9 +42,9 @@ static void write_curve(const char *data, const char *header, const double (*row
     char text[16384];
     size_t used = (size_t)snprintf(text, sizeof text, "%s,force\n", header);
     for (int i = 0; i < rows; i++)
-        used += (size_t)snprintf(text + used, sizeof text - used, in_time ? "%.9g,%.9g,%.12g\n"
-                                                                         : "%.9g,%.12g\n",
-                                 row[i][0], in_time ? row[i][1] : force[i], force[i]);
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 in_time ? "%.9g,%.9g,%.12g\n" : "%.9g,%.12g\n", row[i][0],
+                                 in_time ? row[i][1] : force[i], force[i]);
     twin_write(data, text);
 }
 
@@ -92,8 +92,7 @@ static void compression_is_fitted(void **state) {
 static void two_constants_are_fitted(void **state) {
     (void)state;
     static const char OGDEN[] = "law: ogden, density: 1050, c1: 2.0e3, m1: 5, bulk_modulus: 4.0e4",
-                      FREED[] = FREE("c1", "2.0e3", "1.0e2", "1.0e5")
-                          FREE("m1", "5", "2", "40");
+                      FREED[] = FREE("c1", "2.0e3", "1.0e2", "1.0e5") FREE("m1", "5", "2", "40");
     const double truth[2] = {1.4e3, 12};
     double force[6];
     lar_fit_result r;
@@ -154,9 +153,9 @@ static void indentation_is_fitted(void **state) {
     (void)state;
     static const double PAD[3] = {0.04, 0.04, 0.02};
     static const double depth[2][2] = {{0.003}, {0.005}};
-    static const char PRESSED[] =
-        "fix: [ { nodes: " FACE("0") ", axes: xyz } ]\n"
-        "tools: [ { name: ball, shape: sphere, radius: 0.008, at: [0.02, 0.02, 0.02801] } ]\n";
+    static const char PRESSED[] = "fix: [ { nodes: " FACE(
+        "0") ", axes: xyz } ]\n"
+             "tools: [ { name: ball, shape: sphere, radius: 0.008, at: [0.02, 0.02, 0.02801] } ]\n";
     const double truth[1] = {2.3e3};
     double force[2];
     lar_fit_result r;
@@ -184,7 +183,8 @@ static void indentation_is_fitted(void **state) {
 
 /* ---- points --------------------------------------------------------------------------------- */
 
-static const char HANGING[] = "gravity: [0, 0, -30]\nfix: [ { nodes: " FACE("0.02") ", axes: xyz } ]\n";
+static const char HANGING[] =
+    "gravity: [0, 0, -30]\nfix: [ { nodes: " FACE("0.02") ", axes: xyz } ]\n";
 
 /* Markers on a bar that hangs, and its outer surface: displacements of the finer mesh's nodes. */
 static void points_are_fitted(const char *kind, bool after_only) {
@@ -241,12 +241,13 @@ static void surfaces_are_fitted(void **state) {
     points_are_fitted("surface", true);
 }
 
-/* ---- what is known ---------------------------------------------------------------------------- */
+/* ---- what is known ----------------------------------------------------------------------------
+ */
 
 static const char FREELY[] =
     "fix: [ { nodes: " FACE("0") ", axes: z }, { nodes: { nearest: [0, 0, 0] }, axes: xy }, "
-    "{ nodes: { nearest: [0.01, 0, 0] }, axes: y } ]\n"
-    "move: [ { nodes: " FACE("0.02") ", axes: z, by: 1, over: 1 } ]\n";
+                                 "{ nodes: { nearest: [0.01, 0, 0] }, axes: y } ]\n"
+                                 "move: [ { nodes: " FACE("0.02") ", axes: z, by: 1, over: 1 } ]\n";
 
 /* One element, free to the sides: two numbers, of which its force knows one. */
 static void bulk_modulus_cannot_be_told(void **state) {
@@ -339,9 +340,9 @@ static void a_wrong_law_is_pointed_out(void **state) {
 /* Two experiments of one tissue: what neither tells alone they tell together. */
 static void experiments_share_parameters(void **state) {
     (void)state;
-    static const char CONFINED[] =
-        "fix: [ { nodes: all, axes: xy }, { nodes: " FACE("0") ", axes: z } ]\n"
-        "move: [ { nodes: " FACE("0.02") ", axes: z, by: 1, over: 1 } ]\n";
+    static const char CONFINED[] = "fix: [ { nodes: all, axes: xy }, { nodes: " FACE(
+        "0") ", axes: z } ]\n"
+             "move: [ { nodes: " FACE("0.02") ", axes: z, by: 1, over: 1 } ]\n";
     static const char FREED[] = FREE("shear_modulus", "1.0e3", "1.0e2", "1.0e5")
         FREE("bulk_modulus", "1.0e5", "1.0e4", "1.0e6");
     const double truth[2] = {2.0e3, 6.0e4};
@@ -424,19 +425,18 @@ static int need_cminpack(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(student_is_as_in_tables),
-        cmocka_unit_test(tension_is_fitted),
-        cmocka_unit_test(compression_is_fitted),
-        cmocka_unit_test(two_constants_are_fitted),
-        cmocka_unit_test(relaxation_is_fitted),
-        cmocka_unit_test(indentation_is_fitted),
-        cmocka_unit_test(markers_are_fitted),
-        cmocka_unit_test(surfaces_are_fitted),
-        cmocka_unit_test(bulk_modulus_cannot_be_told),
-        cmocka_unit_test(intervals_cover_the_truth),
-        cmocka_unit_test(a_wrong_law_is_pointed_out),
-        cmocka_unit_test(experiments_share_parameters),
-        cmocka_unit_test(tissues_go_into_scenes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(student_is_as_in_tables),
+                                       cmocka_unit_test(tension_is_fitted),
+                                       cmocka_unit_test(compression_is_fitted),
+                                       cmocka_unit_test(two_constants_are_fitted),
+                                       cmocka_unit_test(relaxation_is_fitted),
+                                       cmocka_unit_test(indentation_is_fitted),
+                                       cmocka_unit_test(markers_are_fitted),
+                                       cmocka_unit_test(surfaces_are_fitted),
+                                       cmocka_unit_test(bulk_modulus_cannot_be_told),
+                                       cmocka_unit_test(intervals_cover_the_truth),
+                                       cmocka_unit_test(a_wrong_law_is_pointed_out),
+                                       cmocka_unit_test(experiments_share_parameters),
+                                       cmocka_unit_test(tissues_go_into_scenes)};
     return cmocka_run_group_tests(tests, need_cminpack, NULL);
 }

@@ -99,12 +99,11 @@ static void print_parameter(const lar_fit_problem *problem, const lar_fit_result
     else if (isnan(e->low))
         fprintf(out, "%.5g %s\n", e->value, unit);
     else
-        fprintf(out, "%.5g %s, 95 %% between %.5g and %.5g%s\n", e->value, unit, e->low, e->high,
-                e->profiled ? " (by its profile)" : "");
+        fprintf(out, "%.5g%s%s, 95 %% between %.5g and %.5g%s\n", e->value, *unit ? " " : "", unit,
+                e->low, e->high, e->profiled ? " (by its profile)" : "");
 }
 
-static void print_correlations(const lar_fit_problem *problem, const lar_fit_result *r,
-                               FILE *out) {
+static void print_correlations(const lar_fit_problem *problem, const lar_fit_result *r, FILE *out) {
     static const double STRONG = 0.9;
     for (int i = 0; i < problem->parameters; i++)
         for (int j = 0; j < i; j++)
@@ -121,9 +120,8 @@ void fit_report_table(const lar_fit_problem *problem, const lar_fit_result *r, F
                 k ? "" : "experiments", problem->experiment[k].name,
                 (int)problem->experiment[k].values, r->residuals[k].rms,
                 problem->experiment[k].kind < LAR_FIT_MARKERS ? "N" : "m",
-                100 * r->residuals[k].relative,
-                r->residuals[k].systematic ? ", systematic" : "");
-    fprintf(out, "%-16s%d simulations in %.3g s\n",
-            r->converged ? "converged" : "NOT CONVERGED", r->runs, r->seconds);
+                100 * r->residuals[k].relative, r->residuals[k].systematic ? ", systematic" : "");
+    fprintf(out, "%-16s%d simulations in %.3g s\n", r->converged ? "converged" : "NOT CONVERGED",
+            r->runs, r->seconds);
     for (int i = 0; i < r->notes; i++) fprintf(out, "note            %s\n", r->note[i]);
 }

@@ -259,8 +259,7 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     const lar_yaml *cells = NULL, *fibres;
     const bool apart = lar_yaml_get(node, "tissue") != NULL;
     lar_status status = apart ? LAR_OK : check_keys(scene, node);
-    if (!status)
-        status = lar_scene_need(scene, node, "a material", "cells", "cells: all", &cells);
+    if (!status) status = lar_scene_need(scene, node, "a material", "cells", "cells: all", &cells);
     if (status) return status;
     lar_material *material = LAR_MODEL_APPEND(scene->model, material);
     if (!material) return lar_scene_no_memory(scene, sizeof *material);

@@ -15,9 +15,8 @@ static lar_status check_entry(const lar_scene *scene, const lar_yaml *entry) {
 static lar_status check_version(const lar_scene *file) {
     const lar_yaml *version = NULL;
     int64_t number;
-    lar_status status =
-        lar_scene_need(file, file->root, "a tissue file", "lariat-tissue", "lariat-tissue: 1",
-                       &version);
+    lar_status status = lar_scene_need(file, file->root, "a tissue file", "lariat-tissue",
+                                       "lariat-tissue: 1", &version);
     if (status || (lar_scene_is_integer(version, &number) && number == 1)) return status;
     return lar_scene_fail(file, version, LAR_ERROR_UNSUPPORTED,
                           "lariat-tissue: expected 1, the version that this program reads");

@@ -32,7 +32,8 @@ static lar_status read_path(const reader *r, const lar_yaml *node, const char *e
     return *path ? LAR_OK : lar_scene_no_memory(&r->scene, strlen(name) + 1);
 }
 
-/* ---- parameters ------------------------------------------------------------------------------- */
+/* ---- parameters -------------------------------------------------------------------------------
+ */
 
 static lar_status check_bounds(const reader *r, const lar_yaml *bounds, const lar_yaml *guess,
                                lar_fit_parameter *p) {
@@ -114,7 +115,8 @@ static lar_status check_parameter(const reader *r, const lar_yaml *node,
     return LAR_OK;
 }
 
-/* ---- experiments ------------------------------------------------------------------------------ */
+/* ---- experiments ------------------------------------------------------------------------------
+ */
 
 static lar_status read_kind(const reader *r, const lar_yaml *node, lar_fit_kind *kind) {
     for (int i = 0; i < LAR_FIT_KINDS; i++)
@@ -171,8 +173,8 @@ static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_fit_exp
     if (own)
         return lar_scene_unknown(&r->scene, own, LAR_ERROR_MODEL, "the tool", "the tools are", name,
                                  m->tool_count);
-    return lar_scene_fail(&r->scene, node, LAR_ERROR_MODEL,
-                          "the scene %s has %d tools; %s", e->scene, m->tool_count,
+    return lar_scene_fail(&r->scene, node, LAR_ERROR_MODEL, "the scene %s has %d tools; %s",
+                          e->scene, m->tool_count,
                           m->tool_count ? "say which one presses, for example tool: probe"
                                         : "give it the sphere that presses, just above the tissue");
 }
@@ -225,7 +227,8 @@ static lar_status read_experiment(reader *r, const lar_yaml *node) {
     return status ? status : lar_fit_measured_read(s, node, e);
 }
 
-/* ---- the file ---------------------------------------------------------------------------------- */
+/* ---- the file ----------------------------------------------------------------------------------
+ */
 
 static lar_status read_root(reader *r) {
     static const char *const keys[] = {"lariat-fit", "title", "parameters", "experiments", NULL};

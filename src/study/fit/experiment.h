@@ -41,17 +41,17 @@ typedef struct lar_fit_experiment {
     int line; /* of the file */
     char *name, *scene, *data;
     lar_model *model;
-    bool in_time; /* rows are moments of one run; else each is followed to rest */
+    bool in_time;         /* rows are moments of one run; else each is followed to rest */
     int32_t rows, values; /* of the table; measured numbers, of markers three a row */
     int *row_line;        /* [rows] lines of the table's file */
     double *time;         /* [rows] [s]; NULL: not measured */
     double *along;        /* [rows] displacement or depth [m]; NULL: the scene moves by itself */
     double *measured;     /* [values] N; of markers displacements, of surfaces distances 0 [m] */
     lar_embedded_surface points; /* markers: bound to elements; surface: places alone */
-    double largest;       /* of what is measured, in size: the scale of its errors */
-    double noise;         /* standard deviation of a measured number, or a hundredth of `largest` */
-    int move, tool;       /* of the model: what is driven; -1: nothing */
-    double direction[3];  /* into the tissue, of a tool */
+    double largest;              /* of what is measured, in size: the scale of its errors */
+    double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
+    int move, tool;      /* of the model: what is driven; -1: nothing */
+    double direction[3]; /* into the tissue, of a tool */
 } lar_fit_experiment;
 
 typedef struct lar_fit_problem {

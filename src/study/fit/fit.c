@@ -29,7 +29,8 @@ void lar_fit_note(lar_fit_result *result, const char *format, ...) {
     va_end(args);
 }
 
-/* ---- statistics ---------------------------------------------------------------------------------- */
+/* ---- statistics
+ * ---------------------------------------------------------------------------------- */
 
 /* With T = sqrt(n) tan(a) the density of Student is cos(a)^(n - 1), up to a constant. */
 static double area_to(double angle, int n) {
@@ -53,7 +54,8 @@ double lar_student_95(int n) {
     return sqrt(n) * tan(low);
 }
 
-/* Eigenvalues of a symmetric matrix, and its eigenvectors as columns of v, by Jacobi's rotations. */
+/* Eigenvalues of a symmetric matrix, and its eigenvectors as columns of v, by Jacobi's rotations.
+ */
 static void eigen(int n, double a[P][P], double v[P][P]) {
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) v[i][j] = i == j;
@@ -92,7 +94,8 @@ static double deviation_of(const lar_fit_solver *s) {
     return sqrt(fmax(s->best_squares / freedom, exact / s->values));
 }
 
-/* ---- the linear picture ---------------------------------------------------------------------------- */
+/* ---- the linear picture
+ * ---------------------------------------------------------------------------- */
 
 /* A direction that the data hardly see: which parameters share it. */
 static void note_direction(const lar_fit_problem *p, double v[P][P], int d, double width,
@@ -144,8 +147,7 @@ static void linearise(const lar_fit_solver *s, const double *jacobian, lar_fit_r
         double range = lar_fit_u_high(own) - lar_fit_u_low(own);
         e->low = m > n ? lar_fit_value(own, u - half) : NAN;
         e->high = m > n ? lar_fit_value(own, u + half) : NAN;
-        e->told = half < fmin(WIDE, 0.25 * range) &&
-                  u - lar_fit_u_low(own) > AT_BOUND * range &&
+        e->told = half < fmin(WIDE, 0.25 * range) && u - lar_fit_u_low(own) > AT_BOUND * range &&
                   lar_fit_u_high(own) - u > AT_BOUND * range;
         for (int j = 0; j < n; j++)
             result->correlation[i][j] =
@@ -153,7 +155,8 @@ static void linearise(const lar_fit_solver *s, const double *jacobian, lar_fit_r
     }
 }
 
-/* ---- what cannot be told ------------------------------------------------------------------------------ */
+/* ---- what cannot be told
+ * ------------------------------------------------------------------------------ */
 
 static void note_open(const lar_fit_parameter *p, const lar_fit_estimate *e, bool low, bool high,
                       lar_fit_result *result) {
@@ -185,8 +188,8 @@ static lar_status profile_suspects(const lar_fit_solver *s, lar_fit_result *resu
         lar_fit_estimate *e = &result->estimate[j];
         bool low, high;
         if (e->told) continue;
-        status = lar_fit_profile(s, j, grown * grown, &e->low, &e->high, &low, &high,
-                                 &result->runs);
+        status =
+            lar_fit_profile(s, j, grown * grown, &e->low, &e->high, &low, &high, &result->runs);
         if (status) break;
         e->profiled = true;
         e->told = !low && !high;
@@ -195,7 +198,8 @@ static lar_status profile_suspects(const lar_fit_solver *s, lar_fit_result *resu
     return status;
 }
 
-/* ---- the guess ------------------------------------------------------------------------------------------ */
+/* ---- the guess
+ * ------------------------------------------------------------------------------------------ */
 
 /* By how much all that the model answers would have to grow to fit, least squares. */
 static double ratio_of(const lar_fit_experiment *e, const double *model) {
@@ -247,7 +251,9 @@ static lar_status try_guess(lar_fit_solver *s, lar_error *error) {
     return status ? status : check_units(s, error);
 }
 
-/* ---- the fit ------------------------------------------------------------------------------------------------ */
+/* ---- the fit
+ * ------------------------------------------------------------------------------------------------
+ */
 
 static lar_status know(lar_fit_solver *s, lar_fit_result *result) {
     size_t values = (size_t)s->values;
@@ -282,7 +288,7 @@ static lar_status take(const lar_fit_solver *s, lar_fit_result *result) {
 }
 
 lar_status lar_fit_solve(const lar_fit_problem *problem, const lar_fit_options *options,
-                   lar_fit_result *result, lar_error *error) {
+                         lar_fit_result *result, lar_error *error) {
     lar_fit_solver s;
     lar_error unused;
     if (!error) error = &unused;

@@ -27,19 +27,19 @@ enum { LAR_FIT_NOTES_MAX = 24, LAR_FIT_NOTE = 400 };
 
 typedef struct lar_fit_estimate {
     double value;
-    double low, high; /* 95 %; NAN: there is no interval */
-    bool told;        /* whether the data say what it is */
-    bool profiled;    /* the interval is of a profile */
+    double low, high;   /* 95 %; NAN: there is no interval */
+    bool told;          /* whether the data say what it is */
+    bool profiled;      /* the interval is of a profile */
     double sensitivity; /* length of its column of J: how many standard deviations of noise the
                            data change when it changes e times */
 } lar_fit_estimate;
 
 typedef struct lar_fit_residuals {
-    double rms;        /* of measured minus model [N] or [m] */
-    double relative;   /* over the largest measured */
-    int runs;          /* of equal signs */
-    double runs_z;     /* against as many as chance gives; below -1.96: too few */
-    double lag;        /* correlation of neighbours */
+    double rms;      /* of measured minus model [N] or [m] */
+    double relative; /* over the largest measured */
+    int runs;        /* of equal signs */
+    double runs_z;   /* against as many as chance gives; below -1.96: too few */
+    double lag;      /* correlation of neighbours */
     bool systematic;
 } lar_fit_residuals;
 
@@ -57,7 +57,7 @@ typedef struct lar_fit_result {
 
 /* Fits. The caller clears the result in any case. */
 lar_status lar_fit_solve(const lar_fit_problem *problem, const lar_fit_options *options,
-                   lar_fit_result *result, lar_error *error);
+                         lar_fit_result *result, lar_error *error);
 void lar_fit_result_clear(lar_fit_result *result); /* idempotent */
 
 /* printf-style; what does not fit is left out. */

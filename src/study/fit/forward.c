@@ -14,7 +14,7 @@
 typedef struct forward {
     const lar_fit_experiment *e;
     const volatile sig_atomic_t *stop;
-    lar_model model; /* a shallow copy: materials, moves and curves are its own */
+    lar_model model;    /* a shallow copy: materials, moves and curves are its own */
     double (*point)[2]; /* of the curve that drives; the last one of the model */
     lar_simulation *simulation;
     double ramp; /* from one level to the next [s] */
@@ -122,8 +122,8 @@ static lar_status support_force(forward *f, double *force) {
     const lar_simulation *s = f->simulation;
     const lar_move *move = &f->model.move[f->e->move];
     double sum[3];
-    lar_status status = lar_measure_reaction(&s->domain, &s->scratch->measure, lar_simulation_state(s),
-                                             &move->nodes, sum, f->error);
+    lar_status status = lar_measure_reaction(&s->domain, &s->scratch->measure,
+                                             lar_simulation_state(s), &move->nodes, sum, f->error);
     int axis = move->axes == LAR_AXIS_X ? 0 : move->axes == LAR_AXIS_Y ? 1 : 2;
     *force = move->by < 0 ? -sum[axis] : sum[axis];
     return status;
@@ -150,7 +150,8 @@ static lar_status pull(forward *f, double *model) {
     return status;
 }
 
-/* ---- tools ------------------------------------------------------------------------------------ */
+/* ---- tools ------------------------------------------------------------------------------------
+ */
 
 static lar_status tool_to(forward *f, double depth, uint64_t steps) {
     const lar_fit_experiment *e = f->e;
@@ -175,8 +176,7 @@ static lar_status settle_tool(forward *f, double depth, double *inside) {
         uint64_t steps = steps_to(f, lar_simulation_time(f->simulation) + ramp);
         status = tool_to(f, depth + *inside, steps > 0 ? steps : 1);
         if (!status) status = follow_to_rest(f);
-        if (!status)
-            status = lar_simulation_tool_force(f->simulation, f->e->tool, &felt, f->error);
+        if (!status) status = lar_simulation_tool_force(f->simulation, f->e->tool, &felt, f->error);
         *inside = OF_DEEPEST * felt.depth;
     }
     return status;
@@ -191,8 +191,7 @@ static lar_status press(forward *f, double *model) {
         lar_tool_force felt = {0};
         if (steps > 0) status = tool_to(f, e->along[i] + inside, steps);
         if (!status && !e->in_time) status = settle_tool(f, e->along[i], &inside);
-        if (!status)
-            status = lar_simulation_tool_force(f->simulation, e->tool, &felt, f->error);
+        if (!status) status = lar_simulation_tool_force(f->simulation, e->tool, &felt, f->error);
         if (!status && felt.limited)
             status = lar_fail(f->error, LAR_ERROR_UNSTABLE,
                               "%s: the tissue stops the tool %s before %.4g m, at %.3g N; give a "
@@ -204,7 +203,8 @@ static lar_status press(forward *f, double *model) {
     return status;
 }
 
-/* ---- points ----------------------------------------------------------------------------------- */
+/* ---- points -----------------------------------------------------------------------------------
+ */
 
 static void markers(const forward *f, const double (*u)[3], double *model) {
     const lar_fit_experiment *e = f->e;
@@ -269,7 +269,8 @@ static lar_status choose_step(const forward *f, lar_options *options) {
     return status;
 }
 
-/* ---- one experiment ---------------------------------------------------------------------------- */
+/* ---- one experiment ----------------------------------------------------------------------------
+ */
 
 lar_status lar_fit_forward(const lar_fit_problem *problem, int k, const double *value,
                            const volatile sig_atomic_t *stop, double *model, lar_error *error) {

@@ -6,10 +6,12 @@
 
 #include "study/fit/table.h"
 
-/* ---- columns ----------------------------------------------------------------------------------- */
+/* ---- columns -----------------------------------------------------------------------------------
+ */
 
-static const char *const column_name[] = {"time", "displacement", "stretch", "depth", "force", "x",
-                                          "y",    "z",            "to_x",    "to_y",  "to_z", NULL};
+static const char *const column_name[] = {
+    "time", "displacement", "stretch", "depth", "force", "x", "y",
+    "z",    "to_x",         "to_y",    "to_z",  NULL};
 enum { TIME, DISPLACEMENT, STRETCH, DEPTH, FORCE, X, Y, Z, TO_X, TO_Y, TO_Z, COLUMNS };
 
 typedef struct source {
@@ -75,7 +77,8 @@ static lar_status take_vectors(const source *s, int first, double (**to)[3]) {
     return status;
 }
 
-/* ---- does it fit the body ------------------------------------------------------------------------ */
+/* ---- does it fit the body
+ * ------------------------------------------------------------------------ */
 
 static double body_size(const lar_model *m, int only_axis) {
     double longest = 0;
@@ -100,7 +103,8 @@ static lar_status check_length(const source *s, int32_t row, int c, double value
                     column_name[c], s->scene->path, s->node->line);
 }
 
-/* ---- curves --------------------------------------------------------------------------------------- */
+/* ---- curves
+ * --------------------------------------------------------------------------------------- */
 
 static lar_status read_time(const source *s) {
     lar_fit_experiment *e = s->e;
@@ -108,9 +112,9 @@ static lar_status read_time(const source *s) {
     lar_status status = take(s, TIME, &e->time);
     for (int32_t i = 0; i < e->rows && !status; i++) {
         if (e->time[i] < 0)
-            status = lar_fail(s->scene->error, LAR_ERROR_FORMAT,
-                              "%s:%d: time %g is before the start, 0", path, s->table.line[i],
-                              e->time[i]);
+            status =
+                lar_fail(s->scene->error, LAR_ERROR_FORMAT, "%s:%d: time %g is before the start, 0",
+                         path, s->table.line[i], e->time[i]);
         else if (i > 0 && !(e->time[i] > e->time[i - 1]))
             status = lar_fail(s->scene->error, LAR_ERROR_FORMAT,
                               "%s:%d: time %g does not come after %g; times must grow from row to "
@@ -126,8 +130,7 @@ static lar_status read_stretch(const source *s) {
     const lar_yaml *own = lar_yaml_get(s->node, "length");
     unsigned axes = e->model->move[e->move].axes;
     double length = body_size(e->model, axes == LAR_AXIS_X ? 0 : axes == LAR_AXIS_Y ? 1 : 2);
-    lar_status status =
-        own ? lar_scene_positive(s->scene, own, LAR_IN_METRES, &length) : LAR_OK;
+    lar_status status = own ? lar_scene_positive(s->scene, own, LAR_IN_METRES, &length) : LAR_OK;
     if (!status) status = take(s, STRETCH, &e->along);
     double way = e->kind == LAR_FIT_COMPRESSION ? -1 : 1;
     for (int32_t i = 0; i < e->rows && !status; i++) {
@@ -155,8 +158,7 @@ static lar_status read_along(const source *s) {
     }
     lar_status status = need(s, c);
     if (!status) status = take(s, c, &e->along);
-    for (int32_t i = 0; i < e->rows && !status; i++)
-        status = check_length(s, i, c, e->along[i]);
+    for (int32_t i = 0; i < e->rows && !status; i++) status = check_length(s, i, c, e->along[i]);
     return status;
 }
 
@@ -192,7 +194,8 @@ static lar_status read_curve(source *s) {
     return status ? status : check_curve(s);
 }
 
-/* ---- points ---------------------------------------------------------------------------------------- */
+/* ---- points
+ * ---------------------------------------------------------------------------------------- */
 
 static lar_status read_markers(source *s) {
     lar_fit_experiment *e = s->e;
@@ -244,7 +247,8 @@ static lar_status read_surface(source *s) {
     return status;
 }
 
-/* ---- errors ------------------------------------------------------------------------------------------ */
+/* ---- errors
+ * ------------------------------------------------------------------------------------------ */
 
 /* The scale of what is measured: the largest number; of a surface, whose distances are to be zero,
  * a hundredth of the body. */

@@ -14,7 +14,8 @@ bool lar_fit_first_of_material(const lar_fit_problem *p, int j) {
     return true;
 }
 
-/* ---- tissue ---------------------------------------------------------------------------------------- */
+/* ---- tissue
+ * ---------------------------------------------------------------------------------------- */
 
 /* A name as YAML and XML take it: what would mean something else there is left out. */
 static void plain(const char *text, char *to, size_t size) {
@@ -66,8 +67,8 @@ static void write_material(FILE *out, const lar_material *m) {
                 m->viscosity.time[i]);
 }
 
-lar_status lar_fit_write_tissue(const char *path, const lar_fit_problem *p,
-                                const lar_fit_result *r, const char *material, lar_error *error) {
+lar_status lar_fit_write_tissue(const char *path, const lar_fit_problem *p, const lar_fit_result *r,
+                                const char *material, lar_error *error) {
     char text[256];
     double value[LAR_FIT_PARAMETERS_MAX];
     lar_material fitted = *lar_fit_material(p, material);
@@ -83,7 +84,8 @@ lar_status lar_fit_write_tissue(const char *path, const lar_fit_problem *p,
     return lar_part_close(&out, LAR_OK);
 }
 
-/* ---- pictures ----------------------------------------------------------------------------------------- */
+/* ---- pictures
+ * ----------------------------------------------------------------------------------------- */
 
 enum { LEFT = 80, TOP = 40, WIDTH = 560, HEIGHT = 340 };
 
@@ -166,8 +168,10 @@ lar_status lar_fit_write_svg(const char *path, const lar_fit_problem *p, const l
     a.out = out.file;
     plain(e->name, title, sizeof title);
     draw_axes(&a, title,
-              points ? "value" : e->in_time ? "time [s]"
-              : e->kind == LAR_FIT_INDENTATION ? "depth [m]" : "displacement [m]",
+              points                           ? "value"
+              : e->in_time                     ? "time [s]"
+              : e->kind == LAR_FIT_INDENTATION ? "depth [m]"
+                                               : "displacement [m]",
               e->kind == LAR_FIT_MARKERS   ? "displacement [m]"
               : e->kind == LAR_FIT_SURFACE ? "distance [m]"
                                            : "force [N]");

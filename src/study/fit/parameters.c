@@ -15,7 +15,8 @@ static const char *const time_name[LAR_VISCOUS_TERMS] = {"time1", "time2", "time
 /* Whether two moduli say all that the law has: then they can be set through them. */
 static bool by_moduli(const lar_material *m, double moduli[MODULI]) {
     const lar_law_row *law = &lar_law_table[m->law];
-    double back[LAR_LAW_PARAMETERS] = {0}, g = law->shear(m->parameter), k = law->bulk(m->parameter);
+    double back[LAR_LAW_PARAMETERS] = {0}, g = law->shear(m->parameter),
+           k = law->bulk(m->parameter);
     law->from_moduli(g, k, back);
     for (int i = 0; i < law->count; i++)
         if (fabs(back[i] - m->parameter[i]) > 1e-9 * (fabs(g) + fabs(k))) return false;

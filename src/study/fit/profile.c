@@ -10,8 +10,7 @@ static lar_status squares_at(const lar_fit_solver *best, int j, double u, double
                              int *runs) {
     lar_fit_solver s;
     bool converged;
-    lar_status status =
-        lar_fit_solver_create(best->problem, &best->options, &s, best->error);
+    lar_status status = lar_fit_solver_create(best->problem, &best->options, &s, best->error);
     memcpy(s.start, best->best_u, sizeof s.start);
     s.start[j] = u;
     s.fixed[j] = true;

@@ -16,7 +16,8 @@
 
 static const double STEP = 0.02; /* of differences, in u */
 
-/* ---- runs, many at a time ----------------------------------------------------------------------- */
+/* ---- runs, many at a time -----------------------------------------------------------------------
+ */
 
 typedef struct job {
     const lar_fit_problem *problem;
@@ -74,18 +75,17 @@ static void tell(const lar_fit_solver *s) {
     enum { ROUNDS = 6 }; /* that most fits take */
     if (!s->options.progress) return;
     int left = ROUNDS - s->rounds;
-    const lar_fit_progress progress = {
-        .doing = s->doing,
-        .runs = s->runs,
-        .residual = sqrt(s->best_squares / s->values),
-        .remaining = s->rounds > 0 ? s->round * (left > 1 ? left : 1) : -1};
+    const lar_fit_progress progress = {.doing = s->doing,
+                                       .runs = s->runs,
+                                       .residual = sqrt(s->best_squares / s->values),
+                                       .remaining =
+                                           s->rounds > 0 ? s->round * (left > 1 ? left : 1) : -1};
     s->options.progress(s->options.context, &progress);
 }
 
 lar_status lar_fit_evaluate(lar_fit_solver *s, const double *u, double *r) {
     job jobs[LAR_FIT_EXPERIMENTS_MAX];
-    if (isfinite(s->best_squares) &&
-        memcmp(u, s->best_u, (size_t)s->parameters * sizeof *u) == 0) {
+    if (isfinite(s->best_squares) && memcmp(u, s->best_u, (size_t)s->parameters * sizeof *u) == 0) {
         residuals(s->problem, s->best_model, r); /* the same bits again */
         return LAR_OK;
     }
@@ -110,7 +110,8 @@ lar_status lar_fit_evaluate(lar_fit_solver *s, const double *u, double *r) {
     return status;
 }
 
-/* ---- differences ----------------------------------------------------------------------------------- */
+/* ---- differences
+ * ----------------------------------------------------------------------------------- */
 
 typedef struct difference {
     int parameter;
@@ -161,8 +162,7 @@ lar_status lar_fit_differentiate(lar_fit_solver *s, const double *u, const doubl
     size_t of_one = 2 * (size_t)experiments, all = (size_t)s->parameters;
     job *jobs = lar_calloc(all * of_one, sizeof *jobs);
     double *model = lar_calloc(2 * all * (size_t)s->values, sizeof *model);
-    lar_status status =
-        jobs && model ? LAR_OK : lar_fail_memory(s->error, all, s->problem->path);
+    lar_status status = jobs && model ? LAR_OK : lar_fail_memory(s->error, all, s->problem->path);
     for (int j = 0; j < s->parameters && !status; j++) {
         if (s->fixed[j]) continue;
         d[count].parameter = j;
@@ -183,7 +183,8 @@ lar_status lar_fit_differentiate(lar_fit_solver *s, const double *u, const doubl
     return status;
 }
 
-/* ---- Levenberg-Marquardt ------------------------------------------------------------------------- */
+/* ---- Levenberg-Marquardt
+ * ------------------------------------------------------------------------- */
 
 lar_status lar_fit_solver_create(const lar_fit_problem *problem, const lar_fit_options *options,
                                  lar_fit_solver *s, lar_error *error) {

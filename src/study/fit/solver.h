@@ -37,7 +37,7 @@ typedef struct lar_fit_solver {
     int runs, rounds;    /* simulations; evaluations with derivatives */
     double begin, round; /* clock at the start [s]; seconds of the last round */
     const char *doing;
-    double *best_model;                   /* [values] */
+    double *best_model; /* [values] */
     double best_u[LAR_FIT_PARAMETERS_MAX];
     double best_squares;                  /* of residuals; INFINITY: none yet */
     bool fixed[LAR_FIT_PARAMETERS_MAX];   /* stay at their u of the start */
