@@ -7,7 +7,7 @@
 # Debian brings halves along: openmpi-bin has mpicc without mpi.h, a library comes without its
 # -dev package. Everything is asked again at every configuration, so that what was installed or
 # removed meanwhile is seen; a try takes some hundredths of a second, which try_compile does not.
-set(LARIAT_OPTIONAL_NAMES hwloc libwebsockets metis mpi nifti petsc sdl2 ucx)
+set(LARIAT_OPTIONAL_NAMES cminpack hwloc libwebsockets metis mpi nifti petsc sdl2 ucx)
 set(LARIAT_WITHOUT "" CACHE STRING "Optional libraries to leave out: a list of ${LARIAT_OPTIONAL_NAMES}")
 foreach(name ${LARIAT_WITHOUT})
   if(NOT name IN_LIST LARIAT_OPTIONAL_NAMES)
@@ -87,6 +87,13 @@ lariat_optional(metis CALLED METIS PACKAGE libmetis-dev
   SIGNS "${METIS_LIBRARY}" "${METIS_INCLUDE}" INCLUDES ${METIS_INCLUDE} LIBRARIES ${METIS_LIBRARY}
   SOURCE "#include <metis.h>
 int main(void) { idx_t o[METIS_NOPTIONS]; return METIS_SetDefaultOptions(o) != METIS_OK; }")
+
+# Least squares of parameter fits.
+lariat_pkg(CMINPACK cminpack)
+lariat_optional(cminpack CALLED cminpack PACKAGE libcminpack-dev WITHOUT "no lariat fit"
+  SIGNS "${CMINPACK_FOUND}" INCLUDES ${CMINPACK_INCLUDE_DIRS} LIBRARIES ${CMINPACK_LINK_LIBRARIES}
+  SOURCE "#include <cminpack.h>
+int main(void) { double x[2] = {3, 4}; return enorm(2, x) != 5; }")
 
 # Label images of NIfTI, -1 and -2. Older packages of libnifti lack the second.
 find_library(NIFTI_LIBRARY nifti2 NO_CACHE)

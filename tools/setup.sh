@@ -2,17 +2,18 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [scan] [web] [check] [fuzz] [report]      default: build scan web
+#   tools/setup.sh [build] [scan] [fit] [web] [check] [fuzz] [report]   default: build scan fit web
 #
 #   build   what the library and the command need; an error when it cannot be had
 #   scan    what scans are read with: libnifti
+#   fit     what `lariat fit` finds parameters with: cminpack
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   check   what the tests need: cmocka; and what widens them: a second compiler, METIS, hwloc, UCX,
 #           MPI, SDL2, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #   report  what writes and draws the figures of `make report`
 #
-# The default does everything that README.md shows. What belongs to `scan` and `web`, and what widens
+# The default does everything that README.md shows. What belongs to `scan`, `fit` and `web`, and what widens
 # the tests, is optional: without it a sentence says what is left out.
 set -euo pipefail
 
@@ -48,6 +49,8 @@ SDL_PACKAGES="
 libsdl2-dev       m:sdl2"
 NIFTI_PACKAGES="
 libnifti-dev      -"
+FIT_PACKAGES="
+libcminpack-dev   m:cminpack"
 PETSC_PACKAGES="
 petsc-dev         m:PETSc"
 REPORT_PACKAGES="
@@ -176,11 +179,12 @@ want_clang() {
     want "libclang-rt-$version-dev -" "$consequence" || true
 }
 
-[ $# -gt 0 ] || set -- build scan web
+[ $# -gt 0 ] || set -- build scan fit web
 for group in "$@"; do
     case $group in
     build) need "$BUILD_PACKAGES" ;;
     scan) want "$NIFTI_PACKAGES" "lariat mesh is built without .nii" || true ;;
+    fit) want "$FIT_PACKAGES" "lariat fit is built without its solver" || true ;;
     web)
         want "$LWS_PACKAGES" "lariat view is built without its server" || true
         want "$NODE_PACKAGES" "the viewer's page is not built" || true
@@ -207,7 +211,7 @@ for group in "$@"; do
         want_clang "the report has no second compiler"
         ;;
     *)
-        say "unknown group '$group'; use build, scan, web, check, fuzz or report"
+        say "unknown group '$group'; use build, scan, fit, web, check, fuzz or report"
         exit 2
         ;;
     esac

@@ -10,7 +10,7 @@
 extern const cli_command cli_info, cli_run, cli_verify, cli_partition, cli_demo_model, cli_bench,
     cli_device, cli_view, cli_replay, cli_mesh, cli_bench_kernel, cli_bench_comm, cli_bench_scaling,
     cli_bench_step, cli_bench_jitter, cli_bench_precision, cli_bench_implicit, cli_requirements,
-    cli_predict, cli_doctor, cli_help;
+    cli_predict, cli_fit, cli_doctor, cli_help;
 
 /* All commands in the order in which they are listed, and the benchmarks, whose names begin with
  * "bench "; NULL ends them. */

@@ -10,7 +10,7 @@
 
 const cli_command *const cli_commands[] = {
     &cli_mesh,   &cli_info,      &cli_run,          &cli_view,    &cli_replay,
-    &cli_verify, &cli_partition, &cli_requirements, &cli_predict, &cli_demo_model,
+    &cli_verify, &cli_partition, &cli_requirements, &cli_predict, &cli_fit,     &cli_demo_model,
     &cli_bench,  &cli_device,    &cli_doctor,       &cli_help,    NULL};
 enum { COUNT = sizeof cli_commands / sizeof cli_commands[0] - 1 };
 

@@ -13,7 +13,7 @@ while read -r word line; do
 done <examples
 
 # Every option that --help lists.
-for command in mesh run verify partition requirements predict demo-model info device doctor help 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter' 'bench precision' 'bench implicit'; do
+for command in mesh run verify partition requirements predict fit demo-model info device doctor help 'bench kernel' 'bench step' 'bench comm' 'bench scaling' 'bench jitter' 'bench precision' 'bench implicit'; do
     # shellcheck disable=SC2086
     expect 0 "$LARIAT" $command --help
     grep -o '^  --[a-z-]*' "$SCRATCH/out" | while read -r option; do

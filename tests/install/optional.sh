@@ -49,6 +49,7 @@ half ucx 1.13.1
 half sdl2 2.26.5
 half libwebsockets 4.1.6
 half PETSc 3.18.5
+half cminpack 1.3.6
 echo '#include <this_header_is_not_there.h>' >"$scratch/include/metis.h"
 
 # configure FOLDER OPTION...
@@ -88,7 +89,7 @@ no_target() {
 
 configure half -DMETIS_INCLUDE="$scratch/include" -DNIFTI_INCLUDE=/nowhere
 compile half
-for name in 'Open MPI' MPICH hwloc METIS libnifti UCX SDL2 libwebsockets PETSc; do
+for name in 'Open MPI' MPICH cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc; do
     says_once half "^$name is only half installed and not used: .*(apt-get install [a-z0-9-]*)$"
 done
 for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc of-nowhere; do
@@ -96,9 +97,9 @@ for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc of-nowhe
 done
 
 # The same by wish; nothing is looked for then.
-configure without '-DLARIAT_WITHOUT=hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi'
+configure without '-DLARIAT_WITHOUT=cminpack;hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi'
 compile without
-for name in hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI; do
+for name in cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI; do
     says_once without "^-- $name left out"
 done
 for target in liblariat-mpi liblariat-petsc of-nowhere nifti2; do

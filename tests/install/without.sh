@@ -51,6 +51,7 @@ targets_of() {
 # own gets all.
 tests_of() {
     case $1 in
+    cminpack) echo 'study/fit|cli/fit' ;;
     hwloc) echo 'base/|comm/threads' ;;
     libwebsockets) echo 'session/(server|device)|cli/(view|replay)' ;;
     metis) echo 'divide/distribution|cli/partition' ;;

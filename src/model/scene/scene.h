@@ -6,6 +6,7 @@
  *           scene_sets.c      set names, ids, tags -> marks (one byte per node, element or face)
  *           scene_select.c    selectors -> marks -> lists of indices
  *           scene_material.c  materials
+ *           scene_tissue.c    a material in a file of its own
  *           scene_fibre.c     fibres of materials
  *           scene_motion.c    fix, move, load, initial, curves
  *           scene_contact.c   contact
@@ -154,6 +155,13 @@ lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_no
  * scene_surface.c ---------------------------------------------------------------------------- */
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
+/* Law, density, stiffness and viscosity from keys of a mapping: reads all of `material` but its
+ * cells, name and fibres. */
+typedef lar_status lar_scene_material_reader(const lar_scene *scene, const lar_yaml *node,
+                                             lar_material *material);
+/* The same from the file that the key `tissue` of a material names, by `read`. */
+lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
+                                 lar_scene_material_reader *read, lar_material *material);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of
  * one (scene_fibre.c). */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre);

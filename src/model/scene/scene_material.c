@@ -23,8 +23,8 @@ static stiffness_form own_form(lar_law law) {
     return (stiffness_form){lar_law_table[law].count, lar_law_table[law].parameter};
 }
 
-/* Keys of a material: its own six, then all that any law may be asked with. */
-enum { OWN_KEYS = 6, KEYS_MAX = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
+/* Keys of a material: its own seven, then all that any law may be asked with. */
+enum { OWN_KEYS = 7, KEYS_MAX = OWN_KEYS + 4 + LAR_LAW_COUNT * LAR_LAW_PARAMETERS };
 
 static void add_keys(const char **key, const stiffness_form *form) {
     for (int i = 0; i < form->count; i++) {
@@ -36,8 +36,8 @@ static void add_keys(const char **key, const stiffness_form *form) {
 
 /* Ends with NULL. */
 static void list_keys(const char *key[KEYS_MAX + 1]) {
-    static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name", "viscous",
-                                              "fibres"};
+    static const char *const own[OWN_KEYS] = {"cells",   "tissue", "fibres", "law",
+                                              "density", "name",   "viscous"};
     memset(key, 0, (KEYS_MAX + 1) * sizeof *key);
     for (int i = 0; i < OWN_KEYS; i++) key[i] = own[i];
     add_keys(key, &shear_bulk_form);
@@ -221,30 +221,54 @@ static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) 
     return LAR_OK;
 }
 
-static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
-    const char *const what = "a material", *name, *key[KEYS_MAX + 1];
-    const lar_yaml *cells = NULL, *law = NULL, *density = NULL;
+/* A tissue file has its version instead of what only a scene can say. */
+static lar_status check_keys(const lar_scene *scene, const lar_yaml *node) {
+    enum { OF_SCENES = 3 };
+    const char *key[KEYS_MAX + 1];
     list_keys(key);
-    lar_status status = lar_scene_keys(scene, node, what, key);
-    if (!status) status = lar_scene_need(scene, node, what, "cells", "cells: all", &cells);
+    if (scene->root != node) return lar_scene_keys(scene, node, "a material", key);
+    key[OF_SCENES - 1] = "lariat-tissue";
+    return lar_scene_keys(scene, node, "a tissue file", key + OF_SCENES - 1);
+}
+
+/* lar_scene_material_reader: of a scene's entry, or of a tissue file. */
+static lar_status read_tissue(const lar_scene *scene, const lar_yaml *node,
+                              lar_material *material) {
+    const lar_yaml *law = NULL, *density = NULL, *viscous = lar_yaml_get(node, "viscous");
+    const char *const what = scene->root == node ? "a tissue file" : "a material";
+    lar_status status = check_keys(scene, node);
     if (!status) status = lar_scene_need(scene, node, what, "law", "law: neo-hookean", &law);
     if (!status) status = lar_scene_need(scene, node, what, "density", "density: 1050", &density);
+    if (!status) status = read_law(scene, law, &material->law);
+    if (!status) status = lar_scene_positive(scene, density, LAR_IN_DENSITY, &material->density);
+    if (!status) status = read_stiffness(scene, node, material);
+    if (!status && viscous) status = read_viscosity(scene, viscous, &material->viscosity);
+    return status;
+}
+
+static lar_status read_name(const lar_scene *scene, const lar_yaml *node, lar_material *material) {
+    const char *name;
+    if (!node) return LAR_OK;
+    lar_status status = lar_scene_text(scene, node, "a name", &name);
+    if (status) return status;
+    material->name = lar_strdup(name);
+    return material->name ? LAR_OK : lar_scene_no_memory(scene, strlen(name) + 1);
+}
+
+static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
+    const lar_yaml *cells = NULL, *fibres;
+    const bool apart = lar_yaml_get(node, "tissue") != NULL;
+    lar_status status = apart ? LAR_OK : check_keys(scene, node);
+    if (!status) status = lar_scene_need(scene, node, "a material", "cells", "cells: all", &cells);
     if (status) return status;
     lar_material *material = LAR_MODEL_APPEND(scene->model, material);
     if (!material) return lar_scene_no_memory(scene, sizeof *material);
-    const lar_yaml *name_node = lar_yaml_get(node, "name");
-    if (name_node) {
-        status = lar_scene_text(scene, name_node, "a name", &name);
-        if (status) return status;
-        material->name = lar_strdup(name);
-        if (!material->name) return lar_scene_no_memory(scene, strlen(name) + 1);
-    }
-    status = read_law(scene, law, &material->law);
-    if (!status) status = lar_scene_positive(scene, density, LAR_IN_DENSITY, &material->density);
-    if (!status) status = read_stiffness(scene, node, material);
-    const lar_yaml *viscous = lar_yaml_get(node, "viscous");
-    if (!status && viscous) status = read_viscosity(scene, viscous, &material->viscosity);
-    const lar_yaml *fibres = lar_yaml_get(node, "fibres");
+    status = read_name(scene, lar_yaml_get(node, "name"), material);
+    if (!status && apart)
+        status = lar_scene_read_tissue(scene, node, read_tissue, material);
+    else if (!status)
+        status = read_tissue(scene, node, material);
+    fibres = lar_yaml_get(node, "fibres");
     if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, &material->fibre);
     if (status) return status;
     char where[512];

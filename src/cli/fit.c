@@ -1,0 +1,148 @@
+/* lariat fit: parameters of tissue from experiments. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file/folder.h"
+#include "base/file/part_file.h"
+#include "cli/commands.h"
+#include "cli/report/fit.h"
+#include "cli/stop.h"
+#include "study/fit/output.h"
+
+enum { PATH_SIZE = 4096 };
+
+/* ---- progress -----------------------------------------------------------------------------------
+ */
+
+/* Told after every evaluation, on a terminal. */
+static void show_progress(void *context, const lar_fit_progress *p) {
+    char left[48] = "";
+    (void)context;
+    if (p->remaining >= 0) snprintf(left, sizeof left, ", some %.0f s to go", ceil(p->remaining));
+    fprintf(stderr, "\r%s: residual %.4g, %d simulations%s \033[K", p->doing, p->residual, p->runs,
+            left);
+    fflush(stderr);
+}
+
+/* ---- results ------------------------------------------------------------------------------------
+ */
+
+/* Letters, digits, - and _ of a name; the others become _. */
+static void file_name(const char *name, char *to, size_t size) {
+    size_t n = 0;
+    for (; *name && n + 1 < size; name++) {
+        char c = *name;
+        bool plain =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+        to[n++] = plain ? c : '_';
+    }
+    to[n] = '\0';
+}
+
+static lar_status write_tissues(const char *folder, const lar_fit_problem *p,
+                                const lar_fit_result *r, lar_error *error) {
+    char path[PATH_SIZE], name[64];
+    lar_status status = LAR_OK;
+    for (int j = 0; j < p->parameters && !status; j++) {
+        if (!lar_fit_first_of_material(p, j)) continue;
+        file_name(p->parameter[j].material, name, sizeof name);
+        snprintf(path, sizeof path, "%.3900s/%s.tissue.yaml", folder, name);
+        status = lar_fit_write_tissue(path, p, r, p->parameter[j].material, error);
+    }
+    return status;
+}
+
+static lar_status write_all(const char *folder, const lar_fit_problem *p, const lar_fit_result *r,
+                            lar_error *error) {
+    char path[PATH_SIZE], name[64];
+    lar_part_file out;
+    lar_status status = write_tissues(folder, p, r, error);
+    for (int k = 0; k < p->experiments && !status; k++) {
+        file_name(p->experiment[k].name, name, sizeof name);
+        snprintf(path, sizeof path, "%.3900s/%d_%s.svg", folder, k + 1, name);
+        status = lar_fit_write_svg(path, p, r, k, error);
+    }
+    if (status) return status;
+    snprintf(path, sizeof path, "%.3900s/fit.json", folder);
+    status = lar_part_open(&out, path, error);
+    if (!status) fit_report_json(p, r, out.file);
+    return lar_part_close(&out, status);
+}
+
+/* ---- the command
+ * ---------------------------------------------------------------------------------- */
+
+static int complain(const lar_error *error) {
+    return cli_complain(&cli_fit, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
+                        "%s", error->message);
+}
+
+static int fit(const lar_fit_problem *problem, const char *folder, bool json) {
+    lar_fit_result result;
+    lar_error error = {0}, full = {0};
+    const bool terminal = isatty(STDERR_FILENO);
+    const lar_fit_options options = {.stop = &cli_stop_asked,
+                                     .progress = terminal ? show_progress : NULL};
+    cli_catch_stop();
+    lar_status failed = lar_fit_solve(problem, &options, &result, &error);
+    if (terminal) fputs("\r\033[K", stderr);
+    int status = CLI_DONE;
+    if (failed && cli_stop_asked)
+        status =
+            cli_complain(&cli_fit, CLI_INTERRUPTED,
+                         "interrupted before the first guess was computed: there is no answer");
+    else if (failed)
+        status = complain(&error);
+    if (!status && folder && write_all(folder, problem, &result, &full)) status = complain(&full);
+    /* What took long is told also where the disk is full. */
+    if (!failed && !status && json) fit_report_json(problem, &result, stdout);
+    if (!failed && (status || !json)) fit_report_table(problem, &result, json ? stderr : stdout);
+    if (!status && result.interrupted)
+        status = cli_complain(&cli_fit, CLI_INTERRUPTED,
+                              "interrupted: these are the best values so far, without intervals");
+    lar_fit_result_clear(&result);
+    return status;
+}
+
+static int fit_main(int argc, char **argv) {
+    const char *path = NULL, *folder = NULL;
+    bool json = false;
+    const cli_option options[] = {
+        CLI_TEXT("--out", "DIR",
+                 "write tissue files for scenes (.tissue.yaml), pictures of\nmeasurement and model "
+                 "(.svg) and fit.json there",
+                 &folder),
+        CLI_FLAG("--json", "the answer as one JSON object on standard output", &json), CLI_END};
+    int status = cli_parse(&cli_fit, options, argc, argv, &path, 1);
+    if (status >= 0) return status;
+    lar_fit_problem problem = {0};
+    lar_error error = {0};
+    if (!lar_fit_available())
+        return cli_complain(&cli_fit, CLI_FAILED,
+                            "this program was built without cminpack, which fits need; apt-get "
+                            "install libcminpack-dev, then make");
+    if (lar_fit_problem_read(path, &problem, &error) || (folder && lar_folder_make(folder, &error)))
+        status = complain(&error);
+    else
+        status = fit(&problem, folder, json);
+    lar_fit_problem_clear(&problem);
+    return status;
+}
+
+const cli_command cli_fit = {
+    .name = "fit",
+    .summary = "find parameters of tissue from experiments",
+    .arguments = "EXPERIMENT",
+    .description =
+        "Finds parameters of materials so that simulations answer as experiments did (tension,\n"
+        "compression, indentation, markers, deformed surfaces), by least squares: values, 95 %\n"
+        "intervals, which parameters the data cannot tell, and whether what is left is chance.\n"
+        "EXPERIMENT is a file (.yaml) that names scenes, tables of measured numbers (.csv) and\n"
+        "the free parameters. Simulations go on all cores. Ctrl-C ends a fit with the best so\n"
+        "far (exit status 130).",
+    .examples = "  lariat fit examples/fit_tension.yaml\n"
+                "  lariat fit examples/fit_tension.yaml --out fitted\n"
+                "  lariat fit examples/fit_tension.yaml --json\n",
+    .main = fit_main};

@@ -1,0 +1,12 @@
+/* What `lariat fit` says. */
+#ifndef LAR_CLI_REPORT_FIT_H
+#define LAR_CLI_REPORT_FIT_H
+
+#include <stdio.h>
+
+#include "study/fit/fit.h"
+
+void fit_report_table(const lar_fit_problem *problem, const lar_fit_result *result, FILE *out);
+void fit_report_json(const lar_fit_problem *problem, const lar_fit_result *result, FILE *out);
+
+#endif

@@ -1,0 +1,127 @@
+#!/bin/sh
+# lariat fit: what it writes is what it says, a tissue file goes into a scene, and bad input gets one
+# sentence with its file and line.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+
+cat >one.vtk <<'END'
+# vtk DataFile Version 3.0
+one element, 10 x 10 x 20 mm
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 double
+0 0 0  0.01 0 0  0.01 0.01 0  0 0.01 0
+0 0 0.02  0.01 0 0.02  0.01 0.01 0.02  0 0.01 0.02
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+END
+cat >one.yaml <<'END'
+lariat: 1
+mesh: one.vtk
+materials:
+  - { cells: all, name: gel, law: neo-hookean, density: 1050, shear_modulus: 1.0e3, bulk_modulus: 4.0e4 }
+sets: [ { name: top, nodes: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } } } ]
+fix:
+  - { nodes: { plane: { point: [0, 0, 0], normal: [0, 0, 1] } }, axes: z }
+  - { nodes: { nearest: [0, 0, 0] }, axes: xy }
+  - { nodes: { nearest: [0.01, 0, 0] }, axes: y }
+move: [ { nodes: top, axes: z, by: 0.002, over: 1 } ]
+END
+# Force of a neo-Hookean bar that keeps its volume, G = 2000 Pa: G A (s - 1 / s^2).
+printf 'displacement,force\n0.001,0.0286\n0.002,0.0547\n0.003,0.0788\n0.004,0.1011\n' >one.csv
+fit() {
+    # shellcheck disable=SC2059
+    printf "lariat-fit: 1\nparameters:\n  - { material: gel, parameter: ${1:-shear_modulus}, guess: ${2:-1.5e3}, bounds: [1.0e2, 1.0e5] }\nexperiments:\n  - { kind: tension, scene: one.yaml, data: ${3:-one.csv}${4:-} }\n"
+}
+fit >fit.yaml
+
+expect 0 "$LARIAT" fit --help
+says 'EXPERIMENT'
+"$LARIAT" fit fit.yaml >out 2>err
+if grep -q libcminpack-dev err; then
+    echo "skipped: built without cminpack"
+    exit 77
+fi
+
+expect 0 "$LARIAT" fit fit.yaml --out made --json
+has_keys --numbers parameters.0.value parameters.0.low parameters.0.high deviation wall_time runs
+value_of parameters.0.value | awk '{ exit !($1 > 1960 && $1 < 2040) }' ||
+    fail "$(value_of parameters.0.value) instead of 2000"
+"$JSON" parameters experiments notes <made/fit.json || fail "fit.json"
+grep -q '</svg>' made/1_tension.svg || fail "no picture"
+grep -q '^# shear_modulus: fitted, 95 %' made/gel.tissue.yaml || fail "no provenance"
+
+# The tissue in a scene.
+sed 's/law: .* }$/tissue: made\/gel.tissue.yaml }/' one.yaml >with.yaml
+expect 0 "$LARIAT" info with.yaml --no-speed --json
+value_of materials.0.shear_modulus | awk '{ exit !($1 > 1960 && $1 < 2040) }' || fail "another tissue"
+sed -i 's/^law: .*/law: neo-hokean/' made/gel.tissue.yaml
+expect 1 "$LARIAT" info with.yaml --no-speed
+complains 'with\.yaml:4:.*gel\.tissue\.yaml:[0-9]*:6: the law "neo-hokean" is unknown; did you mean neo-hookean'
+sed -i 's/tissue: /density: 1000, tissue: /' with.yaml
+expect 1 "$LARIAT" info with.yaml --no-speed
+complains 'the key "density" is unknown'
+
+# bad PATTERN COMMAND...: the file that the command prints is refused, in one line.
+bad() {
+    sentence=$1
+    shift
+    "$@" >bad.yaml
+    expect 1 "$LARIAT" fit bad.yaml
+    complains "$sentence"
+    silent
+    [ "$(wc -l <err)" -eq 1 ] || fail "more than one line: $(cat err)"
+}
+bad 'bad\.yaml:3:.*outside of the bounds' fit shear_modulus 10
+bad 'bad\.yaml:3:.*"shear" is unknown.*shear_modulus' fit shear
+bad 'bad\.yaml:5:.*"nap" is unknown; did you mean name' fit shear_modulus 1e3 one.csv ', nap: x'
+printf 'displacement,force\n0.001,0.03\n' >few.csv
+bad 'few\.csv:1: one row only' fit shear_modulus 1e3 few.csv
+printf 'displacement,strength\n0.001,0.03\n0.002,0.05\n' >named.csv
+bad 'named\.csv:1: the column force is missing' fit shear_modulus 1e3 named.csv
+printf 'displacement,force\n0.001,nan\n0.002,0.05\n' >void.csv
+bad 'void\.csv:2: .* force is no finite number' fit shear_modulus 1e3 void.csv
+printf 'time,displacement,force\n0,0,0\n2,0.001,0.03\n1,0.002,0.05\n' >back.csv
+bad 'back\.csv:4: time 1 does not come after 2' fit shear_modulus 1e3 back.csv
+printf 'displacement,force\n1,0.03\n2,0.05\n' >mm.csv
+bad 'mm\.csv:2: displacement is 1 m.*millimetres.*scale: {displacement: 0.001}' \
+    fit shear_modulus 1e3 mm.csv
+printf 'displacement,force\n0.001,28.6\n0.002,54.7\n' >milli.csv
+bad 'bad\.yaml:5: the forces of milli\.csv are 1e+03 times' fit shear_modulus 2e3 milli.csv
+printf 'displacement,force\n0.001,-0.03\n0.002,-0.05\n' >sign.csv
+bad 'opposite sign.*scale: {force: -1}' fit shear_modulus 1e3 sign.csv
+bad 'one\.csv:1 has no column kraft' fit shear_modulus 1e3 one.csv ', columns: { force: kraft }'
+sed 's/by: 0.002/by: -0.002/; s/fix:/gravity: [0, 0, -1.0e6]\nfix:/' one.yaml >wild.yaml
+fit | sed 's/one\.yaml/wild.yaml/' >bad.yaml
+expect 3 "$LARIAT" fit bad.yaml
+complains 'no answer with the first guess'
+
+# In millimetres and with other names, once that is said.
+printf 'mm,mN\n1,28.6\n2,54.7\n3,78.8\n' >other.csv
+fit shear_modulus 1e3 other.csv \
+    ', columns: { displacement: mm, force: mN }, scale: { displacement: 0.001, force: 0.001 }' >other.yaml
+expect 0 "$LARIAT" fit other.yaml
+says 'shear_modulus: 2'
+
+# A full disk: a message, and the answer all the same.
+if [ -c /dev/full ]; then
+    mkdir full
+    ln -s /dev/full full/fit.json.part
+    expect 1 "$LARIAT" fit fit.yaml --out full
+    complains 'fit\.json: .*No space left'
+    says 'shear_modulus: 2'
+fi
+
+# Ctrl-C leaves the best so far.
+sed 's/^move.*/time_step: 1.0e-7\n&/' one.yaml >slow.yaml
+sed 's/one\.yaml/slow.yaml/' fit.yaml >slow_fit.yaml
+"$LARIAT" fit slow_fit.yaml >out 2>err &
+pid=$!
+sleep 1
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ] || fail "exit status after Ctrl-C"
+complains interrupted
+finish "lariat fit: answers, tissue files, and a sentence for what is wrong"
