@@ -36,8 +36,8 @@ static void add_keys(const char **key, const stiffness_form *form) {
 
 /* Ends with NULL. */
 static void list_keys(const char *key[KEYS_MAX + 1]) {
-    static const char *const own[OWN_KEYS] = {"cells", "law", "density", "name", "viscous",
-                                              "fibres"};
+    static const char *const own[OWN_KEYS] = {"cells", "law",     "density",
+                                              "name",  "viscous", "fibres"};
     memset(key, 0, (KEYS_MAX + 1) * sizeof *key);
     for (int i = 0; i < OWN_KEYS; i++) key[i] = own[i];
     add_keys(key, &shear_bulk_form);
@@ -245,7 +245,7 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     const lar_yaml *viscous = lar_yaml_get(node, "viscous");
     if (!status && viscous) status = read_viscosity(scene, viscous, &material->viscosity);
     const lar_yaml *fibres = lar_yaml_get(node, "fibres");
-    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, &material->fibre);
+    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, material);
     if (status) return status;
     char where[512];
     snprintf(where, sizeof where, "%s:%d:%d", scene->path, node->line, node->column);
