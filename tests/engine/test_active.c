@@ -4,6 +4,7 @@
 #include "engine/same_bits_test.h"
 #include "mechanics/stress.h"
 #include "model/rest.h"
+#include "simulation/checkpoint.h"
 #include "step/activation.h"
 
 #define PATH LAR_TEST_BUILD "/active.checkpoint"
@@ -162,6 +163,32 @@ static void what_was_set_is_kept_and_forgotten(void **unused) {
     assert_true(lar_simulation_activation(simulation, LAR_LAW_ogden) == 1);
     act(simulation, 0, 8);
     is_at(simulation, body.golden.middle);
+    finish(simulation, model);
+}
+
+/* Activations of a file behind the other settings: of the first material, and of the last. */
+static void forged_files_are_refused(void **unused) {
+    (void)unused;
+    static const double wrong[4] = {-0.1, 1.5, NAN, INFINITY};
+    lar_model *model = active_tool_model(&tool_brick);
+    lar_simulation *simulation = start_with(model, setting(NULL, 0));
+    lar_bytes good, bad;
+    lar_error error;
+    activate(simulation, -1, 0.5);
+    assert_int_equal(lar_simulation_pack(simulation, "memory", &good, &error), LAR_OK);
+    for (int i = 0; i < 8; i++) {
+        bad = (lar_bytes){lar_calloc(good.size, 1), good.size};
+        memcpy(bad.data, good.data, good.size);
+        memcpy(bad.data + 752 + (i % 2 ? 63 * 8 : 0), &wrong[i / 2], 8);
+        uint64_t sum = lar_checkpoint_sum(bad.data, bad.size / 8 - 1);
+        memcpy(bad.data + bad.size - 8, &sum, 8);
+        assert_int_equal(lar_simulation_unpack(simulation, "memory", &bad, &error),
+                         LAR_ERROR_FORMAT);
+        assert_non_null(strstr(error.message, "a setting that cannot be so"));
+        lar_bytes_free(&bad);
+    }
+    assert_int_equal(lar_simulation_unpack(simulation, "memory", &good, &error), LAR_OK);
+    lar_bytes_free(&good);
     finish(simulation, model);
 }
 
@@ -387,6 +414,7 @@ int main(void) {
         cmocka_unit_test(processes_agree),
         cmocka_unit_test(live_changes_have_the_same_bits),
         cmocka_unit_test(what_was_set_is_kept_and_forgotten),
+        cmocka_unit_test(forged_files_are_refused),
         cmocka_unit_test(what_cannot_be_set_is_refused),
         cmocka_unit_test(a_block_contracts_as_far_as_it_should),
         cmocka_unit_test(waves_are_where_they_should_be),
